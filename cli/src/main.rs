@@ -1,0 +1,2 @@
+//! The command `nonius`.
+fn main() {}
