@@ -1,0 +1,304 @@
+//! The recorder: `Node` is the reading of [`Signal`] that writes the graph down.
+
+use std::cell::RefCell;
+use std::collections::HashMap;
+use std::ops::{Add, Mul, Neg, Sub};
+
+use super::interval::{RangeError, reach};
+use super::{Entry, Graph, Kind, NodeId, Op};
+use crate::format::{Format, Quantiser};
+use crate::rom::Rom;
+use crate::signal::{Formula, Logic, Signal, Wide};
+
+static INPUTS: Formula = Formula { title: "Registers, inputs and coefficients", equation: "", source: "" };
+
+/// Collects the graph while kernels run on its nodes.
+#[derive(Debug)]
+pub struct Recorder {
+    inner: RefCell<Inner>,
+}
+
+#[derive(Debug)]
+struct Inner {
+    graph: Graph,
+    seen: HashMap<(Op, Format), NodeId>,
+    formula: usize,
+    error: Option<RangeError>,
+}
+
+/// A number in the recording reading.
+#[derive(Clone, Copy, Debug)]
+pub struct Node<'g> {
+    recorder: &'g Recorder,
+    /// Its place in the graph.
+    pub id: NodeId,
+}
+
+/// An exact product, or a sum of such, in the recording reading.
+#[derive(Clone, Copy, Debug)]
+pub struct WideNode<'g>(Node<'g>);
+
+/// A decision in the recording reading.
+#[derive(Clone, Copy, Debug)]
+pub struct Flag<'g>(Node<'g>);
+
+impl Default for Recorder {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Recorder {
+    /// An empty recording.
+    #[must_use]
+    pub fn new() -> Self {
+        let graph = Graph {
+            nodes: vec![],
+            formulas: vec![&INPUTS],
+            roms: vec![],
+            inputs: vec![],
+            probes: vec![],
+            next: vec![],
+        };
+        let inner = Inner { graph, seen: HashMap::new(), formula: 0, error: None };
+        Self { inner: RefCell::new(inner) }
+    }
+
+    /// A register or input of the chip, anywhere in its format.
+    pub fn input(&self, name: &str, format: Format) -> Node<'_> {
+        let range = (format.min_raw(), format.max_raw());
+        self.enter(name, format, range, Kind::Value)
+    }
+
+    /// A one-bit register or input of the chip.
+    pub fn flag_input(&self, name: &str) -> Flag<'_> {
+        Flag(self.enter(name, Format::unsigned(1, 0), (0, 1), Kind::Flag))
+    }
+
+    fn enter(&self, name: &str, format: Format, range: (i128, i128), kind: Kind) -> Node<'_> {
+        let mut inner = self.inner.borrow_mut();
+        let entry = Entry { op: Op::Input, kind, format, range, name: Some(name.into()), formula: 0 };
+        let id = inner.push(entry);
+        inner.graph.inputs.push((name.into(), id));
+        Node { recorder: self, id }
+    }
+
+    /// A coefficient of value `raw` · 2^-`fraction`. Equal coefficients of one name are one node.
+    pub fn constant(&self, name: Option<&str>, raw: i64, fraction: u32) -> Node<'_> {
+        let mut inner = self.inner.borrow_mut();
+        let format = Format::covering(raw.into(), raw.into(), fraction);
+        let range = (raw.into(), raw.into());
+        let name = name.map(str::to_owned);
+        let entry = Entry { op: Op::Constant(raw), kind: Kind::Value, format, range, name, formula: 0 };
+        let id = inner.push(entry);
+        Node { recorder: self, id }
+    }
+
+    /// States that `node` is what register `name` holds after the sample.
+    pub fn next(&self, name: &str, node: NodeId) {
+        self.inner.borrow_mut().graph.next.push((name.into(), node));
+    }
+
+    /// States that waves and vectors show `node` under `name`.
+    pub fn probe(&self, name: &str, node: NodeId) {
+        let mut inner = self.inner.borrow_mut();
+        inner.name(node, name);
+        inner.graph.probes.push((name.into(), node));
+    }
+
+    /// The finished graph.
+    ///
+    /// # Errors
+    /// The first value that interval analysis found not to fit.
+    pub fn finish(self) -> Result<Graph, RangeError> {
+        let inner = self.inner.into_inner();
+        match inner.error {
+            Some(error) => Err(error),
+            None => Ok(inner.graph),
+        }
+    }
+
+    fn record(&self, op: Op) -> Node<'_> {
+        let id = self.inner.borrow_mut().record(op);
+        Node { recorder: self, id }
+    }
+}
+
+impl Inner {
+    fn push(&mut self, entry: Entry) -> NodeId {
+        let id = NodeId(self.graph.nodes.len() as u32);
+        self.graph.nodes.push(entry);
+        id
+    }
+
+    fn record(&mut self, op: Op) -> NodeId {
+        let reached = match reach(&op, &self.graph.nodes, &self.graph.roms) {
+            Ok(reached) => reached,
+            Err(mut error) => {
+                let formula = self.graph.formulas[self.formula].title;
+                error.signal = format!("a value of “{formula}”");
+                self.error.get_or_insert(error);
+                // Any placeholder will do: the recording has failed and finish() says so.
+                super::interval::Reach { format: Format::signed(2, 0), range: (0, 0), kind: Kind::Value }
+            }
+        };
+        let key = (op, reached.format);
+        if let Some(&id) = self.seen.get(&key) {
+            return id;
+        }
+        let (kind, format, range) = (reached.kind, reached.format, reached.range);
+        let id = self.push(Entry { op, kind, format, range, name: None, formula: self.formula });
+        self.seen.insert(key, id);
+        id
+    }
+
+    /// The first name given stays; a name that another node has gets a number.
+    fn name(&mut self, id: NodeId, name: &str) {
+        if self.graph.nodes[id.index()].name.is_some() {
+            return;
+        }
+        let taken = |n: &str| self.graph.nodes.iter().any(|e| e.name.as_deref() == Some(n));
+        let mut unique = name.to_owned();
+        let mut count = 1;
+        while taken(&unique) {
+            count += 1;
+            unique = format!("{name}_{count}");
+        }
+        self.graph.nodes[id.index()].name = Some(unique);
+    }
+}
+
+impl<'g> Node<'g> {
+    fn with(self, op: Op) -> Self {
+        self.recorder.record(op)
+    }
+}
+
+impl<'g> Flag<'g> {
+    /// Its place in the graph.
+    #[must_use]
+    pub fn id(self) -> NodeId {
+        self.0.id
+    }
+}
+
+impl Add for Node<'_> {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        self.with(Op::Add(self.id, other.id))
+    }
+}
+
+impl Sub for Node<'_> {
+    type Output = Self;
+    fn sub(self, other: Self) -> Self {
+        self.with(Op::Sub(self.id, other.id))
+    }
+}
+
+impl Neg for Node<'_> {
+    type Output = Self;
+    fn neg(self) -> Self {
+        self.with(Op::Neg(self.id))
+    }
+}
+
+impl<'g> Mul for Node<'g> {
+    type Output = WideNode<'g>;
+    fn mul(self, other: Self) -> WideNode<'g> {
+        WideNode(self.with(Op::Mul(self.id, other.id)))
+    }
+}
+
+impl<'g> Signal for Node<'g> {
+    type Wide = WideNode<'g>;
+    type Bool = Flag<'g>;
+
+    fn widen(self) -> WideNode<'g> {
+        WideNode(self)
+    }
+    fn scale(self, power: i32) -> Self {
+        if power == 0 { self } else { self.with(Op::Scale(self.id, power)) }
+    }
+    fn quantise(self, to: &Quantiser) -> Self {
+        self.with(Op::Quantise(self.id, *to))
+    }
+    fn less_than(self, other: Self) -> Flag<'g> {
+        Flag(self.with(Op::LessThan(self.id, other.id)))
+    }
+    fn select(condition: Flag<'g>, yes: Self, no: Self) -> Self {
+        yes.with(Op::Select(condition.0.id, yes.id, no.id))
+    }
+    fn lookup(rom: &Rom, column: usize, address: Self) -> Self {
+        let index = {
+            let mut inner = address.recorder.inner.borrow_mut();
+            let known = inner.graph.roms.iter().position(|r| r.name == rom.name);
+            known.unwrap_or_else(|| {
+                inner.graph.roms.push(rom.clone());
+                inner.graph.roms.len() - 1
+            })
+        };
+        address.with(Op::Lookup { rom: index, column, address: address.id })
+    }
+    fn named(self, name: &'static str) -> Self {
+        self.recorder.inner.borrow_mut().name(self.id, name);
+        self
+    }
+    fn begin(self, formula: &'static Formula) {
+        let mut inner = self.recorder.inner.borrow_mut();
+        let known = inner.graph.formulas.iter().position(|f| *f == formula);
+        inner.formula = known.unwrap_or_else(|| {
+            inner.graph.formulas.push(formula);
+            inner.graph.formulas.len() - 1
+        });
+    }
+}
+
+impl Add for WideNode<'_> {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        Self(self.0 + other.0)
+    }
+}
+
+impl Sub for WideNode<'_> {
+    type Output = Self;
+    fn sub(self, other: Self) -> Self {
+        Self(self.0 - other.0)
+    }
+}
+
+impl<'g> Wide for WideNode<'g> {
+    type Narrow = Node<'g>;
+
+    fn scale(self, power: i32) -> Self {
+        Self(self.0.scale(power))
+    }
+    fn quantise(self, to: &Quantiser) -> Node<'g> {
+        self.0.quantise(to)
+    }
+    fn quantise_geared(self, gear: Node<'g>, stride: u32, last: u32, to: &Quantiser) -> Node<'g> {
+        self.0.with(Op::QuantiseGeared { value: self.0.id, gear: gear.id, stride, last, to: *to })
+    }
+    fn named(self, name: &'static str) -> Self {
+        Self(self.0.named(name))
+    }
+}
+
+impl Logic for Flag<'_> {
+    fn and(self, other: Self) -> Self {
+        Self(self.0.with(Op::And(self.0.id, other.0.id)))
+    }
+    fn or(self, other: Self) -> Self {
+        Self(self.0.with(Op::Or(self.0.id, other.0.id)))
+    }
+    fn xor(self, other: Self) -> Self {
+        Self(self.0.with(Op::Xor(self.0.id, other.0.id)))
+    }
+    fn not(self) -> Self {
+        Self(self.0.with(Op::Not(self.0.id)))
+    }
+    fn named(self, name: &'static str) -> Self {
+        Self(self.0.named(name))
+    }
+}
