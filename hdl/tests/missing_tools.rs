@@ -1,0 +1,42 @@
+//! With nothing on PATH the message says what to install. The test runs itself again with
+//! another PATH, because a process must not change its own.
+#![allow(clippy::unwrap_used)]
+
+mod support;
+
+use std::env;
+use std::process::Command;
+
+use nonius_hdl::progress::silent;
+use nonius_hdl::{Options, verify};
+use support::Toy;
+
+#[test]
+fn a_missing_tool_is_named_with_its_install_command() {
+    if env::var_os("PATH").is_some_and(|it| it.is_empty()) {
+        println!(
+            "{}",
+            verify(Toy::new().path(), &Options::default(), &silent).unwrap_err()
+        );
+        return;
+    }
+    let child = Command::new(env::current_exe().unwrap())
+        .args([
+            "--exact",
+            "a_missing_tool_is_named_with_its_install_command",
+        ])
+        .arg("--nocapture")
+        .env("PATH", "")
+        .output()
+        .unwrap();
+    let said = String::from_utf8(child.stdout).unwrap();
+    assert!(child.status.success(), "{said}");
+    assert!(
+        said.contains("`vvp` is needed to simulate the Verilog in Icarus"),
+        "{said}"
+    );
+    assert!(
+        said.contains("Install them with `apt-get install iverilog verilator g++ make`."),
+        "{said}"
+    );
+}

@@ -1,0 +1,120 @@
+//! The time base: it goes forward, and its regular step is the sample rate.
+
+use crate::error::ErrorKind;
+
+/// Relative difference from which a declared rate and `time_s` are said to disagree.
+const AGREE: f64 = 1e-3;
+/// A step longer than this many regular ones is a gap.
+pub(crate) const GAP: f64 = 1.5;
+
+/// Checks row after row that time goes forward. A row that repeats time and sample is data.
+#[derive(Debug, Default)]
+pub(crate) struct Clock {
+    last: Option<(f64, f64, f64)>,
+}
+
+impl Clock {
+    pub(crate) fn check(&mut self, time: f64, cos: f64, sin: f64) -> Result<(), ErrorKind> {
+        if let Some((previous, ..)) = self.last
+            && time < previous
+        {
+            let hint =
+                "expected a time that goes forward: sort the rows, or give one record at a time"
+                    .to_owned();
+            return Err(ErrorKind::TimeBack {
+                previous,
+                time,
+                hint,
+            });
+        }
+        if let Some((previous, c, s)) = self.last
+            && time == previous
+            && (c, s) != (cos, sin)
+        {
+            return Err(ErrorKind::TimeStill { time });
+        }
+        self.last = Some((time, cos, sin));
+        Ok(())
+    }
+}
+
+/// The regular step in seconds: the mean of the steps that are no gaps. 0 where there is none.
+pub(crate) fn interval(time: &[f64]) -> f64 {
+    let mut steps: Vec<f64> = time
+        .windows(2)
+        .map(|w| w[1] - w[0])
+        .filter(|d| *d > 0.0)
+        .collect();
+    if steps.is_empty() {
+        return 0.0;
+    }
+    let middle = steps.len() / 2;
+    let median = *steps.select_nth_unstable_by(middle, f64::total_cmp).1;
+    let regular = steps.iter().filter(|d| **d <= GAP * median);
+    let (sum, count) = regular.fold((0.0, 0.0), |(s, n), d| (s + d, n + 1.0));
+    sum / f64::max(count, 1.0)
+}
+
+/// The sample rate in hertz of a time column.
+pub(crate) fn rate(time: &[f64]) -> Result<f64, ErrorKind> {
+    let interval = interval(time);
+    if !(1e-15..1e15).contains(&interval) {
+        return Err(ErrorKind::NoInterval { interval });
+    }
+    // A round rate comes out round in spite of the last binary digit of the times.
+    let rate = 1.0 / interval;
+    let round: f64 = format!("{rate:.8e}").parse().unwrap_or(rate);
+    Ok(if (rate / round - 1.0).abs() < 1e-12 {
+        round
+    } else {
+        rate
+    })
+}
+
+/// What to say where the declared rate is not that of `time_s`.
+pub(crate) fn disagreement(declared: f64, from_time: f64) -> Option<String> {
+    let apart = (declared / from_time - 1.0).abs();
+    (apart > AGREE).then(|| {
+        let [from_time, declared] = [from_time, declared].map(crate::estimate::tidy);
+        format!("time_s and sample_rate_hz disagree: {from_time} Hz and {declared} Hz; time_s wins")
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn gaps_and_rounding_do_not_move_the_rate() {
+        let time: Vec<f64> = (0..1000)
+            .map(|k| f64::from(k + 500 * i32::from(k > 300)) / 120.0)
+            .map(|t| (t * 1e3).round() / 1e3)
+            .collect();
+        let rate = rate(&time).unwrap();
+        assert!((rate - 120.0).abs() < 0.02, "{rate}");
+        assert_eq!(disagreement(120.0, rate), None);
+        let note = disagreement(100.0, 120.0).unwrap();
+        assert_eq!(
+            note,
+            "time_s and sample_rate_hz disagree: 120 Hz and 100 Hz; time_s wins"
+        );
+    }
+
+    #[test]
+    fn time_may_repeat_only_with_its_sample() {
+        let mut clock = Clock::default();
+        clock.check(0.0, 1.0, 2.0).unwrap();
+        clock.check(0.0, 1.0, 2.0).unwrap();
+        let still = clock.check(0.0, 1.0, 3.0).unwrap_err();
+        assert!(matches!(still, ErrorKind::TimeStill { .. }));
+        let back = clock.check(-1.0, 1.0, 3.0).unwrap_err();
+        assert!(matches!(back, ErrorKind::TimeBack { .. }));
+    }
+
+    #[test]
+    fn a_time_without_steps_gives_no_rate() {
+        assert!(rate(&[1.0, 1.0]).is_err());
+        assert!(rate(&[]).is_err());
+        assert!(rate(&[0.0, 5e-324, 1e-323]).is_err());
+    }
+}
