@@ -51,7 +51,11 @@ impl Bits {
             Overflow::Saturate => integer.clamp(format.min_raw() as i64, format.max_raw() as i64),
             Overflow::Wrap => {
                 let spare = 64 - format.width;
-                if format.signed { (integer << spare) >> spare } else { ((integer as u64) << spare >> spare) as i64 }
+                if format.signed {
+                    (integer << spare) >> spare
+                } else {
+                    ((integer as u64) << spare >> spare) as i64
+                }
             }
             Overflow::Never => integer,
         };
@@ -97,17 +101,27 @@ impl Signal for Bits {
 
     #[inline(always)]
     fn widen(self) -> WideBits {
-        WideBits(I32F96::from_bits(i128::from(self.0.to_bits()) << (WIDE_FRACTION - CONTAINER_FRACTION)))
+        WideBits(I32F96::from_bits(
+            i128::from(self.0.to_bits()) << (WIDE_FRACTION - CONTAINER_FRACTION),
+        ))
     }
     #[inline(always)]
     fn scale(self, power: i32) -> Self {
         let bits = self.0.to_bits();
-        Self(I16F48::from_bits(if power >= 0 { bits << power } else { bits >> -power }))
+        Self(I16F48::from_bits(if power >= 0 {
+            bits << power
+        } else {
+            bits >> -power
+        }))
     }
     #[inline(always)]
     fn quantise(self, to: &Quantiser) -> Self {
         let drop = CONTAINER_FRACTION - to.format.fraction;
-        let half = if to.rounding == Rounding::Nearest { (1i64 << drop) >> 1 } else { 0 };
+        let half = if to.rounding == Rounding::Nearest {
+            (1i64 << drop) >> 1
+        } else {
+            0
+        };
         Self::settle((self.0.to_bits() + half) >> drop, to)
     }
     #[inline(always)]
@@ -146,18 +160,30 @@ impl Wide for WideBits {
     #[inline(always)]
     fn scale(self, power: i32) -> Self {
         let bits = self.0.to_bits();
-        Self(I32F96::from_bits(if power >= 0 { bits << power } else { bits >> -power }))
+        Self(I32F96::from_bits(if power >= 0 {
+            bits << power
+        } else {
+            bits >> -power
+        }))
     }
     #[inline(always)]
     fn quantise(self, to: &Quantiser) -> Bits {
         let drop = WIDE_FRACTION - to.format.fraction;
-        let half = if to.rounding == Rounding::Nearest { 1i128 << (drop - 1) } else { 0 };
+        let half = if to.rounding == Rounding::Nearest {
+            1i128 << (drop - 1)
+        } else {
+            0
+        };
         Bits::settle(((self.0.to_bits() + half) >> drop) as i64, to)
     }
     #[inline(always)]
     fn quantise_geared(self, gear: Bits, stride: u32, _last: u32, to: &Quantiser) -> Bits {
         let drop = WIDE_FRACTION - to.format.fraction + stride * gear.raw(0) as u32;
-        let half = if to.rounding == Rounding::Nearest { 1i128 << (drop - 1) } else { 0 };
+        let half = if to.rounding == Rounding::Nearest {
+            1i128 << (drop - 1)
+        } else {
+            0
+        };
         Bits::settle(((self.0.to_bits() + half) >> drop) as i64, to)
     }
 }

@@ -25,25 +25,41 @@ impl Format {
     /// Two's complement with `width` bits, the last of weight 2^-`fraction`.
     #[must_use]
     pub const fn signed(width: u32, fraction: u32) -> Self {
-        Self { signed: true, width, fraction }
+        Self {
+            signed: true,
+            width,
+            fraction,
+        }
     }
 
     /// Unsigned with `width` bits, the last of weight 2^-`fraction`.
     #[must_use]
     pub const fn unsigned(width: u32, fraction: u32) -> Self {
-        Self { signed: false, width, fraction }
+        Self {
+            signed: false,
+            width,
+            fraction,
+        }
     }
 
     /// The smallest integer (in units of the last bit) that the format holds.
     #[must_use]
     pub const fn min_raw(self) -> i128 {
-        if self.signed { -(1i128 << (self.width - 1)) } else { 0 }
+        if self.signed {
+            -(1i128 << (self.width - 1))
+        } else {
+            0
+        }
     }
 
     /// The largest integer (in units of the last bit) that the format holds.
     #[must_use]
     pub const fn max_raw(self) -> i128 {
-        if self.signed { (1i128 << (self.width - 1)) - 1 } else { (1i128 << self.width) - 1 }
+        if self.signed {
+            (1i128 << (self.width - 1)) - 1
+        } else {
+            (1i128 << self.width) - 1
+        }
     }
 
     /// Weight of the last bit.
@@ -67,14 +83,26 @@ impl Format {
     /// Signed format with the fewest bits that holds every integer from `low` to `high`.
     #[must_use]
     pub fn covering(low: i128, high: i128, fraction: u32) -> Self {
-        let bits = |v: i128| 129 - if v < 0 { (!v).leading_zeros() } else { v.leading_zeros() };
+        let bits = |v: i128| {
+            129 - if v < 0 {
+                (!v).leading_zeros()
+            } else {
+                v.leading_zeros()
+            }
+        };
         Self::signed(bits(low).max(bits(high)), fraction)
     }
 }
 
 impl std::fmt::Display for Format {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{}{}.{}", if self.signed { 's' } else { 'u' }, self.width, self.fraction)
+        write!(
+            f,
+            "{}{}.{}",
+            if self.signed { 's' } else { 'u' },
+            self.width,
+            self.fraction
+        )
     }
 }
 
@@ -117,31 +145,51 @@ impl Quantiser {
     /// Round to nearest and saturate: the rule for signals.
     #[must_use]
     pub const fn saturating(format: Format) -> Self {
-        Self { format, rounding: Rounding::Nearest, overflow: Overflow::Saturate }
+        Self {
+            format,
+            rounding: Rounding::Nearest,
+            overflow: Overflow::Saturate,
+        }
     }
 
     /// Cut off and wrap: the rule for angles and counters.
     #[must_use]
     pub const fn wrapping(format: Format) -> Self {
-        Self { format, rounding: Rounding::Floor, overflow: Overflow::Wrap }
+        Self {
+            format,
+            rounding: Rounding::Floor,
+            overflow: Overflow::Wrap,
+        }
     }
 
     /// Round to nearest where the range is proven.
     #[must_use]
     pub const fn proven(format: Format) -> Self {
-        Self { format, rounding: Rounding::Nearest, overflow: Overflow::Never }
+        Self {
+            format,
+            rounding: Rounding::Nearest,
+            overflow: Overflow::Never,
+        }
     }
 
     /// Cut off where the range is proven.
     #[must_use]
     pub const fn truncating(format: Format) -> Self {
-        Self { format, rounding: Rounding::Floor, overflow: Overflow::Never }
+        Self {
+            format,
+            rounding: Rounding::Floor,
+            overflow: Overflow::Never,
+        }
     }
 
     /// Cut to a grid in every reading and wrap.
     #[must_use]
     pub const fn grid(format: Format) -> Self {
-        Self { format, rounding: Rounding::Grid, overflow: Overflow::Wrap }
+        Self {
+            format,
+            rounding: Rounding::Grid,
+            overflow: Overflow::Wrap,
+        }
     }
 
     /// Quantises the integer `raw` with `fraction` fraction bits, exactly as the chip does.
@@ -152,7 +200,11 @@ impl Quantiser {
         let format = self.format;
         let shifted = if fraction > format.fraction {
             let drop = fraction - format.fraction;
-            let half = if self.rounding == Rounding::Nearest { 1i128 << (drop - 1) } else { 0 };
+            let half = if self.rounding == Rounding::Nearest {
+                1i128 << (drop - 1)
+            } else {
+                0
+            };
             (raw + half) >> drop
         } else {
             raw << (format.fraction - fraction)

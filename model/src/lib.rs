@@ -1,1 +1,17 @@
-//! See ARCHITECTURE.md.
+//! What the chip computes.
+//!
+//! One arithmetic with three readings ([`signal`]), the formulas written in it ([`kernel`]), the chip they make
+//! ([`chip`]), and the way from a design in physical units to integers ([`spec`], [`design`]). [`reference`] is the
+//! paper in plain `f64`, independent of all of it.
+
+pub mod bits;
+pub mod chip;
+pub mod design;
+pub mod format;
+pub mod graph;
+pub mod kernel;
+mod real;
+mod record;
+pub mod rom;
+pub mod signal;
+pub mod spec;

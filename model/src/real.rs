@@ -44,7 +44,9 @@ impl Signal for f64 {
         if condition { yes } else { no }
     }
     fn lookup(rom: &Rom, column: usize, address: f64) -> f64 {
-        let row = (address * exp2(i64::from(rom.index_fraction))).floor().max(0.0) as usize;
+        let row = (address * exp2(i64::from(rom.index_fraction)))
+            .floor()
+            .max(0.0) as usize;
         rom.columns[column].exact[row.min(rom.rows() - 1)]
     }
 }

@@ -24,14 +24,27 @@ impl Column {
     /// # Errors
     /// The index of the first entry that does not fit.
     pub fn new(name: &'static str, format: Format, exact: Vec<f64>) -> Result<Self, usize> {
-        let raw: Vec<i64> = exact.iter().map(|x| (x / format.lsb()).round() as i64).collect();
-        if let Some(i) = raw.iter().position(|&r| {
-            i128::from(r) < format.min_raw() || i128::from(r) > format.max_raw()
-        }) {
+        let raw: Vec<i64> = exact
+            .iter()
+            .map(|x| (x / format.lsb()).round() as i64)
+            .collect();
+        if let Some(i) = raw
+            .iter()
+            .position(|&r| i128::from(r) < format.min_raw() || i128::from(r) > format.max_raw())
+        {
             return Err(i);
         }
-        let bits = raw.iter().map(|&r| Bits::from_raw(r, format.fraction)).collect();
-        Ok(Self { name, format, raw, exact, bits })
+        let bits = raw
+            .iter()
+            .map(|&r| Bits::from_raw(r, format.fraction))
+            .collect();
+        Ok(Self {
+            name,
+            format,
+            raw,
+            exact,
+            bits,
+        })
     }
 }
 

@@ -24,7 +24,12 @@ pub struct Formula {
 
 /// A number of the chip: a signal, a register, a coefficient. Angles are in turns of a scale period.
 pub trait Signal:
-    Copy + Add<Output = Self> + Sub<Output = Self> + Neg<Output = Self> + Mul<Output = <Self as Signal>::Wide>
+    Copy
+    + std::fmt::Debug
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Neg<Output = Self>
+    + Mul<Output = <Self as Signal>::Wide>
 {
     /// An exact product or a sum of such; only adds, subtracts and ends in `quantise`.
     type Wide: Wide<Narrow = Self>;
@@ -62,7 +67,13 @@ pub trait Wide: Copy + Add<Output = Self> + Sub<Output = Self> {
     /// The lossy step.
     fn quantise(self, to: &Quantiser) -> Self::Narrow;
     /// Times 2^(−`stride` · `gear`), then the lossy step. `gear` is an integer from 0 to `last`.
-    fn quantise_geared(self, gear: Self::Narrow, stride: u32, last: u32, to: &Quantiser) -> Self::Narrow;
+    fn quantise_geared(
+        self,
+        gear: Self::Narrow,
+        stride: u32,
+        last: u32,
+        to: &Quantiser,
+    ) -> Self::Narrow;
     /// Gives the value its name in Verilog.
     #[must_use]
     fn named(self, _name: &'static str) -> Self {
@@ -71,7 +82,7 @@ pub trait Wide: Copy + Add<Output = Self> + Sub<Output = Self> {
 }
 
 /// A decision of the chip.
-pub trait Logic: Copy {
+pub trait Logic: Copy + std::fmt::Debug {
     /// Both.
     #[must_use]
     fn and(self, other: Self) -> Self;

@@ -46,9 +46,13 @@ pub fn compute(graph: &Graph, id: NodeId, value: impl Fn(NodeId) -> i128) -> i12
             value(a) << pad.max(0)
         }
         Op::Quantise(a, to) => to.apply(value(a), fraction(a)),
-        Op::QuantiseGeared { value: v, gear, stride, to, .. } => {
-            to.apply(value(v), fraction(v) + stride * value(gear) as u32)
-        }
+        Op::QuantiseGeared {
+            value: v,
+            gear,
+            stride,
+            to,
+            ..
+        } => to.apply(value(v), fraction(v) + stride * value(gear) as u32),
         Op::LessThan(a, b) => (aligned(a, common(a, b)) < aligned(b, common(a, b))).into(),
         Op::Select(c, a, b) => {
             let chosen = if value(c) != 0 { a } else { b };
@@ -58,10 +62,17 @@ pub fn compute(graph: &Graph, id: NodeId, value: impl Fn(NodeId) -> i128) -> i12
         Op::Or(a, b) => value(a) | value(b),
         Op::Xor(a, b) => value(a) ^ value(b),
         Op::Not(a) => 1 - value(a),
-        Op::Lookup { rom, column, address } => {
+        Op::Lookup {
+            rom,
+            column,
+            address,
+        } => {
             let rom = &graph.roms[rom];
-            let row = Quantiser::grid(crate::format::Format::unsigned(rom.address_bits, rom.index_fraction))
-                .apply(value(address), fraction(address));
+            let row = Quantiser::grid(crate::format::Format::unsigned(
+                rom.address_bits,
+                rom.index_fraction,
+            ))
+            .apply(value(address), fraction(address));
             rom.columns[column].raw[row as usize].into()
         }
     }

@@ -29,10 +29,18 @@ pub(super) struct Reach {
     pub(super) kind: Kind,
 }
 
-const FLAG: Reach = Reach { format: Format::unsigned(1, 0), range: (0, 1), kind: Kind::Flag };
+const FLAG: Reach = Reach {
+    format: Format::unsigned(1, 0),
+    range: (0, 1),
+    kind: Kind::Flag,
+};
 
 fn exact(range: (i128, i128), fraction: u32, kind: Kind) -> Reach {
-    Reach { format: Format::covering(range.0, range.1, fraction), range, kind }
+    Reach {
+        format: Format::covering(range.0, range.1, fraction),
+        range,
+        kind,
+    }
 }
 
 fn lift(entry: &Entry, fraction: u32) -> (i128, i128) {
@@ -41,7 +49,11 @@ fn lift(entry: &Entry, fraction: u32) -> (i128, i128) {
 }
 
 fn widest(a: &Entry, b: &Entry) -> Kind {
-    if a.kind == Kind::Wide || b.kind == Kind::Wide { Kind::Wide } else { Kind::Value }
+    if a.kind == Kind::Wide || b.kind == Kind::Wide {
+        Kind::Wide
+    } else {
+        Kind::Value
+    }
 }
 
 fn hull(products: [i128; 4]) -> (i128, i128) {
@@ -52,7 +64,13 @@ fn hull(products: [i128; 4]) -> (i128, i128) {
 /// A quantisation's reach; `None` where the range was to be proven and does not fit.
 fn quantised(range: (i128, i128), fraction: u32, to: &Quantiser) -> Option<Reach> {
     let fits = |v: i128| v >= to.format.min_raw() && v <= to.format.max_raw();
-    let rounded = |v: i128| Quantiser { overflow: Overflow::Never, ..*to }.apply(v, fraction);
+    let rounded = |v: i128| {
+        Quantiser {
+            overflow: Overflow::Never,
+            ..*to
+        }
+        .apply(v, fraction)
+    };
     let (low, high) = (rounded(range.0), rounded(range.1));
     let all = (to.format.min_raw(), to.format.max_raw());
     let range = match to.overflow {
@@ -62,7 +80,11 @@ fn quantised(range: (i128, i128), fraction: u32, to: &Quantiser) -> Option<Reach
         Overflow::Never if fits(low) && fits(high) => (low, high),
         Overflow::Never => return None,
     };
-    Some(Reach { format: to.format, range, kind: Kind::Value })
+    Some(Reach {
+        format: to.format,
+        range,
+        kind: Kind::Value,
+    })
 }
 
 /// What `op` can reach, given the nodes before it.
@@ -75,14 +97,26 @@ pub(super) fn reach(op: &Op, nodes: &[Entry], roms: &[Rom]) -> Result<Reach, Ran
             let (a, b) = (at(a), at(b));
             let fraction = a.format.fraction.max(b.format.fraction);
             let (x, y) = (lift(a, fraction), lift(b, fraction));
-            let y = if matches!(op, Op::Sub(..)) { (-y.1, -y.0) } else { y };
+            let y = if matches!(op, Op::Sub(..)) {
+                (-y.1, -y.0)
+            } else {
+                y
+            };
             exact((x.0 + y.0, x.1 + y.1), fraction, widest(a, b))
         }
-        Op::Neg(a) => exact((-at(a).range.1, -at(a).range.0), at(a).format.fraction, at(a).kind),
+        Op::Neg(a) => exact(
+            (-at(a).range.1, -at(a).range.0),
+            at(a).format.fraction,
+            at(a).kind,
+        ),
         Op::Mul(a, b) => {
             let (x, y) = (at(a).range, at(b).range);
             let range = hull([x.0 * y.0, x.0 * y.1, x.1 * y.0, x.1 * y.1]);
-            exact(range, at(a).format.fraction + at(b).format.fraction, Kind::Wide)
+            exact(
+                range,
+                at(a).format.fraction + at(b).format.fraction,
+                Kind::Wide,
+            )
         }
         Op::Scale(a, power) => {
             let fraction = i64::from(at(a).format.fraction) - i64::from(power);
@@ -92,9 +126,23 @@ pub(super) fn reach(op: &Op, nodes: &[Entry], roms: &[Rom]) -> Result<Reach, Ran
         }
         Op::Quantise(a, ref to) => match quantised(at(a).range, at(a).format.fraction, to) {
             Some(reach) => reach,
-            None => return Err(outside(op, nodes, at(a).range, at(a).format.fraction, to.format)),
+            None => {
+                return Err(outside(
+                    op,
+                    nodes,
+                    at(a).range,
+                    at(a).format.fraction,
+                    to.format,
+                ));
+            }
         },
-        Op::QuantiseGeared { value, stride, last, ref to, .. } => {
+        Op::QuantiseGeared {
+            value,
+            stride,
+            last,
+            ref to,
+            ..
+        } => {
             let value = at(value);
             let fraction = value.format.fraction;
             let first = quantised(value.range, fraction, to);
@@ -113,14 +161,26 @@ pub(super) fn reach(op: &Op, nodes: &[Entry], roms: &[Rom]) -> Result<Reach, Ran
             let (x, y) = (lift(a, fraction), lift(b, fraction));
             let range = (x.0.min(y.0), x.1.max(y.1));
             let kind = widest(a, b);
-            if a.format == b.format { Reach { format: a.format, range, kind } } else { exact(range, fraction, kind) }
+            if a.format == b.format {
+                Reach {
+                    format: a.format,
+                    range,
+                    kind,
+                }
+            } else {
+                exact(range, fraction, kind)
+            }
         }
         Op::LessThan(..) | Op::And(..) | Op::Or(..) | Op::Xor(..) | Op::Not(_) => FLAG,
         Op::Lookup { rom, column, .. } => {
             let column = &roms[rom].columns[column];
             let low = column.raw.iter().copied().min().unwrap_or(0);
             let high = column.raw.iter().copied().max().unwrap_or(0);
-            Reach { format: column.format, range: (low.into(), high.into()), kind: Kind::Value }
+            Reach {
+                format: column.format,
+                range: (low.into(), high.into()),
+                kind: Kind::Value,
+            }
         }
     };
     in_container(op, nodes, reached)
@@ -135,16 +195,31 @@ fn in_container(op: &Op, nodes: &[Entry], reached: Reach) -> Result<Reach, Range
     let too_fine = format.fraction > fraction;
     let too_large = format.width > format.fraction + integer;
     if too_fine || too_large {
-        return Err(outside(op, nodes, reached.range, reached.format.fraction, limit));
+        return Err(outside(
+            op,
+            nodes,
+            reached.range,
+            reached.format.fraction,
+            limit,
+        ));
     }
     Ok(reached)
 }
 
-fn outside(op: &Op, nodes: &[Entry], range: (i128, i128), fraction: u32, limit: Format) -> RangeError {
+fn outside(
+    op: &Op,
+    nodes: &[Entry],
+    range: (i128, i128),
+    fraction: u32,
+    limit: Format,
+) -> RangeError {
     let real = |v: i128, fraction: u32| format!("{}", v as f64 * Format::signed(2, fraction).lsb());
     let describe = |id: &NodeId| {
         let entry = &nodes[id.index()];
-        let name = entry.name.clone().unwrap_or_else(|| format!("operand {}", id.0));
+        let name = entry
+            .name
+            .clone()
+            .unwrap_or_else(|| format!("operand {}", id.0));
         let low = real(entry.range.0, entry.format.fraction);
         let high = real(entry.range.1, entry.format.fraction);
         format!("{name} is {low} … {high} ({})", entry.format)

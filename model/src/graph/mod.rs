@@ -162,6 +162,9 @@ impl Graph {
     /// How many products one sample takes.
     #[must_use]
     pub fn products(&self) -> usize {
-        self.nodes.iter().filter(|n| matches!(n.op, Op::Mul(..))).count()
+        self.nodes
+            .iter()
+            .filter(|n| matches!(n.op, Op::Mul(..)))
+            .count()
     }
 }

@@ -10,7 +10,11 @@ use crate::format::{Format, Quantiser};
 use crate::rom::Rom;
 use crate::signal::{Formula, Logic, Signal, Wide};
 
-static INPUTS: Formula = Formula { title: "Registers, inputs and coefficients", equation: "", source: "" };
+static INPUTS: Formula = Formula {
+    title: "Registers, inputs and coefficients",
+    equation: "",
+    source: "",
+};
 
 /// Collects the graph while kernels run on its nodes.
 #[derive(Debug)]
@@ -60,8 +64,15 @@ impl Recorder {
             probes: vec![],
             next: vec![],
         };
-        let inner = Inner { graph, seen: HashMap::new(), formula: 0, error: None };
-        Self { inner: RefCell::new(inner) }
+        let inner = Inner {
+            graph,
+            seen: HashMap::new(),
+            formula: 0,
+            error: None,
+        };
+        Self {
+            inner: RefCell::new(inner),
+        }
     }
 
     /// A register or input of the chip, anywhere in its format.
@@ -75,9 +86,32 @@ impl Recorder {
         Flag(self.enter(name, Format::unsigned(1, 0), (0, 1), Kind::Flag))
     }
 
+    /// The flag that is always false.
+    pub fn constant_flag(&self) -> Flag<'_> {
+        let mut inner = self.inner.borrow_mut();
+        let format = Format::unsigned(1, 0);
+        let entry = Entry {
+            op: Op::Constant(0),
+            kind: Kind::Flag,
+            format,
+            range: (0, 0),
+            name: None,
+            formula: 0,
+        };
+        let id = inner.push(entry);
+        Flag(Node { recorder: self, id })
+    }
+
     fn enter(&self, name: &str, format: Format, range: (i128, i128), kind: Kind) -> Node<'_> {
         let mut inner = self.inner.borrow_mut();
-        let entry = Entry { op: Op::Input, kind, format, range, name: Some(name.into()), formula: 0 };
+        let entry = Entry {
+            op: Op::Input,
+            kind,
+            format,
+            range,
+            name: Some(name.into()),
+            formula: 0,
+        };
         let id = inner.push(entry);
         inner.graph.inputs.push((name.into(), id));
         Node { recorder: self, id }
@@ -89,7 +123,14 @@ impl Recorder {
         let format = Format::covering(raw.into(), raw.into(), fraction);
         let range = (raw.into(), raw.into());
         let name = name.map(str::to_owned);
-        let entry = Entry { op: Op::Constant(raw), kind: Kind::Value, format, range, name, formula: 0 };
+        let entry = Entry {
+            op: Op::Constant(raw),
+            kind: Kind::Value,
+            format,
+            range,
+            name,
+            formula: 0,
+        };
         let id = inner.push(entry);
         Node { recorder: self, id }
     }
@@ -139,7 +180,11 @@ impl Inner {
                 error.signal = format!("a value of “{formula}”");
                 self.error.get_or_insert(error);
                 // Any placeholder will do: the recording has failed and finish() says so.
-                super::interval::Reach { format: Format::signed(2, 0), range: (0, 0), kind: Kind::Value }
+                super::interval::Reach {
+                    format: Format::signed(2, 0),
+                    range: (0, 0),
+                    kind: Kind::Value,
+                }
             }
         };
         let key = (op, reached.format);
@@ -147,7 +192,14 @@ impl Inner {
             return id;
         }
         let (kind, format, range) = (reached.kind, reached.format, reached.range);
-        let id = self.push(Entry { op, kind, format, range, name: None, formula: self.formula });
+        let id = self.push(Entry {
+            op,
+            kind,
+            format,
+            range,
+            name: None,
+            formula: self.formula,
+        });
         self.seen.insert(key, id);
         id
     }
@@ -157,7 +209,12 @@ impl Inner {
         if self.graph.nodes[id.index()].name.is_some() {
             return;
         }
-        let taken = |n: &str| self.graph.nodes.iter().any(|e| e.name.as_deref() == Some(n));
+        let taken = |n: &str| {
+            self.graph
+                .nodes
+                .iter()
+                .any(|e| e.name.as_deref() == Some(n))
+        };
         let mut unique = name.to_owned();
         let mut count = 1;
         while taken(&unique) {
@@ -218,7 +275,11 @@ impl<'g> Signal for Node<'g> {
         WideNode(self)
     }
     fn scale(self, power: i32) -> Self {
-        if power == 0 { self } else { self.with(Op::Scale(self.id, power)) }
+        if power == 0 {
+            self
+        } else {
+            self.with(Op::Scale(self.id, power))
+        }
     }
     fn quantise(self, to: &Quantiser) -> Self {
         self.with(Op::Quantise(self.id, *to))
@@ -238,7 +299,11 @@ impl<'g> Signal for Node<'g> {
                 inner.graph.roms.len() - 1
             })
         };
-        address.with(Op::Lookup { rom: index, column, address: address.id })
+        address.with(Op::Lookup {
+            rom: index,
+            column,
+            address: address.id,
+        })
     }
     fn named(self, name: &'static str) -> Self {
         self.recorder.inner.borrow_mut().name(self.id, name);
@@ -278,7 +343,13 @@ impl<'g> Wide for WideNode<'g> {
         self.0.quantise(to)
     }
     fn quantise_geared(self, gear: Node<'g>, stride: u32, last: u32, to: &Quantiser) -> Node<'g> {
-        self.0.with(Op::QuantiseGeared { value: self.0.id, gear: gear.id, stride, last, to: *to })
+        self.0.with(Op::QuantiseGeared {
+            value: self.0.id,
+            gear: gear.id,
+            stride,
+            last,
+            to: *to,
+        })
     }
     fn named(self, name: &'static str) -> Self {
         Self(self.0.named(name))

@@ -1,0 +1,221 @@
+//! The chip: kernels and registers.
+
+use crate::bits::Bits;
+use crate::design::Design;
+use crate::graph::{Graph, Node, RangeError, Recorder};
+use crate::kernel::{Coefficients, Input, Probes, State, Structure, sample};
+use crate::signal::Signal;
+
+/// The chip in one reading: `Chip<Bits>` is bit-true, `Chip<f64>` the same algorithm without rounding.
+#[derive(Clone, Debug)]
+pub struct Chip<S: Signal> {
+    structure: Structure,
+    coefficients: Coefficients<S>,
+    /// The registers, as they stand between two samples.
+    pub state: State<S>,
+}
+
+impl Chip<Bits> {
+    /// The bit-true chip after reset.
+    #[must_use]
+    pub fn bit_true(design: &Design) -> Self {
+        let state = State::build(|_| Bits::default(), |_| false);
+        Self {
+            structure: design.structure.clone(),
+            coefficients: design.constants.bits(),
+            state,
+        }
+    }
+
+    /// One sample of ADC codes; `zero` and `calibrate` as the pins.
+    #[inline]
+    pub fn step_codes(&mut self, cos: i64, sin: i64, zero: bool, calibrate: bool) -> Probes<Bits> {
+        self.step(&Input {
+            adc_cos: Bits::from_raw(cos, 0),
+            adc_sin: Bits::from_raw(sin, 0),
+            zero,
+            calibrate,
+        })
+    }
+
+    /// Whole periods and phase: α̂ for the next sample, in units of 2^-(phase bits) of a period.
+    #[must_use]
+    pub fn position_raw(&self) -> i128 {
+        let (count, alpha) = (self.structure.formats.count, self.structure.formats.alpha);
+        (i128::from(self.state.count.raw(count.fraction)) << alpha.fraction)
+            + i128::from(self.state.alpha_hat.raw(alpha.fraction))
+    }
+
+    /// The position in periods.
+    #[must_use]
+    pub fn position(&self) -> f64 {
+        let count = self.state.count.raw(self.structure.formats.count.fraction);
+        count as f64 + self.state.alpha_hat.to_f64()
+    }
+}
+
+impl Chip<f64> {
+    /// The chip without rounding, after reset.
+    #[must_use]
+    pub fn unrounded(design: &Design) -> Self {
+        let state = State::build(|_| 0.0, |_| false);
+        Self {
+            structure: design.structure.clone(),
+            coefficients: design.constants.real(),
+            state,
+        }
+    }
+
+    /// The position in periods.
+    #[must_use]
+    pub fn position(&self) -> f64 {
+        self.state.count * crate::format::exp2(self.structure.formats.count.fraction.into())
+            + self.state.alpha_hat
+    }
+}
+
+impl<S: Signal> Chip<S> {
+    /// One sample.
+    #[inline]
+    pub fn step(&mut self, input: &Input<S>) -> Probes<S> {
+        let (next, probes) = sample(input, &self.state, &self.coefficients, &self.structure);
+        self.state = next;
+        probes
+    }
+}
+
+/// Which registers this structure has.
+#[must_use]
+pub fn registers(structure: &Structure) -> (Vec<&'static str>, Vec<&'static str>) {
+    let one = structure.method == crate::kernel::Method::One;
+    let used = |name: &str| match name {
+        "alpha_hat_previous" => one,
+        "rate" => !one,
+        "error_previous" => structure.method != crate::kernel::Method::Two,
+        "theta_5_deviation" => structure.parameters >= 5,
+        "theta_1_deviation" | "theta_2_deviation" | "theta_3_deviation" | "theta_4_deviation" => {
+            structure.parameters >= 4
+        }
+        "gamma_gear" | "gear_periods" | "travel_origin" | "travel_low" | "travel_high"
+        | "disturbed" => structure.parameters >= 4,
+        "loop_gear" => structure.loop_gears > 0,
+        _ => true,
+    };
+    let keep = |names: &[&'static str]| names.iter().copied().filter(|n| used(n)).collect();
+    (keep(State::<Bits>::VALUES), keep(State::<Bits>::FLAGS))
+}
+
+/// Which probes this structure has.
+#[must_use]
+pub fn probes(structure: &Structure) -> (Vec<&'static str>, Vec<&'static str>) {
+    let used = |name: &str| match name {
+        "theta_5" => structure.parameters >= 5,
+        "theta_2" | "theta_4" | "rho_c" | "rho_s" | "fresh" | "whole_period" => {
+            structure.parameters >= 4
+        }
+        _ => true,
+    };
+    let keep = |names: &[&'static str]| names.iter().copied().filter(|n| used(n)).collect();
+    (keep(Probes::<Bits>::VALUES), keep(Probes::<Bits>::FLAGS))
+}
+
+/// The kernel of a sample, with `Node` for numbers; what a test may replace to see that the Verilog follows.
+pub type SampleKernel = for<'g> fn(
+    &Input<Node<'g>>,
+    &State<Node<'g>>,
+    &Coefficients<Node<'g>>,
+    &Structure,
+) -> (State<Node<'g>>, Probes<Node<'g>>);
+
+/// The chip's own kernel as a [`SampleKernel`].
+#[must_use]
+pub fn chip_kernel<'g>(
+    input: &Input<Node<'g>>,
+    state: &State<Node<'g>>,
+    k: &Coefficients<Node<'g>>,
+    structure: &Structure,
+) -> (State<Node<'g>>, Probes<Node<'g>>) {
+    sample(input, state, k, structure)
+}
+
+/// Records one sample of the chip as a graph.
+///
+/// # Errors
+/// A value that does not fit the container or a format it was promised to fit, with its worst case.
+pub fn record(
+    structure: &Structure,
+    constants: &Coefficients<crate::kernel::Constant>,
+    kernel: SampleKernel,
+) -> Result<Graph, RangeError> {
+    let recorder = Recorder::new();
+    {
+        let k = constants.record(&recorder);
+        let (values, flags) = registers(structure);
+        let register = |name: &'static str| {
+            if values.contains(&name) {
+                recorder.input(name, register_format(name, structure))
+            } else {
+                k.zero
+            }
+        };
+        let never = recorder.constant_flag();
+        let flag = |name: &'static str| {
+            if flags.contains(&name) {
+                recorder.flag_input(name)
+            } else {
+                never
+            }
+        };
+        let state = State::build(register, flag);
+        let adc = structure.formats.adc;
+        let input = Input::build(
+            |name| recorder.input(name, adc),
+            |name| recorder.flag_input(name),
+        );
+        let (next, seen) = kernel(&input, &state, &k, structure);
+        let (probe_values, probe_flags) = probes(structure);
+        for name in probe_values {
+            if let Some(node) = seen.value(name) {
+                recorder.probe(name, node.id);
+            }
+        }
+        for name in probe_flags {
+            if let Some(flag) = seen.flag(name) {
+                recorder.probe(name, flag.id());
+            }
+        }
+        for name in values {
+            if let Some(node) = next.value(name) {
+                recorder.next(name, node.id);
+            }
+        }
+        for name in flags {
+            if let Some(flag) = next.flag(name) {
+                recorder.next(name, flag.id());
+            }
+        }
+    }
+    recorder.finish()
+}
+
+/// Format of a register.
+#[must_use]
+pub fn register_format(name: &str, structure: &Structure) -> crate::format::Format {
+    let f = &structure.formats;
+    match name {
+        "alpha_hat" | "alpha_hat_previous" => f.alpha,
+        "count" => f.count,
+        "rate" => f.rate.format,
+        "theta_1_deviation" => f.deviation[0].format,
+        "theta_2_deviation" => f.deviation[1].format,
+        "theta_3_deviation" => f.deviation[2].format,
+        "theta_4_deviation" => f.deviation[3].format,
+        "theta_5_deviation" => f.deviation[4].format,
+        "lock_level" => f.level.format,
+        "loop_gear" => f.loop_gear,
+        "gamma_gear" => f.gamma_gear,
+        "gear_periods" => f.gear_periods,
+        "travel_origin" | "travel_low" | "travel_high" => crate::kernel::travel::SECTOR,
+        _ => f.signal.format,
+    }
+}

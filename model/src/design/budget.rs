@@ -1,0 +1,219 @@
+//! Word lengths by analysis: the shortest words whose errors together keep to the budget.
+
+use std::f64::consts::TAU;
+
+use super::{DesignError, Loop, normalisation};
+use crate::format::exp2;
+use crate::spec::Spec;
+
+/// The word lengths.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Words {
+    /// Fraction bits of the signals.
+    pub signal_fraction: u32,
+    /// Bits of the phase and its increments.
+    pub phase_bits: u32,
+    /// Bits of the phase in the sine.
+    pub sine_phase_bits: u32,
+    /// log2 of the rows of the quarter-wave table.
+    pub sine_rows_log2: u32,
+    /// Fraction bits of the parameter accumulators.
+    pub accumulator_fraction: u32,
+}
+
+/// One source of error and what it adds to the angle.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Term {
+    /// What it is.
+    pub source: &'static str,
+    /// Rms angle error in periods.
+    pub rms_periods: f64,
+}
+
+/// Where the angle error comes from, at slow speed after calibration.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Budget {
+    /// Quantisation by the ADC, periods rms.
+    pub adc: f64,
+    /// Noise of the sensor through the loop, periods rms.
+    pub noise: f64,
+    /// What arithmetic may add, periods rms.
+    pub allowed: f64,
+    /// What it adds, by source.
+    pub terms: Vec<Term>,
+}
+
+impl Budget {
+    /// What arithmetic adds altogether, periods rms.
+    #[must_use]
+    pub fn arithmetic(&self) -> f64 {
+        self.terms
+            .iter()
+            .map(|t| t.rms_periods.powi(2))
+            .sum::<f64>()
+            .sqrt()
+    }
+
+    /// The whole error, periods rms.
+    #[must_use]
+    pub fn total(&self) -> f64 {
+        (self.adc.powi(2) + self.noise.powi(2) + self.arithmetic().powi(2)).sqrt()
+    }
+}
+
+/// Rms of a value rounded to this many fraction bits.
+fn rounding(fraction: u32) -> f64 {
+    exp2(-i64::from(fraction)) / 12f64.sqrt()
+}
+
+fn terms(words: &Words, spec: &Spec, tracking: &Loop) -> Vec<Term> {
+    let f = words.signal_fraction;
+    let amplitude = normalisation(spec).0;
+    // θ1 and θ3 need at least one integer bit beside the sign.
+    let gain = rounding(f) * 2.0;
+    // Smallest change of the rate is half its last bit: errors below that die in the integrator.
+    let dead_band = exp2(-i64::from(words.phase_bits) - 1) / tracking.ab / 3f64.sqrt();
+    let segment = TAU * exp2(-i64::from(words.sine_rows_log2) - 3);
+    let list = [
+        ("corrected signals", rounding(f)),
+        ("sine table rounding", rounding(f)),
+        (
+            "sine table interpolation",
+            segment * segment / 4.0 / 12f64.sqrt(),
+        ),
+        ("phase in the sine", TAU * rounding(words.sine_phase_bits)),
+        ("phase error", rounding(f)),
+        ("gains as multiplied", gain * amplitude * 0.25f64.sqrt()),
+        (
+            "phase parameter as multiplied",
+            rounding(f) * amplitude * 0.375f64.sqrt(),
+        ),
+        ("phase and its increments", dead_band),
+        ("parameter accumulators", accumulator(words, spec)),
+    ];
+    list.iter()
+        .map(|&(source, radians)| Term {
+            source,
+            rms_periods: radians / TAU,
+        })
+        .collect()
+}
+
+/// Updates below half the last bit are lost: a dead band of the gradient.
+fn accumulator(words: &Words, spec: &Spec) -> f64 {
+    if spec.calibration.parameters == 0 {
+        return 0.0;
+    }
+    exp2(i64::from(spec.calibration.gamma_last) - i64::from(words.accumulator_fraction) - 1)
+        / 3f64.sqrt()
+}
+
+/// Chooses the shortest words, one after the other, that keep the sum of all errors within what is allowed.
+pub(super) fn choose(spec: &Spec, tracking: &Loop) -> Result<(Words, Budget), DesignError> {
+    let (amplitude, power) = normalisation(spec);
+    let adc = rounding(spec.adc.bits - 1 - power) / amplitude / TAU;
+    let noise = spec.sensor.noise_rms / TAU * tracking.noise_gain.sqrt();
+    let allowed = spec.accuracy.rms_periods * spec.accuracy.arithmetic_share;
+    let unavoidable = (adc * adc + noise * noise + allowed * allowed).sqrt();
+    if unavoidable > spec.accuracy.rms_periods {
+        return Err(DesignError::Field {
+            field: "accuracy.rms_periods",
+            value: spec.accuracy.rms_periods.to_string(),
+            limit: format!("{unavoidable:.3e}"),
+            reason: format!(
+                "the ADC alone makes {adc:.3e} and the sensor's noise through this loop {noise:.3e} periods rms; \
+                 more ADC bits, a larger amplitude or a narrower loop would help"
+            ),
+        });
+    }
+    let total = |words: &Words| {
+        let budget = Budget {
+            adc,
+            noise,
+            allowed,
+            terms: terms(words, spec, tracking),
+        };
+        (budget.arithmetic(), budget)
+    };
+    let generous = |f: u32| Words {
+        signal_fraction: f,
+        phase_bits: 44,
+        sine_phase_bits: (f + 8).min(30),
+        sine_rows_log2: 13,
+        accumulator_fraction: 44,
+    };
+    let over = |field: &'static str, limit: u32| DesignError::Field {
+        field,
+        value: format!("more than {limit} bits"),
+        limit: format!("{limit} bits"),
+        reason: "the accuracy asked for needs longer words than the chip has".into(),
+    };
+    let o = &spec.formats;
+    let mut words = generous(8);
+    let pick = |chosen: Option<u32>,
+                low: u32,
+                high: u32,
+                field: &'static str,
+                set: &dyn Fn(u32) -> Words| match chosen {
+        Some(n) if (low..=high).contains(&n) => Ok(set(n)),
+        Some(n) => Err(DesignError::Field {
+            field,
+            value: n.to_string(),
+            limit: format!("{low} … {high}"),
+            reason: "outside what the chip can be built with".into(),
+        }),
+        None => (low..=high)
+            .map(set)
+            .find(|w| total(w).0 <= allowed)
+            .ok_or_else(|| over(field, high)),
+    };
+    words = pick(o.signal_fraction, 8, 24, "formats.signal_fraction", &|n| {
+        generous(n).merge(&words)
+    })?;
+    let w = words;
+    words = pick(o.sine_rows_log2, 4, 13, "formats.sine_rows_log2", &|n| {
+        Words {
+            sine_rows_log2: n,
+            ..w
+        }
+    })?;
+    let w = words;
+    words = pick(
+        o.sine_phase_bits,
+        w.sine_rows_log2 + 3,
+        30,
+        "formats.sine_phase_bits",
+        &|n| Words {
+            sine_phase_bits: n,
+            ..w
+        },
+    )?;
+    let w = words;
+    words = pick(
+        o.phase_bits,
+        w.sine_phase_bits.max(w.signal_fraction + 3),
+        44,
+        "formats.phase_bits",
+        &|n| Words { phase_bits: n, ..w },
+    )?;
+    let w = words;
+    words = pick(
+        o.accumulator_fraction,
+        w.signal_fraction,
+        44,
+        "formats.accumulator_fraction",
+        &|n| Words {
+            accumulator_fraction: n,
+            ..w
+        },
+    )?;
+    let budget = total(&words).1;
+    Ok((words, budget))
+}
+
+impl Words {
+    /// The first choice replaces everything.
+    fn merge(self, _before: &Self) -> Self {
+        self
+    }
+}

@@ -1,0 +1,203 @@
+//! Structure, formats and constants of a design.
+
+use std::f64::consts::TAU;
+
+use super::{Acquisition, DesignError, Loop, Words, normalisation};
+use crate::format::{Format, Overflow, Quantiser, Rounding, exp2};
+use crate::kernel::{Coefficients, Constant, Formats, Method, Structure};
+use crate::rom::{Column, Rom};
+use crate::spec::{Coding, Spec};
+
+/// What the parameters can reach: the promise of the design, a quarter more, up to a power of two.
+struct Ranges {
+    /// log2 of the largest deviation of θ1 … θ5.
+    deviation: [i32; 5],
+    nominal: f64,
+}
+
+fn ranges(spec: &Spec) -> Ranges {
+    let nominal = 1.0 / normalisation(spec).0;
+    let (m, offset) = (spec.sensor.amplitude_tolerance, spec.sensor.offset_max);
+    let beta = spec.sensor.phase_error_max_deg.to_radians();
+    let gain = nominal / (1.0 - m) / beta.cos() - nominal;
+    let shift = offset / (1.0 - m) * (1.0 / beta.cos() + beta.tan());
+    let phase = beta.tan() * nominal / (1.0 - m);
+    let power = |need: f64| (need.max(1.0 / 64.0) * 1.25).log2().ceil() as i32;
+    Ranges {
+        deviation: [
+            power(gain),
+            power(shift),
+            power(gain),
+            power(shift),
+            power(phase),
+        ],
+        nominal,
+    }
+}
+
+fn power_of(value: f64) -> i32 {
+    value.log2().ceil() as i32
+}
+
+fn level_bits(tracking: &Loop) -> u32 {
+    (power_of(4.0 / tracking.omega).clamp(5, 12)) as u32
+}
+
+fn bits(n: i32) -> u32 {
+    u32::try_from(n).unwrap_or(0)
+}
+
+pub(super) fn structure(
+    spec: &Spec,
+    tracking: &Loop,
+    acquisition: &Acquisition,
+    words: &Words,
+) -> Result<Structure, DesignError> {
+    let f = words.signal_fraction;
+    let width = f + 2;
+    let r = ranges(spec);
+    let power = normalisation(spec).1;
+    let adc_bits = spec.adc.bits;
+    let offset_binary = spec.adc.coding == Coding::OffsetBinary;
+    let y = Format::signed(adc_bits, adc_bits - 1 - power.min(adc_bits - 1));
+    let accumulator = |power: i32| {
+        let facc = words.accumulator_fraction;
+        Quantiser::saturating(Format::signed(bits(1 + power + facc as i32), facc))
+    };
+    let multiplied = |largest: f64| {
+        let format = Format::signed(width, bits(width as i32 - 1 - power_of(largest)));
+        Quantiser {
+            format,
+            rounding: Rounding::Nearest,
+            overflow: Overflow::Saturate,
+        }
+    };
+    let gain = multiplied(r.nominal + exp2(r.deviation[0].into()));
+    let fp = words.phase_bits;
+    let formats = Formats {
+        adc: if offset_binary {
+            Format::unsigned(adc_bits, 0)
+        } else {
+            Format::signed(adc_bits, 0)
+        },
+        y,
+        signal: Quantiser::saturating(Format::signed(width, f)),
+        alpha: Format::unsigned(fp, fp),
+        rate: Quantiser::saturating(Format::signed(fp - 1, fp)),
+        rate_high: Quantiser::grid(Format::signed(width, width + 1)),
+        sine_phase: Quantiser::truncating(Format::unsigned(
+            words.sine_phase_bits,
+            words.sine_phase_bits,
+        )),
+        count: Format::signed(spec.chip.count_bits, spec.chip.count_bits),
+        theta: [gain, gain, multiplied(exp2(r.deviation[4].into()))],
+        deviation: r.deviation.map(accumulator),
+        level: Quantiser::saturating(Format::unsigned(level_bits(tracking), 0)),
+        loop_gear: Format::unsigned(2, 0),
+        gamma_gear: Format::unsigned(4, 0),
+        gear_periods: Format::unsigned(8, 0),
+    };
+    Ok(Structure {
+        method: match spec.tracking.method {
+            1 => Method::One,
+            2 => Method::Two,
+            _ => Method::Three,
+        },
+        filter_type: spec.tracking.filter_type,
+        parameters: spec.calibration.parameters,
+        offset_binary,
+        formats,
+        sine: sine_table(words)?,
+        loop_gears: acquisition.gears,
+        loop_stride: acquisition.stride,
+        gamma_first: spec.calibration.gamma_first,
+        gamma_gears: spec.calibration.gamma_last - spec.calibration.gamma_first,
+    })
+}
+
+/// A quarter wave, each segment expanded about its centre; the value is lowered by half the error at the ends.
+fn sine_table(words: &Words) -> Result<Rom, DesignError> {
+    let (rows, f) = (words.sine_rows_log2, words.signal_fraction);
+    let segment = exp2(-i64::from(rows) - 2);
+    let lower = 1.0 - (TAU * segment / 2.0).powi(2) / 4.0;
+    let centre = |i: usize| TAU * segment * (i as f64 + 0.5);
+    let values = (0..1usize << rows)
+        .map(|i| centre(i).sin() * lower)
+        .collect();
+    let slopes = (0..1usize << rows).map(|i| TAU * centre(i).cos()).collect();
+    let slope_fraction = (f + 1).saturating_sub(rows).max(1);
+    let unfit = |row: usize| DesignError::Field {
+        field: "formats.sine_rows_log2",
+        value: rows.to_string(),
+        limit: "13".into(),
+        reason: format!("row {row} of the sine table does not fit its word"),
+    };
+    Ok(Rom {
+        name: "sine_table",
+        address_bits: rows,
+        index_fraction: rows + 2,
+        columns: vec![
+            Column::new("value", Format::unsigned(f + 3, f + 2), values).map_err(unfit)?,
+            Column::new(
+                "slope",
+                Format::unsigned(slope_fraction + 3, slope_fraction),
+                slopes,
+            )
+            .map_err(unfit)?,
+        ],
+    })
+}
+
+pub(super) fn constants(
+    spec: &Spec,
+    tracking: &Loop,
+    acquisition: &Acquisition,
+    words: &Words,
+    structure: &Structure,
+) -> Coefficients<Constant> {
+    let width = words.signal_fraction + 2;
+    let f = words.signal_fraction;
+    let whole = |n: i64| Constant::rounded(n as f64, 0);
+    let p = words.sine_phase_bits;
+    let half_bit = exp2(-i64::from(p) - 1);
+    let half_segment = exp2(-i64::from(words.sine_rows_log2) - 3);
+    let corrected = |value: f64, less: f64, fraction: u32| Constant {
+        ideal: value,
+        ..Constant::rounded(value - less, fraction)
+    };
+    let nominal = Constant::rounded(
+        ranges(spec).nominal,
+        structure.formats.theta[0].format.fraction,
+    );
+    let full = (1i64 << level_bits(tracking)) - 1;
+    let s = &spec.sensor;
+    let worst = s.offset_max * 1.5
+        + s.amplitude_tolerance
+        + s.phase_error_max_deg.to_radians()
+        + 5.0 * s.noise_rms;
+    Coefficients {
+        adc_middle: whole(1 << (spec.adc.bits - 1)),
+        loop_a: Constant::normalised(tracking.a, width, 40),
+        loop_ab: Constant::normalised(tracking.ab, width, 40),
+        loop_leak: Constant::normalised(1.0 - tracking.pole, width, 40),
+        theta_1_nominal: nominal,
+        theta_3_nominal: nominal,
+        quarter_turn: corrected(0.25, 2.0 * half_bit, p),
+        half_segment: corrected(half_segment, half_bit, p + 1),
+        lock_error: Constant::rounded((0.75 * worst).clamp(0.35, 0.6), f.min(8)),
+        lock_residual: Constant::rounded((1.25 * worst).clamp(0.4, 0.9), f.min(8)),
+        weak_signal: Constant::rounded(0.25, f.min(8)),
+        restart_residual: Constant::rounded(spec.calibration.restart_residual, f.min(8)),
+        direction_rate: Constant::rounded(exp2(-i64::from(f)), words.phase_bits),
+        lock_down: whole(-8),
+        lock_full: whole(full),
+        lock_restart: whole(full / 2),
+        loop_gear_last: whole(acquisition.gears.into()),
+        gamma_gear_last: whole(structure.gamma_gears.into()),
+        gear_periods_last: whole(i64::from(spec.calibration.gear_periods) - 1),
+        zero: whole(0),
+        one: whole(1),
+        half: Constant::rounded(0.5, 1),
+        quarter: Constant::rounded(0.25, 2),
+    }
+}

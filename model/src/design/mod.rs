@@ -1,0 +1,89 @@
+//! From physical units to integers: [`Spec`] becomes [`Design`].
+
+mod budget;
+mod formats;
+mod poles;
+
+pub use budget::{Budget, Term, Words};
+pub use poles::{Acquisition, Loop};
+
+use thiserror::Error;
+
+use crate::chip::{chip_kernel, record};
+use crate::graph::{Graph, RangeError};
+use crate::kernel::{Coefficients, Constant, Structure};
+use crate::spec::Spec;
+
+/// Why a design cannot work.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum DesignError {
+    /// A field is outside what can work.
+    #[error("{field} = {value}: {reason} (limit: {limit})")]
+    Field {
+        /// The key in `design.toml`.
+        field: &'static str,
+        /// What it says.
+        value: String,
+        /// What it may say.
+        limit: String,
+        /// Why.
+        reason: String,
+    },
+    /// A signal does not fit.
+    #[error("the formats cannot hold the design: {0}")]
+    Range(#[from] RangeError),
+}
+
+/// The quantised chip.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Design {
+    /// What was asked for.
+    pub spec: Spec,
+    /// Poles and loop coefficients.
+    pub tracking: Loop,
+    /// How the loop widens in acquisition.
+    pub acquisition: Acquisition,
+    /// Word lengths.
+    pub words: Words,
+    /// What each word costs.
+    pub budget: Budget,
+    /// Structure and formats.
+    pub structure: Structure,
+    /// The numbers.
+    pub constants: Coefficients<Constant>,
+    /// One sample as a graph.
+    pub graph: Graph,
+}
+
+impl Design {
+    /// Works the design out, or says why it cannot work.
+    ///
+    /// # Errors
+    /// [`DesignError`] names the field, its value, the limit and the reason.
+    pub fn new(spec: &Spec) -> Result<Self, DesignError> {
+        poles::check(spec)?;
+        let tracking = Loop::new(spec)?;
+        let acquisition = Acquisition::new(spec, &tracking);
+        let (words, budget) = budget::choose(spec, &tracking)?;
+        let structure = formats::structure(spec, &tracking, &acquisition, &words)?;
+        let constants = formats::constants(spec, &tracking, &acquisition, &words, &structure);
+        let graph = record(&structure, &constants, chip_kernel)?;
+        Ok(Self {
+            spec: spec.clone(),
+            tracking,
+            acquisition,
+            words,
+            budget,
+            structure,
+            constants,
+            graph,
+        })
+    }
+}
+
+/// Nominal amplitude after normalisation, between ½ and 1, and the power of two that makes it so.
+fn normalisation(spec: &Spec) -> (f64, u32) {
+    let ratio = spec.sensor.amplitude / spec.adc.full_scale;
+    let power = (-ratio.log2()).floor().max(0.0) as u32;
+    (ratio * crate::format::exp2(power.into()), power)
+}

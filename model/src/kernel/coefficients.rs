@@ -1,0 +1,146 @@
+//! The numbers of the chip, lifted into a reading.
+
+use crate::bits::Bits;
+use crate::graph::{Node, Recorder};
+use crate::signal::Signal;
+
+/// A coefficient: an integer, its point, and what it stands for without rounding.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Constant {
+    /// Integer in units of 2^-`fraction`.
+    pub raw: i64,
+    /// Fraction bits.
+    pub fraction: u32,
+    /// What the `f64` reading takes. For loop coefficients the quantised value (same loop, other arithmetic);
+    /// for half-bit corrections of a truncation the value without it.
+    pub ideal: f64,
+}
+
+impl Constant {
+    /// `value` rounded to `fraction` bits; the `f64` reading takes the rounded value.
+    #[must_use]
+    pub fn rounded(value: f64, fraction: u32) -> Self {
+        let raw = (value * crate::format::exp2(fraction.into())).round() as i64;
+        Self {
+            raw,
+            fraction,
+            ideal: raw as f64 * crate::format::exp2(-i64::from(fraction)),
+        }
+    }
+
+    /// `value` with the fraction bits that fill `width` bits, sign included.
+    #[must_use]
+    pub fn normalised(value: f64, width: u32, fraction_limit: u32) -> Self {
+        let magnitude = if value == 0.0 {
+            0
+        } else {
+            value.abs().log2().floor() as i64 + 1
+        };
+        let fraction = (i64::from(width) - 1 - magnitude).clamp(0, fraction_limit.into()) as u32;
+        let constant = Self::rounded(value, fraction);
+        // Rounding up to the next power of two would need one more bit.
+        if constant.raw.unsigned_abs() >> (width - 1) != 0 && fraction > 0 {
+            return Self::rounded(value, fraction - 1);
+        }
+        constant
+    }
+
+    /// The quantised value.
+    #[must_use]
+    pub fn value(&self) -> f64 {
+        self.raw as f64 * crate::format::exp2(-i64::from(self.fraction))
+    }
+}
+
+macro_rules! coefficients {
+    ($($(#[$doc:meta])* $name:ident),* $(,)?) => {
+        /// The coefficients as the kernels take them: constants of the design, or those lifted into a reading.
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        pub struct Coefficients<T> {
+            $($(#[$doc])* pub $name: T,)*
+        }
+
+        impl<T: Copy> Coefficients<T> {
+            /// Applies `f` to every coefficient and its name.
+            pub fn map<U>(&self, mut f: impl FnMut(&'static str, T) -> U) -> Coefficients<U> {
+                Coefficients { $($name: f(stringify!($name), self.$name),)* }
+            }
+        }
+    };
+}
+
+coefficients! {
+    /// Middle of the ADC's code range (offset binary).
+    adc_middle,
+    /// Loop coefficient a, turns per radian.
+    loop_a,
+    /// Loop coefficients a + b, turns per radian.
+    loop_ab,
+    /// 1 − p, p the second pole of a type 1 filter.
+    loop_leak,
+    /// Nominal θ1.
+    theta_1_nominal,
+    /// Nominal θ3.
+    theta_3_nominal,
+    /// A quarter turn, less one bit of the sine phase.
+    quarter_turn,
+    /// Half a sine table segment, less half a bit of the sine phase.
+    half_segment,
+    /// Largest |e| in lock, radians.
+    lock_error,
+    /// Largest |ρ| in lock.
+    lock_residual,
+    /// Corrected signals below this are lost.
+    weak_signal,
+    /// |ρ| above this restarts the γ gears.
+    restart_residual,
+    /// Rate below which the direction does not change, turns per sample.
+    direction_rate,
+    /// What a bad sample adds to the lock level.
+    lock_down,
+    /// The full lock level.
+    lock_full,
+    /// Lock level after a change of loop gear.
+    lock_restart,
+    /// Last loop gear.
+    loop_gear_last,
+    /// Last γ gear.
+    gamma_gear_last,
+    /// Periods of travel per γ gear, less one.
+    gear_periods_last,
+    /// 0.
+    zero,
+    /// 1.
+    one,
+    /// ½.
+    half,
+    /// ¼.
+    quarter,
+}
+
+impl Coefficients<Constant> {
+    /// For the `f64` reading.
+    #[must_use]
+    pub fn real(&self) -> Coefficients<f64> {
+        self.map(|_, c| c.ideal)
+    }
+
+    /// For the bit-true reading.
+    #[must_use]
+    pub fn bits(&self) -> Coefficients<Bits> {
+        self.map(|_, c| Bits::from_raw(c.raw, c.fraction))
+    }
+
+    /// For the recording reading.
+    #[must_use]
+    pub fn record<'g>(&self, recorder: &'g Recorder) -> Coefficients<Node<'g>> {
+        self.map(|name, c| recorder.constant(Some(name), c.raw, c.fraction))
+    }
+}
+
+impl<S: Signal> Coefficients<S> {
+    /// The flag that is always false.
+    pub fn never(&self) -> S::Bool {
+        self.zero.less_than(self.zero)
+    }
+}

@@ -1,0 +1,73 @@
+//! Correction of the raw pair by Θ.
+
+use super::{Coefficients, State, Structure};
+use crate::signal::{Formula, Signal, Wide};
+
+static NORMALISE: Formula = Formula {
+    title: "ADC codes",
+    equation: "y = code, as a fraction of the range that the nominal amplitude needs",
+    source: "equation (4): y_c = a_c cos(alpha) + b_c, y_s = a_s sin(alpha - beta) + b_s",
+};
+
+static THETA: Formula = Formula {
+    title: "Parameters as multiplied",
+    equation: "theta = nominal + deviation, rounded to the width of the signals",
+    source: "paper section 5.3",
+};
+
+static CORRECT: Formula = Formula {
+    title: "Correction",
+    equation: "c = theta_1 y_c + theta_2,  s = theta_3 y_s + theta_4 + theta_5 y_c",
+    source: "paper section 5.3",
+};
+
+/// An ADC code as a signal: `y` has the nominal amplitude between ½ and 1.
+pub fn normalise<S: Signal>(code: S, k: &Coefficients<S>, structure: &Structure) -> S {
+    code.begin(&NORMALISE);
+    let centred = if structure.offset_binary {
+        code - k.adc_middle
+    } else {
+        code
+    };
+    centred.scale(-(structure.formats.y.fraction as i32))
+}
+
+/// θ1 … θ5 as they are applied. The offsets θ2 and θ4 are not multiplied and keep every bit.
+pub fn parameters<S: Signal>(
+    state: &State<S>,
+    k: &Coefficients<S>,
+    structure: &Structure,
+) -> [S; 5] {
+    state.alpha_hat.begin(&THETA);
+    let [first, third, fifth] = structure.formats.theta;
+    let theta_1 = (k.theta_1_nominal + state.theta_1_deviation).quantise(&first);
+    let theta_3 = (k.theta_3_nominal + state.theta_3_deviation).quantise(&third);
+    let theta_5 = if structure.parameters >= 5 {
+        state.theta_5_deviation.quantise(&fifth)
+    } else {
+        k.zero
+    };
+    [
+        theta_1,
+        state.theta_2_deviation,
+        theta_3,
+        state.theta_4_deviation,
+        theta_5,
+    ]
+}
+
+/// The corrected pair (c, s).
+pub fn correct<S: Signal>(y_c: S, y_s: S, theta: [S; 5], structure: &Structure) -> (S, S) {
+    y_c.begin(&CORRECT);
+    let [theta_1, theta_2, theta_3, theta_4, theta_5] = theta;
+    let signal = &structure.formats.signal;
+    let c = theta_1 * y_c + theta_2.widen();
+    let mut s = theta_3 * y_s + theta_4.widen();
+    if structure.parameters >= 5 {
+        s = s + theta_5 * y_c;
+    }
+    (
+        c.named("c_exact").quantise(signal),
+        s.named("s_exact").quantise(signal),
+    )
+}

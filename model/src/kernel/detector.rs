@@ -1,0 +1,56 @@
+//! What the sample says about the estimate: phase error, radial residual, loss of signal.
+
+use super::{Coefficients, Structure};
+use crate::signal::{Formula, Logic, Signal, Wide};
+
+static PHASE: Formula = Formula {
+    title: "Phase detector",
+    equation: "e = s cos(alpha_hat) - c sin(alpha_hat)",
+    source: "paper section 3",
+};
+
+static RADIUS: Formula = Formula {
+    title: "Radial residual",
+    equation: "rho = c cos(alpha_hat) + s sin(alpha_hat) - 1",
+    source: "paper section 5.5.1, n^T r",
+};
+
+static WEAK: Formula = Formula {
+    title: "Loss of signal",
+    equation: "|c| and |s| both below the threshold",
+    source: "",
+};
+
+/// e ≈ α − α̂ in radians.
+pub fn phase_error<S: Signal>(c: S, s: S, cos_hat: S, sin_hat: S, structure: &Structure) -> S {
+    c.begin(&PHASE);
+    (s * cos_hat - c * sin_hat)
+        .named("e_exact")
+        .quantise(&structure.formats.signal)
+}
+
+/// ρ: projection of the corrected pair on the estimate's direction, less one.
+pub fn radial_residual<S: Signal>(
+    c: S,
+    s: S,
+    cos_hat: S,
+    sin_hat: S,
+    k: &Coefficients<S>,
+    structure: &Structure,
+) -> S {
+    c.begin(&RADIUS);
+    (c * cos_hat - k.one.widen() + s * sin_hat)
+        .named("rho_exact")
+        .quantise(&structure.formats.signal)
+}
+
+/// Whether x lies strictly between −`limit` and `limit`.
+pub fn within<S: Signal>(x: S, limit: S) -> S::Bool {
+    x.less_than(limit).and((-limit).less_than(x))
+}
+
+/// Both corrected signals are too small to tell an angle.
+pub fn weak<S: Signal>(c: S, s: S, k: &Coefficients<S>) -> S::Bool {
+    c.begin(&WEAK);
+    within(c, k.weak_signal).and(within(s, k.weak_signal))
+}

@@ -1,0 +1,88 @@
+//! Lock detection and acquisition.
+//!
+//! A level counts good samples up by one and bad ones down by eight. Full: the loop shifts to the next narrower
+//! gear, or is locked in the last one. Empty: lock is lost and acquisition starts again in the widest gear. While
+//! it is not locked, an estimate that points away from the signal is turned by half a period: the phase detector
+//! cannot tell α from α + ½.
+
+use super::detector::within;
+use super::{Coefficients, State, Structure};
+use crate::signal::{Formula, Logic, Signal};
+
+static WINDOW: Formula = Formula {
+    title: "Lock window",
+    equation: "|e| and |rho| below their limits, signal present",
+    source: "calibration needs lock: the update would otherwise drive the gains to zero",
+};
+
+static LEVEL: Formula = Formula {
+    title: "Lock level and loop gear",
+    equation: "level' = level + 1 if good, else level - 8; full: narrower loop, empty: widest loop",
+    source: "",
+};
+
+/// What the lock detector decides after a sample.
+pub struct Lock<S: Signal> {
+    /// Confidence.
+    pub level: S,
+    /// Loop gear.
+    pub gear: S,
+    /// The loop follows.
+    pub locked: S::Bool,
+}
+
+/// Whether this sample looks as in lock.
+pub fn in_window<S: Signal>(e: S, rho: S, weak: S::Bool, k: &Coefficients<S>) -> S::Bool {
+    e.begin(&WINDOW);
+    within(e, k.lock_error)
+        .and(within(rho, k.lock_residual))
+        .and(weak.not())
+}
+
+/// Whether the estimate points away from the signal and may be turned round.
+pub fn flip<S: Signal>(rho: S, weak: S::Bool, state: &State<S>, k: &Coefficients<S>) -> S::Bool {
+    rho.less_than(-k.one).and(state.locked.or(weak).not())
+}
+
+/// Next level, gear and lock.
+pub fn update<S: Signal>(
+    good: S::Bool,
+    state: &State<S>,
+    k: &Coefficients<S>,
+    structure: &Structure,
+) -> Lock<S> {
+    state.lock_level.begin(&LEVEL);
+    let formats = &structure.formats;
+    let level = (state.lock_level + S::select(good, k.one, k.lock_down))
+        .quantise(&formats.level)
+        .named("level_moved");
+    let full = level.less_than(k.lock_full).not().named("level_full");
+    let empty = level.less_than(k.one).named("level_empty");
+    if structure.loop_gears == 0 {
+        let locked = state.locked.or(full).and(empty.not());
+        return Lock {
+            level,
+            gear: k.zero,
+            locked,
+        };
+    }
+    let last = state
+        .loop_gear
+        .less_than(k.loop_gear_last)
+        .not()
+        .named("last_gear");
+    let narrower = full.and(last.not()).named("narrower");
+    let up = S::select(narrower, k.one, k.zero);
+    let gear = S::select(
+        empty,
+        k.zero,
+        (state.loop_gear + up).quantise(&crate::format::Quantiser::wrapping(formats.loop_gear)),
+    );
+    let level = S::select(narrower, k.lock_restart, level);
+    let locked = state.locked.or(full.and(last)).and(empty.not());
+    Lock {
+        level: level.quantise(&formats.level),
+        gear: gear.quantise(&crate::format::Quantiser::wrapping(formats.loop_gear)),
+        locked,
+    }
+}

@@ -1,0 +1,58 @@
+//! sin α̂ and cos α̂: a quarter-wave table of values and slopes, linear in between.
+//!
+//! The phase is cut to the bits that the table uses and stands for the middle of what was cut off. So reflecting the
+//! phase is inverting its bits, and truncation is no bias. Each segment is expanded about its centre.
+
+use super::{Coefficients, Structure};
+use crate::format::{Format, Quantiser};
+use crate::signal::{Formula, Logic, Signal, Wide};
+
+/// Column of the table that holds values.
+pub const VALUE: usize = 0;
+/// Column of the table that holds slopes per turn.
+pub const SLOPE: usize = 1;
+
+static SINE: Formula = Formula {
+    title: "Sine and cosine of the estimate",
+    equation: "sin(x) = value[x] + slope[x] (x - centre), quarter wave, folded by quadrant",
+    source: "paper section 3, for the phase detector",
+};
+
+/// (sin α̂, cos α̂) of a phase in turns.
+pub fn sine<S: Signal>(alpha_hat: S, k: &Coefficients<S>, structure: &Structure) -> (S, S) {
+    alpha_hat.begin(&SINE);
+    let fraction = structure.formats.sine_phase.format.fraction;
+    let modulo = |bits: u32| Quantiser::wrapping(Format::unsigned(fraction - bits, fraction));
+    let phase = alpha_hat
+        .quantise(&structure.formats.sine_phase)
+        .named("sine_phase");
+    let upper_half = phase.less_than(k.half).not().named("upper_half");
+    let odd = phase
+        .quantise(&modulo(1))
+        .less_than(k.quarter)
+        .not()
+        .named("odd_quadrant");
+    let rising = phase.quantise(&modulo(2)).named("quarter_phase");
+    let falling = (k.quarter_turn - rising).named("quarter_phase_mirrored");
+
+    let quarter = |address: S, name: (&'static str, &'static str)| {
+        let rom = &structure.sine;
+        let inside = address.quantise(&modulo(rom.index_fraction)) - k.half_segment;
+        let value = S::lookup(rom, VALUE, address);
+        let slope = S::lookup(rom, SLOPE, address).named(name.1);
+        (slope * inside + value.widen())
+            .quantise(&structure.formats.signal)
+            .named(name.0)
+    };
+    let sin = quarter(
+        S::select(odd, falling, rising).named("sin_address"),
+        ("sin_magnitude", "sin_slope"),
+    );
+    let cos = quarter(
+        S::select(odd, rising, falling).named("cos_address"),
+        ("cos_magnitude", "cos_slope"),
+    );
+    let sin_hat = S::select(upper_half, -sin, sin).quantise(&structure.formats.signal);
+    let cos_hat = S::select(upper_half.xor(odd), -cos, cos).quantise(&structure.formats.signal);
+    (sin_hat, cos_hat)
+}

@@ -1,0 +1,114 @@
+//! What the chip remembers, what it is given, and what it shows.
+
+use crate::record::bundle;
+
+bundle! {
+    /// The registers, as they stand before a sample. All are zero after reset.
+    State {
+        /// α̂, the phase estimate: turns in [0, 1).
+        alpha_hat,
+        /// Whole periods; the unit is the counter's whole range.
+        count,
+        /// α̂ one sample ago (Method 1).
+        alpha_hat_previous,
+        /// Phase increment per sample, turns.
+        rate,
+        /// e one sample ago, radians.
+        error_previous,
+        /// θ1 less its nominal value.
+        theta_1_deviation,
+        /// θ2.
+        theta_2_deviation,
+        /// θ3 less its nominal value.
+        theta_3_deviation,
+        /// θ4.
+        theta_4_deviation,
+        /// θ5.
+        theta_5_deviation,
+        /// Confidence of the lock detector.
+        lock_level,
+        /// Loop gear: 0 widest, the last is the designed bandwidth.
+        loop_gear,
+        /// γ gear: 0 largest.
+        gamma_gear,
+        /// Whole periods travelled in this γ gear.
+        gear_periods,
+        /// Position, modulo 4 periods, where the map of sectors was last cleared.
+        travel_origin,
+        /// Lowest sector seen since, relative to the origin.
+        travel_low,
+        /// Highest sector seen since, relative to the origin.
+        travel_high,
+    } {
+        /// The loop follows.
+        locked,
+        /// The lock was lost since the last zero preset or reset.
+        lock_lost,
+        /// Both corrected signals are too small.
+        signal_lost,
+        /// The scale runs backwards.
+        direction,
+        /// The residual was large in this period of travel.
+        disturbed,
+    }
+}
+
+bundle! {
+    /// What arrives with a sample.
+    Input {
+        /// ADC code of the cosine channel.
+        adc_cos,
+        /// ADC code of the sine channel.
+        adc_sin,
+    } {
+        /// Zero preset: this sample's period becomes number 0 and the lock-lost flag is cleared.
+        zero,
+        /// Calibration may update the parameters.
+        calibrate,
+    }
+}
+
+bundle! {
+    /// Named internal signals of a sample, for waves and vectors.
+    Probes {
+        /// Normalised cosine channel.
+        y_c,
+        /// Normalised sine channel.
+        y_s,
+        /// θ1 as multiplied.
+        theta_1,
+        /// θ2.
+        theta_2,
+        /// θ3 as multiplied.
+        theta_3,
+        /// θ4.
+        theta_4,
+        /// θ5 as multiplied.
+        theta_5,
+        /// Corrected cosine.
+        c,
+        /// Corrected sine.
+        s,
+        /// cos α̂.
+        cos_hat,
+        /// sin α̂.
+        sin_hat,
+        /// Phase error, radians.
+        e,
+        /// Radial residual.
+        rho,
+        /// cos α̂ · ρ.
+        rho_c,
+        /// sin α̂ · ρ.
+        rho_s,
+        /// Position increment of this sample, turns: the speed.
+        speed,
+    } {
+        /// Phase error and radius are as in lock.
+        in_window,
+        /// This sample may move the parameters.
+        fresh,
+        /// A whole period has been travelled since the map of sectors was cleared.
+        whole_period,
+    }
+}

@@ -1,0 +1,87 @@
+//! Calibration is driven by travelled angle, not by time.
+//!
+//! The period is divided into 64 sectors. Each contributes once until the position is a whole period away from where
+//! the map of sectors was last cleared; then the map is cleared. Motion is continuous, so what has been seen is an
+//! interval about that origin, never longer than a period: two numbers instead of 64 bits. To and fro over the same
+//! arc adds nothing, standstill adds nothing, and a whole period of travel adds every sector exactly once, so the
+//! parameters are pulled equally from all sides.
+
+use super::{Coefficients, State, Structure};
+use crate::format::{Format, Quantiser};
+use crate::signal::{Formula, Logic, Signal};
+
+/// Sectors of a period: 2^6.
+pub const SECTOR_BITS: u32 = 6;
+/// Sector numbers: position modulo four periods.
+pub const SECTOR: Format = Format::signed(2 + SECTOR_BITS, SECTOR_BITS);
+
+static TRAVEL: Formula = Formula {
+    title: "Travel",
+    equation: "a sector of the period is fresh until it was used once since the last whole period",
+    source: "paper section 5.5: static measurements may bias the estimates",
+};
+
+/// What the travel gate decides and remembers.
+pub struct Travel<S: Signal> {
+    /// This sample is in a sector not used yet.
+    pub new_sector: S::Bool,
+    /// The position is a whole period from the origin.
+    pub whole_period: S::Bool,
+    /// Where the map was cleared.
+    pub origin: S,
+    /// Lowest sector used, relative to the origin.
+    pub low: S,
+    /// Highest sector used, relative to the origin.
+    pub high: S,
+}
+
+/// Whether this sample's sector is fresh, and the map after it. Not counting (`counting` false) clears the map.
+pub fn travel<S: Signal>(
+    counting: S::Bool,
+    state: &State<S>,
+    k: &Coefficients<S>,
+    structure: &Structure,
+) -> Travel<S> {
+    state.alpha_hat.begin(&TRAVEL);
+    let count = structure.formats.count;
+    let low_bits = Quantiser::wrapping(Format::signed(2, count.fraction));
+    let periods = state
+        .count
+        .quantise(&low_bits)
+        .scale(count.fraction as i32)
+        .named("periods_modulo_4");
+    let sector_grid = Quantiser::grid(Format::unsigned(SECTOR_BITS, SECTOR_BITS));
+    let sector = (periods + state.alpha_hat.quantise(&sector_grid)).named("sector");
+    let relative = (sector - state.travel_origin)
+        .quantise(&Quantiser::wrapping(SECTOR))
+        .named("sector_relative");
+    let period_ahead = relative.less_than(k.one).not();
+    let period_behind = (-k.one).less_than(relative).not();
+    let whole_period = period_ahead.or(period_behind).and(counting);
+    let ahead = state
+        .travel_high
+        .less_than(relative)
+        .and(relative.less_than(state.travel_low + k.one))
+        .named("sector_ahead");
+    let behind = relative
+        .less_than(state.travel_low)
+        .and((state.travel_high - k.one).less_than(relative))
+        .named("sector_behind");
+    let clear = whole_period.or(counting.not()).named("travel_clear");
+    let keep = |x: S| x.quantise(&Quantiser::wrapping(SECTOR));
+    Travel {
+        new_sector: ahead.or(behind).or(clear),
+        whole_period,
+        origin: keep(S::select(clear, sector, state.travel_origin)),
+        low: keep(S::select(
+            clear,
+            k.zero,
+            S::select(behind, relative, state.travel_low),
+        )),
+        high: keep(S::select(
+            clear,
+            k.zero,
+            S::select(ahead, relative, state.travel_high),
+        )),
+    }
+}

@@ -1,0 +1,255 @@
+//! `design.toml`: what the user asks for, in physical units.
+
+mod read;
+
+pub use read::SpecError;
+
+use serde::{Deserialize, Serialize};
+
+/// A design in physical units, as written in `design.toml`. Checked for form, not yet for sense: see
+/// [`Design::new`](crate::design::Design::new).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Spec {
+    /// Name of the chip: a Verilog identifier.
+    pub name: String,
+    /// One line about it.
+    #[serde(default)]
+    pub description: String,
+    /// The sensor in front of the ADC.
+    pub sensor: Sensor,
+    /// The ADC.
+    pub adc: Adc,
+    /// The tracking loop.
+    #[serde(rename = "loop")]
+    pub tracking: Tracking,
+    /// On-line calibration.
+    #[serde(default)]
+    pub calibration: Calibration,
+    /// What the chip must reach.
+    pub accuracy: Accuracy,
+    /// How it is built.
+    #[serde(default)]
+    pub chip: Chip,
+    /// Word lengths that override the chosen ones.
+    #[serde(default)]
+    pub formats: Overrides,
+}
+
+/// `[sensor]`
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Sensor {
+    /// Nominal amplitude of both signals, in the unit of the ADC's range.
+    pub amplitude: f64,
+    /// The amplitudes differ from the nominal one by at most this fraction.
+    pub amplitude_tolerance: f64,
+    /// Largest offset of each channel, as a fraction of the amplitude.
+    pub offset_max: f64,
+    /// Largest phase error β, degrees.
+    pub phase_error_max_deg: f64,
+    /// Rms noise of each channel, as a fraction of the amplitude.
+    #[serde(default)]
+    pub noise_rms: f64,
+    /// Largest speed, scale periods per second.
+    pub speed_max_periods_per_s: f64,
+    /// Length of a scale period, metres (linear scales).
+    #[serde(default)]
+    pub scale_period_m: Option<f64>,
+    /// Scale periods per revolution (rotary scales).
+    #[serde(default)]
+    pub periods_per_revolution: Option<f64>,
+}
+
+/// `[adc]`
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Adc {
+    /// Resolution, 8 to 18 bits.
+    pub bits: u32,
+    /// The range is −`full_scale` … +`full_scale` about the middle.
+    pub full_scale: f64,
+    /// Middle of the range, for one-sided ADCs; in the unit of `full_scale`.
+    #[serde(default)]
+    pub middle: f64,
+    /// Code of the output.
+    #[serde(default)]
+    pub coding: Coding,
+    /// Samples per second, both channels at the same instant.
+    pub sample_rate_hz: f64,
+}
+
+/// Code of the ADC's output.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Coding {
+    /// Signed.
+    #[default]
+    TwosComplement,
+    /// 0 is the lower end.
+    OffsetBinary,
+}
+
+/// `[loop]`
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Tracking {
+    /// The paper's method: 1, 2 or 3.
+    pub method: u32,
+    /// Filter poles at 1: 1 or 2.
+    #[serde(rename = "type")]
+    pub filter_type: u32,
+    /// ω0/2π of the closed loop, hertz.
+    pub bandwidth_hz: f64,
+    /// ξ of the closed loop.
+    #[serde(default = "damping")]
+    pub damping: f64,
+    /// Second pole of a type 1 filter, 0 to 1. Default: p1 p2, which makes Methods 1 and 3 equal to Method 2.
+    #[serde(default)]
+    pub pole: Option<f64>,
+}
+
+fn damping() -> f64 {
+    std::f64::consts::FRAC_1_SQRT_2
+}
+
+/// `[calibration]`
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Calibration {
+    /// 0 (off), 4 (gains, offsets) or 5 (and phase).
+    #[serde(default = "five")]
+    pub parameters: u32,
+    /// First γ is 2^-`gamma_first`.
+    #[serde(default = "gamma_first")]
+    pub gamma_first: u32,
+    /// Last γ is 2^-`gamma_last`.
+    #[serde(default = "gamma_last")]
+    pub gamma_last: u32,
+    /// Periods of travel between gears.
+    #[serde(default = "gear_periods")]
+    pub gear_periods: u32,
+    /// |ρ| above this returns to the first γ.
+    #[serde(default = "restart")]
+    pub restart_residual: f64,
+}
+
+fn five() -> u32 {
+    5
+}
+fn gamma_first() -> u32 {
+    4
+}
+fn gamma_last() -> u32 {
+    10
+}
+fn gear_periods() -> u32 {
+    2
+}
+fn restart() -> f64 {
+    0.25
+}
+
+impl Default for Calibration {
+    fn default() -> Self {
+        Self {
+            parameters: five(),
+            gamma_first: gamma_first(),
+            gamma_last: gamma_last(),
+            gear_periods: gear_periods(),
+            restart_residual: restart(),
+        }
+    }
+}
+
+/// `[accuracy]`
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Accuracy {
+    /// Rms error of the position after calibration, in scale periods, at slow speed.
+    pub rms_periods: f64,
+    /// Part of it that the chip's arithmetic may take.
+    #[serde(default = "share")]
+    pub arithmetic_share: f64,
+}
+
+fn share() -> f64 {
+    0.05
+}
+
+/// `[chip]`
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Chip {
+    /// How many multipliers: 1, 2, … or "all".
+    #[serde(default)]
+    pub multipliers: Multipliers,
+    /// Clock, hertz. Default: the slowest that serves the sample rate.
+    #[serde(default)]
+    pub clock_hz: Option<f64>,
+    /// Bits of the period counter, 32 to 44.
+    #[serde(default = "count_bits")]
+    pub count_bits: u32,
+}
+
+fn count_bits() -> u32 {
+    32
+}
+
+impl Default for Chip {
+    fn default() -> Self {
+        Self {
+            multipliers: Multipliers::default(),
+            clock_hz: None,
+            count_bits: count_bits(),
+        }
+    }
+}
+
+/// How many multipliers the chip may use.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum Multipliers {
+    /// So many.
+    Count(u32),
+    /// One for each product.
+    All(All),
+}
+
+/// The word "all".
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum All {
+    /// One multiplier for each product.
+    All,
+}
+
+impl Default for Multipliers {
+    fn default() -> Self {
+        Self::Count(1)
+    }
+}
+
+impl Multipliers {
+    /// The number, given how many products a sample has.
+    #[must_use]
+    pub fn count(self, products: usize) -> usize {
+        match self {
+            Self::Count(n) => (n as usize).clamp(1, products.max(1)),
+            Self::All(_) => products.max(1),
+        }
+    }
+}
+
+/// `[formats]`: any of these replaces what the analysis chose.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Overrides {
+    /// Fraction bits of the signals.
+    #[serde(default)]
+    pub signal_fraction: Option<u32>,
+    /// Bits of the phase and its increments.
+    #[serde(default)]
+    pub phase_bits: Option<u32>,
+    /// Bits of the phase that address and interpolate the sine table.
+    #[serde(default)]
+    pub sine_phase_bits: Option<u32>,
+    /// Rows of the quarter-wave table: 2^`sine_rows_log2`.
+    #[serde(default)]
+    pub sine_rows_log2: Option<u32>,
+    /// Fraction bits of the parameter accumulators.
+    #[serde(default)]
+    pub accumulator_fraction: Option<u32>,
+}

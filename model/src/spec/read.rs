@@ -1,0 +1,170 @@
+//! Reading `design.toml`, with errors that name the place and the way out.
+
+use thiserror::Error;
+use toml::{Table, Value};
+
+use super::Spec;
+
+/// What is wrong with a `design.toml`.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum SpecError {
+    /// Not TOML, a missing key, or a value of the wrong kind.
+    #[error("{file}:{message}")]
+    Form {
+        /// Name of the file.
+        file: String,
+        /// Line, column and what was expected.
+        message: String,
+    },
+    /// A key that does not exist.
+    #[error("{file}:{line}: unknown key `{key}`{hint}")]
+    UnknownKey {
+        /// Name of the file.
+        file: String,
+        /// Line of the key.
+        line: usize,
+        /// The key with its section.
+        key: String,
+        /// The nearest known one.
+        hint: String,
+    },
+}
+
+const TOP: &[&str] = &[
+    "name",
+    "description",
+    "sensor",
+    "adc",
+    "loop",
+    "calibration",
+    "accuracy",
+    "chip",
+    "formats",
+];
+
+fn known(section: &str) -> Option<&'static [&'static str]> {
+    Some(match section {
+        "sensor" => &[
+            "amplitude",
+            "amplitude_tolerance",
+            "offset_max",
+            "phase_error_max_deg",
+            "noise_rms",
+            "speed_max_periods_per_s",
+            "scale_period_m",
+            "periods_per_revolution",
+        ],
+        "adc" => &["bits", "full_scale", "middle", "coding", "sample_rate_hz"],
+        "loop" => &["method", "type", "bandwidth_hz", "damping", "pole"],
+        "calibration" => &[
+            "parameters",
+            "gamma_first",
+            "gamma_last",
+            "gear_periods",
+            "restart_residual",
+        ],
+        "accuracy" => &["rms_periods", "arithmetic_share"],
+        "chip" => &["multipliers", "clock_hz", "count_bits"],
+        "formats" => &[
+            "signal_fraction",
+            "phase_bits",
+            "sine_phase_bits",
+            "sine_rows_log2",
+            "accumulator_fraction",
+        ],
+        _ => return None,
+    })
+}
+
+impl Spec {
+    /// Reads the text of a `design.toml`; `file` is its name for error messages.
+    ///
+    /// # Errors
+    /// [`SpecError`] names file, line and what to write instead.
+    pub fn from_toml(text: &str, file: &str) -> Result<Self, SpecError> {
+        let form = |e: toml::de::Error| SpecError::Form {
+            file: file.into(),
+            message: place(text, &e),
+        };
+        let table: Table = toml::from_str(text).map_err(form)?;
+        unknown_keys(&table, text, file)?;
+        toml::from_str(text).map_err(form)
+    }
+}
+
+fn place(text: &str, error: &toml::de::Error) -> String {
+    let message = error.message();
+    match error.span() {
+        Some(span) => {
+            let before = text.get(..span.start).unwrap_or_default();
+            let line = before.matches('\n').count() + 1;
+            let column = before.rsplit('\n').next().map_or(0, |l| l.chars().count()) + 1;
+            format!("{line}:{column}: {message}")
+        }
+        None => format!("1: {message}"),
+    }
+}
+
+fn unknown_keys(table: &Table, text: &str, file: &str) -> Result<(), SpecError> {
+    check(table.keys().map(String::as_str), TOP, None, text, file)?;
+    for (section, value) in table {
+        if let (Some(names), Value::Table(inner)) = (known(section), value) {
+            check(
+                inner.keys().map(String::as_str),
+                names,
+                Some(section),
+                text,
+                file,
+            )?;
+        }
+    }
+    Ok(())
+}
+
+fn check<'a>(
+    keys: impl Iterator<Item = &'a str>,
+    names: &[&str],
+    section: Option<&str>,
+    text: &str,
+    file: &str,
+) -> Result<(), SpecError> {
+    let mut unknown = keys.filter(|k| !names.contains(k));
+    let Some(key) = unknown.next() else {
+        return Ok(());
+    };
+    let best = names
+        .iter()
+        .map(|n| (strsim::jaro_winkler(key, n), *n))
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .filter(|(likeness, _)| *likeness > 0.7);
+    let hint = match best {
+        Some((_, name)) => format!("; did you mean `{name}`?"),
+        None => format!("; known here: {}", names.join(", ")),
+    };
+    let full = section.map_or_else(|| key.to_owned(), |s| format!("{s}.{key}"));
+    let line = line_of(text, section, key);
+    Err(SpecError::UnknownKey {
+        file: file.into(),
+        line,
+        key: full,
+        hint,
+    })
+}
+
+/// The line that defines `key` in `section`; 1 if it cannot be told (a dotted key, say).
+fn line_of(text: &str, section: Option<&str>, key: &str) -> usize {
+    let mut current: Option<String> = None;
+    for (number, line) in text.lines().enumerate() {
+        let line = line.trim();
+        if let Some(header) = line.strip_prefix('[') {
+            let name = header.trim_matches(['[', ']']).trim();
+            if section.is_none() && name == key {
+                return number + 1;
+            }
+            current = Some(name.to_owned());
+        } else if current.as_deref() == section && line.starts_with(key) {
+            return number + 1;
+        }
+    }
+    1
+}

@@ -1,0 +1,140 @@
+//! The chip as a whole: it locks, follows, calibrates, and its three readings agree.
+
+mod support;
+
+use nonius_model::bits::Bits;
+use nonius_model::chip::{Chip, register_format, registers};
+use nonius_model::design::Design;
+use nonius_model::graph::Evaluation;
+use nonius_model::kernel::Input;
+use support::{Encoder, optical, wrapped};
+
+/// From rest into any speed up to the promised one, from any phase, with a miscalibrated sensor.
+#[test]
+fn pulls_in_from_any_phase_into_any_speed() {
+    let spec = optical();
+    let design = Design::new(&spec).expect("a shipped design");
+    let top = spec.sensor.speed_max_periods_per_s / spec.adc.sample_rate_hz;
+    for encoder in [Encoder::ideal(&spec), Encoder::miscalibrated(&spec)] {
+        for speed in [-1.0, -0.6, -0.1, -0.003, 0.0, 1e-5, 0.01, 0.3, 0.8, 1.0].map(|x| x * top) {
+            for phase in (0..16).map(|i| f64::from(i) / 16.0) {
+                let mut chip = Chip::bit_true(&design);
+                let mut locked_at = None;
+                for k in 0..3000 {
+                    let [cos, sin] = encoder.codes(phase + speed * f64::from(k));
+                    chip.step_codes(cos, sin, false, true);
+                    if chip.state.locked && locked_at.is_none() {
+                        locked_at = Some(k);
+                    }
+                }
+                assert!(chip.state.locked, "speed {speed} phase {phase}: not locked");
+                assert!(
+                    !chip.state.lock_lost,
+                    "speed {speed} phase {phase}: lost (locked at {locked_at:?})"
+                );
+                let error = wrapped(chip.position() - phase - speed * 3000.0);
+                assert!(
+                    error.abs() < 0.06,
+                    "speed {speed} phase {phase}: off by {error} periods"
+                );
+            }
+        }
+    }
+}
+
+/// After some periods of travel the on-line parameters make the error vanish to about the ADC's own.
+#[test]
+fn calibrates_on_line() {
+    let spec = optical();
+    let design = Design::new(&spec).expect("a shipped design");
+    let encoder = Encoder::miscalibrated(&spec);
+    let mut chip = Chip::bit_true(&design);
+    let speed = 0.00731;
+    let mut worst_before: f64 = 0.0;
+    let mut worst: f64 = 0.0;
+    for k in 0..30_000 {
+        let at = speed * f64::from(k);
+        let error = wrapped(chip.position() - at);
+        if (300..420).contains(&k) {
+            worst_before = worst_before.max(error.abs());
+        }
+        if k > 20_000 {
+            worst = worst.max(error.abs());
+        }
+        let [cos, sin] = encoder.codes(at);
+        chip.step_codes(cos, sin, false, true);
+    }
+    assert!(
+        worst_before > 5e-3,
+        "the sensor is miscalibrated at first: {worst_before}"
+    );
+    assert!(
+        worst < 1e-4,
+        "largest error after calibration {worst} periods, before {worst_before}"
+    );
+}
+
+/// The recorded graph, evaluated one integer after the other, is the chip in every register and every bit.
+#[test]
+fn graph_and_chip_agree_in_every_bit() {
+    let spec = optical();
+    let design = Design::new(&spec).expect("a shipped design");
+    let encoder = Encoder::miscalibrated(&spec);
+    let mut chip = Chip::bit_true(&design);
+    let (values, flags) = registers(&design.structure);
+    for k in 0..4000 {
+        let [cos, sin] = encoder.codes(0.0173 * f64::from(k));
+        let before = chip.state;
+        let input = Input {
+            adc_cos: Bits::from_raw(cos, 0),
+            adc_sin: Bits::from_raw(sin, 0),
+            zero: k % 977 == 0,
+            calibrate: k % 500 > 20,
+        };
+        let probes = chip.step(&input);
+        let evaluation = Evaluation::new(&design.graph, |name| match name {
+            "adc_cos" => cos.into(),
+            "adc_sin" => sin.into(),
+            "zero" => input.zero.into(),
+            "calibrate" => input.calibrate.into(),
+            name => before.flag(name).map(i128::from).unwrap_or_else(|| {
+                let fraction = register_format(name, &design.structure).fraction;
+                before.value(name).map_or(0, |v| v.raw(fraction).into())
+            }),
+        });
+        for (name, node) in &design.graph.next {
+            let expected = if flags.contains(&name.as_str()) {
+                chip.state.flag(name).map(i128::from)
+            } else {
+                assert!(values.contains(&name.as_str()));
+                let fraction = register_format(name, &design.structure).fraction;
+                assert_eq!(fraction, design.graph.node(*node).format.fraction, "{name}");
+                chip.state.value(name).map(|v| v.raw(fraction).into())
+            };
+            assert_eq!(
+                Some(evaluation.raw(*node)),
+                expected,
+                "register {name} at sample {k}"
+            );
+        }
+        for (name, node) in &design.graph.probes {
+            let fraction = design.graph.node(*node).format.fraction;
+            let expected = probes
+                .flag(name)
+                .map(i128::from)
+                .or(probes.value(name).map(|v| v.raw(fraction).into()));
+            assert_eq!(
+                Some(evaluation.raw(*node)),
+                expected,
+                "probe {name} at sample {k}"
+            );
+        }
+    }
+}
+
+/// The paper counts sixteen products for five parameters.
+#[test]
+fn sixteen_products() {
+    let design = Design::new(&optical()).expect("a shipped design");
+    assert_eq!(design.graph.products(), 16);
+}

@@ -1,0 +1,59 @@
+//! Simulated encoders for the tests of the chip.
+#![allow(dead_code, reason = "each test binary uses its own part")]
+
+use nonius_model::spec::Spec;
+
+pub fn optical() -> Spec {
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../designs/optical.toml");
+    let text = std::fs::read_to_string(file).expect("designs/optical.toml");
+    Spec::from_toml(&text, "optical.toml").expect("a shipped design")
+}
+
+/// Equation (4), as fractions of the ADC's range, and the ADC.
+pub struct Encoder {
+    pub amplitude: [f64; 2],
+    pub offset: [f64; 2],
+    pub beta: f64,
+    pub bits: u32,
+}
+
+impl Encoder {
+    pub fn ideal(spec: &Spec) -> Self {
+        let a = spec.sensor.amplitude / spec.adc.full_scale;
+        Self {
+            amplitude: [a, a],
+            offset: [0.0, 0.0],
+            beta: 0.0,
+            bits: spec.adc.bits,
+        }
+    }
+
+    pub fn miscalibrated(spec: &Spec) -> Self {
+        let a = spec.sensor.amplitude / spec.adc.full_scale;
+        Self {
+            amplitude: [a * 1.08, a * 0.9],
+            offset: [0.08 * a, -0.07 * a],
+            beta: 4f64.to_radians(),
+            bits: spec.adc.bits,
+        }
+    }
+
+    pub fn volts(&self, turns: f64) -> [f64; 2] {
+        let alpha = turns * std::f64::consts::TAU;
+        [
+            self.amplitude[0] * alpha.cos() + self.offset[0],
+            self.amplitude[1] * (alpha - self.beta).sin() + self.offset[1],
+        ]
+    }
+
+    pub fn codes(&self, turns: f64) -> [i64; 2] {
+        let half = (1i64 << (self.bits - 1)) as f64;
+        self.volts(turns)
+            .map(|v| (v * half).round().clamp(-half, half - 1.0) as i64)
+    }
+}
+
+/// Difference of two angles in turns, to the nearest turn.
+pub fn wrapped(x: f64) -> f64 {
+    x - x.round()
+}
