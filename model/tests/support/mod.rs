@@ -3,22 +3,22 @@
 
 use nonius_model::spec::Spec;
 
-pub fn optical() -> Spec {
+pub(crate) fn optical() -> Spec {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../designs/optical.toml");
     let text = std::fs::read_to_string(file).expect("designs/optical.toml");
     Spec::from_toml(&text, "optical.toml").expect("a shipped design")
 }
 
 /// Equation (4), as fractions of the ADC's range, and the ADC.
-pub struct Encoder {
-    pub amplitude: [f64; 2],
-    pub offset: [f64; 2],
-    pub beta: f64,
-    pub bits: u32,
+pub(crate) struct Encoder {
+    pub(crate) amplitude: [f64; 2],
+    pub(crate) offset: [f64; 2],
+    pub(crate) beta: f64,
+    pub(crate) bits: u32,
 }
 
 impl Encoder {
-    pub fn ideal(spec: &Spec) -> Self {
+    pub(crate) fn ideal(spec: &Spec) -> Self {
         let a = spec.sensor.amplitude / spec.adc.full_scale;
         Self {
             amplitude: [a, a],
@@ -28,7 +28,7 @@ impl Encoder {
         }
     }
 
-    pub fn miscalibrated(spec: &Spec) -> Self {
+    pub(crate) fn miscalibrated(spec: &Spec) -> Self {
         let a = spec.sensor.amplitude / spec.adc.full_scale;
         Self {
             amplitude: [a * 1.08, a * 0.9],
@@ -38,7 +38,7 @@ impl Encoder {
         }
     }
 
-    pub fn volts(&self, turns: f64) -> [f64; 2] {
+    pub(crate) fn volts(&self, turns: f64) -> [f64; 2] {
         let alpha = turns * std::f64::consts::TAU;
         [
             self.amplitude[0] * alpha.cos() + self.offset[0],
@@ -46,7 +46,7 @@ impl Encoder {
         ]
     }
 
-    pub fn codes(&self, turns: f64) -> [i64; 2] {
+    pub(crate) fn codes(&self, turns: f64) -> [i64; 2] {
         let half = (1i64 << (self.bits - 1)) as f64;
         self.volts(turns)
             .map(|v| (v * half).round().clamp(-half, half - 1.0) as i64)
@@ -54,6 +54,6 @@ impl Encoder {
 }
 
 /// Difference of two angles in turns, to the nearest turn.
-pub fn wrapped(x: f64) -> f64 {
+pub(crate) fn wrapped(x: f64) -> f64 {
     x - x.round()
 }
