@@ -1,2 +1,73 @@
 //! The command `nonius`.
-fn main() {}
+
+mod build;
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+/// Golden model and generator of self-calibrating sin/cos interpolation chips.
+#[derive(Parser)]
+#[command(version)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Tables, Verilog, testbench and vectors of a design.
+    Build {
+        /// The design.
+        design: PathBuf,
+        /// Folder to write; replaced if nonius wrote it before.
+        #[arg(short)]
+        output: PathBuf,
+    },
+    /// Runs the chip in a folder in Icarus and in Verilator against the model.
+    Verify {
+        /// What `build` wrote.
+        dir: PathBuf,
+    },
+}
+
+fn main() -> ExitCode {
+    let done = match Cli::parse().command {
+        Command::Build { design, output } => build::run(&design, &output).map(|()| true),
+        Command::Verify { dir } => verify(&dir),
+    };
+    match done {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::from(1),
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn verify(dir: &std::path::Path) -> anyhow::Result<bool> {
+    let report = nonius_hdl::verify::verify(
+        dir,
+        &nonius_hdl::verify::Options::default(),
+        &nonius_hdl::progress::silent,
+    )?;
+    for run in &report.runs {
+        println!("{}: {}", run.tool, if run.passed { "PASS" } else { "FAIL" });
+        for stimulus in &run.stimuli {
+            println!(
+                "  {} {}",
+                if stimulus.passed { "PASS" } else { "FAIL" },
+                stimulus.name
+            );
+        }
+        if let Some(failure) = &run.failure {
+            println!("  {failure}");
+        }
+    }
+    for disagreement in &report.disagreements {
+        println!("{disagreement}");
+    }
+    Ok(report.passed)
+}

@@ -33,7 +33,7 @@ impl Chip<Bits> {
         self.step(&Input {
             adc_cos: Bits::from_raw(cos, 0),
             adc_sin: Bits::from_raw(sin, 0),
-            zero,
+            preset: zero,
             calibrate,
         })
     }

@@ -88,14 +88,14 @@ fn graph_and_chip_agree_in_every_bit() {
         let input = Input {
             adc_cos: Bits::from_raw(cos, 0),
             adc_sin: Bits::from_raw(sin, 0),
-            zero: k % 977 == 0,
+            preset: k % 977 == 0,
             calibrate: k % 500 > 20,
         };
         let probes = chip.step(&input);
         let evaluation = Evaluation::new(&design.graph, |name| match name {
             "adc_cos" => cos.into(),
             "adc_sin" => sin.into(),
-            "zero" => input.zero.into(),
+            "preset" => input.preset.into(),
             "calibrate" => input.calibrate.into(),
             name => before.flag(name).map(i128::from).unwrap_or_else(|| {
                 let fraction = register_format(name, &design.structure).fraction;

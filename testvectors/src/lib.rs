@@ -1,1 +1,4 @@
-//! See ARCHITECTURE.md.
+//! Stimuli and the vector files of the testbench.
+
+pub mod stimulus;
+pub mod vectors;

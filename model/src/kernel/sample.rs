@@ -35,7 +35,7 @@ pub fn sample<S: Signal>(
     let lock = lock::update(in_window, state, k, structure);
 
     let rate = loop_filter::rate(e, state, k, structure);
-    let position = position::advance(rate, flip, input.zero, state, k, structure);
+    let position = position::advance(rate, flip, input.preset, state, k, structure);
     let direction = position::direction(rate, state.direction, k);
 
     let counting = state.locked.and(input.calibrate).named("counting");
@@ -48,7 +48,7 @@ pub fn sample<S: Signal>(
     rate.begin(&FLAGS);
     let lost = state
         .lock_lost
-        .and(input.zero.not())
+        .and(input.preset.not())
         .or(state.locked.and(lock.locked.not()));
     let one = structure.method == Method::One;
     let speed = if one {

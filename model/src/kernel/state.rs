@@ -62,7 +62,7 @@ bundle! {
         adc_sin,
     } {
         /// Zero preset: this sample's period becomes number 0 and the lock-lost flag is cleared.
-        zero,
+        preset,
         /// Calibration may update the parameters.
         calibrate,
     }

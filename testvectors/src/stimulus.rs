@@ -1,0 +1,119 @@
+//! Named stimuli: what the testbench plays.
+
+use nonius_model::design::Design;
+use rand::{Rng, SeedableRng, rngs::StdRng};
+
+/// What arrives with one sample.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Sample {
+    /// ADC code of the cosine channel.
+    pub cos: i64,
+    /// ADC code of the sine channel.
+    pub sin: i64,
+    /// Zero preset.
+    pub preset: bool,
+    /// Calibration on.
+    pub calibrate: bool,
+}
+
+/// A named sequence of samples.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Stimulus {
+    /// Name of its vector file.
+    pub name: String,
+    /// The samples.
+    pub samples: Vec<Sample>,
+}
+
+/// All named stimuli, `rows` samples each, from one seed.
+#[must_use]
+pub fn named(design: &Design, rows: usize) -> Vec<Stimulus> {
+    let spec = &design.spec;
+    let half = (1i64 << (spec.adc.bits - 1)) as f64;
+    let middle = if design.structure.offset_binary {
+        1i64 << (spec.adc.bits - 1)
+    } else {
+        0
+    };
+    let a = spec.sensor.amplitude / spec.adc.full_scale;
+    let top = spec.sensor.speed_max_periods_per_s / spec.adc.sample_rate_hz;
+    let m = spec.sensor.amplitude_tolerance / 2.0;
+    let o = spec.sensor.offset_max / 2.0 * a;
+    let beta = spec.sensor.phase_error_max_deg.to_radians() / 2.0;
+    let code = |v: f64| (v * half).round().clamp(-half, half - 1.0) as i64 + middle;
+    let pair = |turns: f64, gain: f64, offset: f64| {
+        let alpha = turns * std::f64::consts::TAU;
+        let cos = a * (1.0 + m) * gain * alpha.cos() + o + offset;
+        let sin = a * (1.0 - m) * (alpha - beta).sin() - o;
+        (code(cos), code(sin))
+    };
+    let n = rows as f64;
+    let motion = |name: &str, f: &dyn Fn(usize) -> (i64, i64)| {
+        let samples = (0..rows).map(|k| {
+            let (cos, sin) = f(k);
+            Sample {
+                cos,
+                sin,
+                preset: k == rows / 3,
+                calibrate: k % 701 > 3,
+            }
+        });
+        Stimulus {
+            name: name.into(),
+            samples: samples.collect(),
+        }
+    };
+    let full = (1i64 << (spec.adc.bits - 1)) - 1 + middle;
+    let low = -(1i64 << (spec.adc.bits - 1)) + middle;
+    let mut random = StdRng::seed_from_u64(1);
+    let noise: Vec<(i64, i64)> = (0..rows)
+        .map(|_| {
+            (
+                random.random_range(low..=full),
+                random.random_range(low..=full),
+            )
+        })
+        .collect();
+    vec![
+        motion("standstill", &|_| pair(0.3, 1.0, 0.0)),
+        motion("forwards", &|k| {
+            pair(0.017 * k as f64 * (top / 0.1), 1.0, 0.0)
+        }),
+        motion("backwards", &|k| {
+            pair(0.4 - 0.013 * k as f64 * (top / 0.1), 1.0, 0.0)
+        }),
+        motion("sweep", &|k| {
+            let t = k as f64 / n;
+            pair(
+                top * n / std::f64::consts::TAU * (1.0 - (std::f64::consts::TAU * t).cos()),
+                1.0,
+                0.0,
+            )
+        }),
+        motion("step", &|k| {
+            let stepped = if k > rows / 2 {
+                (0.9, 0.04 * a)
+            } else {
+                (1.0, 0.0)
+            };
+            pair(0.011 * k as f64 * (top / 0.1), stepped.0, stepped.1)
+        }),
+        motion("corners", &|k| {
+            if k % 7 == 3 {
+                (middle, middle)
+            } else {
+                (
+                    if k & 1 == 0 { full } else { low },
+                    if k & 2 == 0 { full } else { low },
+                )
+            }
+        }),
+        motion("ties", &|k| {
+            (
+                middle + (1 << (k % (spec.adc.bits as usize - 1))),
+                middle - (1 << ((k / 5) % (spec.adc.bits as usize - 1))),
+            )
+        }),
+        motion("random", &|k| noise[k]),
+    ]
+}
