@@ -30,9 +30,10 @@ impl Chip<Bits> {
     /// One sample of ADC codes; `zero` and `calibrate` as the pins.
     #[inline]
     pub fn step_codes(&mut self, cos: i64, sin: i64, zero: bool, calibrate: bool) -> Probes<Bits> {
+        let bits = self.structure.formats.adc.fraction;
         self.step(&Input {
-            adc_cos: Bits::from_raw(cos, 0),
-            adc_sin: Bits::from_raw(sin, 0),
+            adc_cos: Bits::from_raw(cos, bits),
+            adc_sin: Bits::from_raw(sin, bits),
             preset: zero,
             calibrate,
         })

@@ -86,8 +86,8 @@ fn graph_and_chip_agree_in_every_bit() {
         let [cos, sin] = encoder.codes(0.0173 * f64::from(k));
         let before = chip.state;
         let input = Input {
-            adc_cos: Bits::from_raw(cos, 0),
-            adc_sin: Bits::from_raw(sin, 0),
+            adc_cos: Bits::from_raw(cos, spec.adc.bits),
+            adc_sin: Bits::from_raw(sin, spec.adc.bits),
             preset: k % 977 == 0,
             calibrate: k % 500 > 20,
         };

@@ -76,9 +76,9 @@ pub(super) fn structure(
     let fp = words.phase_bits;
     let formats = Formats {
         adc: if offset_binary {
-            Format::unsigned(adc_bits, 0)
+            Format::unsigned(adc_bits, adc_bits)
         } else {
-            Format::signed(adc_bits, 0)
+            Format::signed(adc_bits, adc_bits)
         },
         y,
         signal: Quantiser::saturating(Format::signed(width, f)),
@@ -176,7 +176,7 @@ pub(super) fn constants(
         + s.phase_error_max_deg.to_radians()
         + 5.0 * s.noise_rms;
     Coefficients {
-        adc_middle: whole(1 << (spec.adc.bits - 1)),
+        adc_middle: Constant::rounded(0.5, 1),
         loop_a: Constant::normalised(tracking.a, width, 40),
         loop_ab: Constant::normalised(tracking.ab, width, 40),
         loop_leak: Constant::normalised(1.0 - tracking.pole, width, 40),

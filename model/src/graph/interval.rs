@@ -186,6 +186,22 @@ pub(super) fn reach(op: &Op, nodes: &[Entry], roms: &[Rom]) -> Result<Reach, Ran
     in_container(op, nodes, reached)
 }
 
+/// Refuses an input or register that the container cannot hold.
+pub(super) fn input_fits(name: &str, format: Format) -> Result<(), RangeError> {
+    let range = (format.min_raw(), format.max_raw());
+    let reached = Reach {
+        format,
+        range,
+        kind: Kind::Value,
+    };
+    in_container(&Op::Input, &[], reached)
+        .map(|_| ())
+        .map_err(|e| RangeError {
+            signal: name.into(),
+            ..e
+        })
+}
+
 /// Refuses what the container of the bit-true reading cannot hold.
 fn in_container(op: &Op, nodes: &[Entry], reached: Reach) -> Result<Reach, RangeError> {
     let scale = if reached.kind == Kind::Wide { 2 } else { 1 };

@@ -4,7 +4,7 @@ use std::cell::RefCell;
 use std::collections::HashMap;
 use std::ops::{Add, Mul, Neg, Sub};
 
-use super::interval::{RangeError, reach};
+use super::interval::{RangeError, input_fits, reach};
 use super::{Entry, Graph, Kind, NodeId, Op};
 use crate::format::{Format, Quantiser};
 use crate::rom::Rom;
@@ -114,6 +114,9 @@ impl Recorder {
         };
         let id = inner.push(entry);
         inner.graph.inputs.push((name.into(), id));
+        if let Err(error) = input_fits(name, format) {
+            inner.error.get_or_insert(error);
+        }
         Node { recorder: self, id }
     }
 

@@ -21,7 +21,7 @@ static CORRECT: Formula = Formula {
     source: "paper section 5.3",
 };
 
-/// An ADC code as a signal: `y` has the nominal amplitude between ½ and 1.
+/// An ADC code, given as a fraction of the ADC's range, as a signal: `y` has the nominal amplitude between ½ and 1.
 pub fn normalise<S: Signal>(code: S, k: &Coefficients<S>, structure: &Structure) -> S {
     code.begin(&NORMALISE);
     let centred = if structure.offset_binary {
@@ -29,7 +29,7 @@ pub fn normalise<S: Signal>(code: S, k: &Coefficients<S>, structure: &Structure)
     } else {
         code
     };
-    centred.scale(-(structure.formats.y.fraction as i32))
+    centred.scale(structure.formats.adc.fraction as i32 - structure.formats.y.fraction as i32)
 }
 
 /// θ1 … θ5 as they are applied. The offsets θ2 and θ4 are not multiplied and keep every bit.

@@ -61,7 +61,7 @@ pub struct Structure {
 /// Formats of the signals; [`Format`] for registers and inputs, [`Quantiser`] for results.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Formats {
-    /// ADC code as it arrives.
+    /// ADC code as it arrives; the unit is the ADC's range, so that every width fits the container.
     pub adc: Format,
     /// Normalised ADC signals `y_c`, `y_s`.
     pub y: Format,

@@ -56,9 +56,9 @@ bundle! {
 bundle! {
     /// What arrives with a sample.
     Input {
-        /// ADC code of the cosine channel.
+        /// ADC code of the cosine channel, as a fraction of the ADC's range.
         adc_cos,
-        /// ADC code of the sine channel.
+        /// ADC code of the sine channel, as a fraction of the ADC's range.
         adc_sin,
     } {
         /// Zero preset: this sample's period becomes number 0 and the lock-lost flag is cleared.
