@@ -1,0 +1,130 @@
+//! Designs that cannot work are refused with the field and the way out; no text makes the reader panic.
+
+mod support;
+
+use nonius_model::design::{Design, DesignError};
+use nonius_model::spec::Spec;
+use proptest::prelude::*;
+use support::{Encoder, optical, wrapped};
+
+fn text() -> String {
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../designs/optical.toml");
+    std::fs::read_to_string(file).expect("designs/optical.toml")
+}
+
+#[test]
+fn an_unknown_key_is_named_with_its_line_and_the_nearest_known_one() {
+    let wrong = text().replace("bandwidth_hz", "bandwith_hz");
+    let message = Spec::from_toml(&wrong, "d.toml")
+        .expect_err("a misspelt key")
+        .to_string();
+    assert!(
+        message.contains("d.toml:") && message.contains("loop.bandwith_hz"),
+        "{message}"
+    );
+    assert!(
+        message.contains("did you mean `bandwidth_hz`?"),
+        "{message}"
+    );
+}
+
+#[test]
+fn what_cannot_work_names_the_field() {
+    type Change = fn(&mut Spec);
+    let cases: [(&str, Change); 8] = [
+        ("loop.type", |s| s.tracking.method = 2),
+        ("loop.method", |s| s.tracking.method = 4),
+        ("loop.bandwidth_hz", |s| s.tracking.bandwidth_hz = 4e5),
+        ("adc.sample_rate_hz", |s| {
+            s.sensor.speed_max_periods_per_s = 4e5
+        }),
+        ("adc.bits", |s| s.adc.bits = 24),
+        ("accuracy.rms_periods", |s| s.accuracy.rms_periods = 1e-6),
+        ("formats.phase_bits", |s| s.formats.phase_bits = Some(60)),
+        ("sensor.amplitude", |s| s.sensor.amplitude = f64::NAN),
+    ];
+    for (expected, change) in cases {
+        let mut spec = optical();
+        change(&mut spec);
+        match Design::new(&spec) {
+            Err(DesignError::Field { field, .. }) => assert_eq!(field, expected),
+            other => panic!("{expected}: {:?}", other.err()),
+        }
+    }
+}
+
+/// Asking for more accuracy takes longer words; each chosen word is the shortest that keeps the budget.
+#[test]
+fn words_follow_from_the_accuracy() {
+    let mut spec = optical();
+    spec.adc.bits = 16;
+    spec.sensor.noise_rms = 0.0;
+    let wide = Design::new(&spec).expect("a design that works");
+    spec.accuracy.rms_periods /= 2.0;
+    let wider = Design::new(&spec).expect("a design that works");
+    assert!(wider.words.signal_fraction > wide.words.signal_fraction);
+
+    assert!(wide.budget.arithmetic() <= wide.budget.allowed);
+    spec.accuracy.rms_periods *= 2.0;
+    let words = wide.words;
+    type Shorten = fn(&mut Spec);
+    let fix = |spec: &mut Spec| {
+        spec.formats.signal_fraction = Some(words.signal_fraction);
+        spec.formats.phase_bits = Some(words.phase_bits);
+        spec.formats.sine_phase_bits = Some(words.sine_phase_bits);
+        spec.formats.sine_rows_log2 = Some(words.sine_rows_log2);
+        spec.formats.accumulator_fraction = Some(words.accumulator_fraction);
+    };
+    let shorter: [Shorten; 2] = [
+        |s| s.formats.signal_fraction = s.formats.signal_fraction.map(|n| n - 1),
+        |s| s.formats.accumulator_fraction = s.formats.accumulator_fraction.map(|n| n - 1),
+    ];
+    for shorten in shorter {
+        let mut spec = spec.clone();
+        fix(&mut spec);
+        shorten(&mut spec);
+        let design = Design::new(&spec).expect("an override may miss the budget");
+        assert!(
+            design.budget.arithmetic() > design.budget.allowed,
+            "{:?}",
+            design.words
+        );
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(300))]
+
+    #[test]
+    fn no_text_makes_the_reader_panic(garbage in ".{0,200}") {
+        let _ = Spec::from_toml(&garbage, "d.toml");
+    }
+
+    /// Any number in any field is either a design or a refusal.
+    #[test]
+    fn no_number_makes_the_design_panic(
+        line in 0usize..60,
+        value in prop_oneof![
+            Just("0".to_owned()), Just("-1".to_owned()), Just("1e308".to_owned()), Just("nan".to_owned()),
+            Just("inf".to_owned()), Just("4294967295".to_owned()), (-40i32..40).prop_map(|n| n.to_string()),
+            (-12.0..12.0f64).prop_map(|x| format!("{:e}", 10f64.powf(x))),
+        ],
+    ) {
+        let changed: Vec<String> = text().lines().enumerate().map(|(n, l)| match l.split_once('=') {
+            Some((key, _)) if n == line => format!("{key}= {value}"),
+            _ => l.to_owned(),
+        }).collect();
+        if let Ok(spec) = Spec::from_toml(&changed.join("\n"), "d.toml") {
+            let _ = Design::new(&spec);
+        }
+    }
+}
+
+/// The test's own encoder: an ideal one has no offset, angles wrap to half a turn.
+#[test]
+fn the_simulated_encoder_is_what_it_says() {
+    let spec = optical();
+    let [cos, sin] = Encoder::ideal(&spec).volts(0.25);
+    assert!(cos.abs() < 1e-12 && (sin - 0.8).abs() < 1e-12);
+    assert!((wrapped(0.75) + 0.25).abs() < 1e-12);
+}
