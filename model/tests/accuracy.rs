@@ -1,0 +1,64 @@
+//! What fixed-point arithmetic adds to the angle error, beside what the ADC does.
+
+mod support;
+
+use nonius_model::chip::Chip;
+use nonius_model::design::Design;
+use nonius_model::kernel::Input;
+use support::{Encoder, optical, wrapped};
+
+/// After convergence, on a slow sweep with the same codes, the bit-true chip differs from the unrounded one by at
+/// most a tenth of what quantising the input changes in the unrounded one.
+#[test]
+fn arithmetic_adds_at_most_a_tenth_of_the_adc() {
+    let spec = optical();
+    let design = Design::new(&spec).expect("a shipped design");
+    let encoder = Encoder::miscalibrated(&spec);
+    let half = f64::from(1 << (spec.adc.bits - 1));
+    let mut bits = Chip::bit_true(&design);
+    let mut real = Chip::unrounded(&design);
+    let mut analogue = Chip::unrounded(&design);
+    let (converge, sweep) = (60_000, 100_000);
+    let mut at: f64 = 0.1;
+    let (mut arithmetic, mut adc, mut largest) = (0.0, 0.0, 0.0f64);
+    for k in 0..converge + sweep {
+        let measuring = k >= converge;
+        // The parameters stand still while it is measured: gear decisions and updates are the same for all three.
+        let calibrate = !measuring;
+        at += if measuring { 2.1e-6 } else { 0.00713 };
+        if measuring && k == converge {
+            let theta = bits.state;
+            for chip in [&mut real, &mut analogue] {
+                chip.state.theta_1_deviation = theta.theta_1_deviation.to_f64();
+                chip.state.theta_2_deviation = theta.theta_2_deviation.to_f64();
+                chip.state.theta_3_deviation = theta.theta_3_deviation.to_f64();
+                chip.state.theta_4_deviation = theta.theta_4_deviation.to_f64();
+                chip.state.theta_5_deviation = theta.theta_5_deviation.to_f64();
+            }
+        }
+        let [cos, sin] = encoder.codes(at);
+        let input = |adc_cos: f64, adc_sin: f64| Input {
+            adc_cos,
+            adc_sin,
+            preset: false,
+            calibrate,
+        };
+        bits.step_codes(cos, sin, false, calibrate);
+        real.step(&input(cos as f64 / half / 2.0, sin as f64 / half / 2.0));
+        let [v_cos, v_sin] = encoder.volts(at);
+        analogue.step(&input(v_cos / 2.0, v_sin / 2.0));
+        if k >= converge + 5000 {
+            let difference = wrapped(bits.position() - real.position());
+            arithmetic += difference * difference;
+            largest = largest.max(difference.abs());
+            adc += wrapped(real.position() - analogue.position()).powi(2);
+        }
+    }
+    let n = f64::from(sweep - 5000);
+    let (arithmetic, adc) = ((arithmetic / n).sqrt(), (adc / n).sqrt());
+    println!("arithmetic {arithmetic:.3e}, largest {largest:.3e}, ADC {adc:.3e} periods rms");
+    assert!(
+        arithmetic <= 0.1 * adc,
+        "arithmetic {arithmetic:e}, ADC {adc:e} periods rms"
+    );
+}
