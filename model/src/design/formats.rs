@@ -192,7 +192,11 @@ pub(super) fn constants(
         theta_1_nominal: nominal,
         theta_3_nominal: nominal,
         quarter_turn: corrected(0.25, 2.0 * half_bit, p),
-        half_segment: corrected(half_segment, half_bit, p + 1),
+        half_bit: Constant {
+            ideal: 0.0,
+            ..Constant::rounded(half_bit, p + 1)
+        },
+        half_segment: Constant::rounded(half_segment, words.sine_rows_log2 + 3),
         // Limits of few bits make short comparators.
         lock_error: Constant::rounded((0.75 * worst).clamp(0.35, 0.6), 4),
         lock_residual: Constant::rounded((1.25 * worst).clamp(0.4, 0.9), 4),

@@ -93,7 +93,9 @@ coefficients! {
     theta_3_nominal,
     /// A quarter turn, less one bit of the sine phase.
     quarter_turn,
-    /// Half a sine table segment, less half a bit of the sine phase.
+    /// Half a bit of the sine phase: what was cut off, on average.
+    half_bit,
+    /// Half a sine table segment.
     half_segment,
     /// Largest |e| in lock, radians.
     lock_error,

@@ -37,8 +37,8 @@ pub fn sine<S: Signal>(alpha_hat: S, k: &Coefficients<S>, structure: &Structure)
 
     let quarter = |address: S, name: [&'static str; 4]| {
         let rom = &structure.sine;
-        let inside =
-            (address.quantise(&modulo(rom.index_fraction)) - k.half_segment).named(name[0]);
+        let inside = (address.quantise(&modulo(rom.index_fraction)) + k.half_bit - k.half_segment)
+            .named(name[0]);
         let value = S::lookup(rom, VALUE, address).named(name[1]);
         let slope = S::lookup(rom, SLOPE, address).named(name[2]);
         // The table's value carries the half bit of rounding.
