@@ -143,22 +143,37 @@ fn convert(
 ) -> (Vec<String>, String) {
     let mut lines = vec![];
     let mut term = term.clone();
-    if let Some(half) = half(to, term.fraction) {
+    if let (Some(half), Source::Signal(source, base)) = (half(to, term.fraction), &term.source) {
+        // Half a bit more and cut off is cut off and one more where the bit below is set.
+        let drop = half + 1;
         let offset = 1i128 << half;
-        let range = (term.range.0 + offset, term.range.1 + offset);
+        let range = (
+            (term.range.0 + offset) >> drop,
+            (term.range.1 + offset) >> drop,
+        );
         let bits = covering(range.0, range.1);
+        let below = w.slice(&term, half, half);
+        let whole = Term {
+            source: Source::Signal(source.clone(), base + drop),
+            width: term.width - drop,
+            fraction: term.fraction - drop,
+            range: (term.range.0 >> drop, term.range.1 >> drop),
+        };
         let name = format!("{name}_rounded");
         w.declare(&name, bits);
+        let zeros = match bits {
+            1 => String::new(),
+            n => format!("{}'b0, ", n - 1),
+        };
         lines.push(format!(
-            "wire signed [{}:0] {name} = {} + {};",
+            "wire signed [{}:0] {name} = {} + {{{zeros}{below}}};",
             bits - 1,
-            w.fit(&term, term.fraction, bits, None),
-            literal(offset, bits)
+            w.fit(&whole, whole.fraction, bits, None)
         ));
         term = Term {
             source: Source::Signal(name, 0),
             width: bits,
-            fraction: term.fraction,
+            fraction: whole.fraction,
             range,
         };
     }

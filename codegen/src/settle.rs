@@ -75,7 +75,8 @@ pub(crate) fn settle(graph: &Graph, schedule: &mut Schedule) {
                 })
                 .map(|&o| width(graph, o))
                 .sum();
-            if saved == 0 || saved < cost {
+            // A bit or two are not worth a longer chain.
+            if saved <= cost + 2 {
                 continue;
             }
             schedule.ready[id.index()] = to;

@@ -108,7 +108,7 @@ fn columns(design: &Design) -> Vec<(String, NodeId, u32)> {
 }
 
 /// Registers and probes that have a port of their own.
-fn has_port(name: &str) -> bool {
+pub(crate) fn has_port(name: &str) -> bool {
     let parameter = name
         .strip_prefix("theta_")
         .is_some_and(|n| n.chars().all(|c| c.is_ascii_digit()));

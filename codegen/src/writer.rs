@@ -10,7 +10,7 @@ use nonius_model::graph::{Graph, Kind, NodeId, Op};
 
 use crate::names::names;
 use crate::netlist::{last_use, width};
-use crate::schedule::Schedule;
+use crate::schedule::{SAMPLED, Schedule};
 
 /// Writes expressions of one chip.
 pub(crate) struct Writer<'a> {
@@ -21,6 +21,8 @@ pub(crate) struct Writer<'a> {
     probed: Vec<bool>,
     uses: Vec<usize>,
     live: Vec<bool>,
+    /// What is made of the held inputs alone stands from step 1 until the next sample.
+    stable: Vec<bool>,
     widths: RefCell<BTreeMap<String, u32>>,
     read: RefCell<BTreeMap<String, u128>>,
     declared: RefCell<Vec<(String, u32)>>,
@@ -69,6 +71,18 @@ impl<'a> Writer<'a> {
             probed[id.index()] = true;
         }
         let names = names(graph);
+        let mut stable = vec![false; graph.nodes.len()];
+        for id in graph.ids() {
+            let op = graph.node(id).op;
+            stable[id.index()] = match op {
+                Op::Input => SAMPLED.contains(&names[id.index()].as_str()),
+                Op::Constant(_) => true,
+                Op::Mul(..) | Op::Lookup { .. } | Op::QuantiseGeared { .. } => false,
+                // A port is a register.
+                _ if crate::templates::has_port(&names[id.index()]) => false,
+                _ => op.operands().iter().all(|o| stable[o.index()]),
+            };
+        }
         let mut widths = BTreeMap::new();
         for id in graph.ids() {
             let (name, bits) = (&names[id.index()], width(graph, id));
@@ -84,6 +98,7 @@ impl<'a> Writer<'a> {
             probed,
             uses,
             live,
+            stable,
             widths: RefCell::new(widths),
             read: RefCell::default(),
             declared: RefCell::default(),
@@ -99,6 +114,7 @@ impl<'a> Writer<'a> {
     pub(crate) fn kept(&self, id: NodeId) -> bool {
         let leaf = matches!(self.graph.node(id).op, Op::Input | Op::Constant(_));
         !leaf
+            && !self.stable[id.index()]
             && (self.last[id.index()] > self.schedule.ready[id.index()] || self.probed[id.index()])
     }
 
@@ -139,11 +155,11 @@ impl<'a> Writer<'a> {
         let node = self.graph.node(id);
         let source = match node.op {
             Op::Constant(raw) => Source::Constant(raw.into()),
-            Op::Input if crate::schedule::SAMPLED.contains(&self.name(id)) => {
+            Op::Input if SAMPLED.contains(&self.name(id)) => {
                 Source::Signal(format!("{}_held", self.name(id)), 0)
             }
             Op::Input => Source::Signal(self.name(id).to_owned(), 0),
-            _ if self.schedule.ready[id.index()] != cycle => {
+            _ if self.schedule.ready[id.index()] != cycle && !self.stable[id.index()] => {
                 Source::Signal(self.name(id).to_owned(), 0)
             }
             _ if self.inline(id) => Source::Condition(self.condition(id)),

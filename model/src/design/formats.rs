@@ -43,6 +43,11 @@ fn level_bits(tracking: &Loop) -> u32 {
     (power_of(4.0 / tracking.omega).clamp(5, 12)) as u32
 }
 
+/// Format of a counter from 0 to `last`.
+fn counting_to(last: u32) -> Format {
+    Format::unsigned((32 - last.leading_zeros()).max(1), 0)
+}
+
 fn bits(n: i32) -> u32 {
     u32::try_from(n).unwrap_or(0)
 }
@@ -95,8 +100,8 @@ pub(super) fn structure(
         step: accumulator(r.deviation.into_iter().max().unwrap_or(0) + 1),
         level: Quantiser::saturating(Format::unsigned(level_bits(tracking), 0)),
         loop_gear: Format::unsigned(2, 0),
-        gamma_gear: Format::unsigned(4, 0),
-        gear_periods: Format::unsigned(8, 0),
+        gamma_gear: counting_to(spec.calibration.gamma_last - spec.calibration.gamma_first),
+        gear_periods: counting_to(spec.calibration.gear_periods.saturating_sub(1)),
     };
     Ok(Structure {
         method: match spec.tracking.method {
