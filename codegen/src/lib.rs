@@ -12,6 +12,7 @@ mod quantise;
 pub mod schedule;
 mod settle;
 mod shifter;
+mod tables;
 mod templates;
 mod units;
 mod writer;

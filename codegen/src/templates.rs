@@ -358,13 +358,7 @@ pub fn generate(
         ),
         ("tb/chip_tb.v".into(), testbench.render()? + "\n"),
     ];
-    for rom in &graph.roms {
-        let digits = rom.row_width().div_ceil(4) as usize;
-        let rows: String = (0..rom.rows())
-            .map(|row| format!("{:0digits$x}\n", rom.word(row)))
-            .collect();
-        files.push((format!("coefficients/{}.mem", rom.name), rows));
-    }
+    files.extend(crate::tables::files(name, hash, graph));
     Ok(Files {
         files,
         clocks,
