@@ -153,10 +153,13 @@ fn print(found: &Calibration) {
     if let Some(correlations) = &found.correlations {
         println!("[[Correlations]] (beyond 0.1)");
         let mut pairs = vec![];
-        for i in 0..5 {
-            for j in 0..i {
-                pairs.push((correlations[i][j], j, i));
-            }
+        for (i, row) in correlations.iter().enumerate() {
+            pairs.extend(
+                row.iter()
+                    .take(i)
+                    .enumerate()
+                    .map(|(j, value)| (*value, j, i)),
+            );
         }
         pairs.retain(|p| p.0.is_finite() && p.0.abs() > 0.1);
         pairs.sort_by(|a, b| b.0.abs().total_cmp(&a.0.abs()));
