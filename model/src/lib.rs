@@ -12,6 +12,7 @@ pub mod graph;
 pub mod kernel;
 mod real;
 mod record;
+pub mod reference;
 pub mod rom;
 pub mod signal;
 pub mod spec;

@@ -1,0 +1,309 @@
+//! The paper's complete system: correction, loop and on-line calibration.
+//!
+//! Each sample k: Θ_k corrects y_k, the phase detector compares it with α̂_k, the loop goes on to α̂_{k+1}, the search to
+//! Θ_{k+1}. The estimate returned for sample k is α̂_k, made from samples before it.
+
+use std::f64::consts::TAU;
+
+use super::completed::{CompletedConfig, Completion};
+use super::gate::{Gate, GateState, Window};
+use super::gradient::{Form, Observation, ResidualGradient};
+use super::loops::{Loop, LoopConfig};
+use super::start::{Acquisition, Start};
+use super::sum_of_squares::{Smoothing, SumOfSquares};
+use super::{Parameters, ReferenceError, Theta, require};
+
+/// Which gradient moves Θ.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Search {
+    /// None: Θ stays as it is.
+    None,
+    /// Section 5.5: δΘ = −γ (∇r)ᵀ r.
+    Residual(Form),
+    /// Sections 5.2 to 5.4: δΘ = −γ ∇J.
+    SumOfSquares(Smoothing),
+    /// Final form, and one scalar sensitivity for what it cannot see.
+    Completed(CompletedConfig),
+}
+
+/// γ, one for each parameter, and how it shrinks. The paper has one γ that stays.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gamma {
+    /// The first.
+    pub first: Theta,
+    /// How often it is halved.
+    pub halvings: u32,
+    /// After so many periods of net travel in one direction, each time.
+    pub periods: f64,
+}
+
+impl Gamma {
+    /// The paper's: one for all parameters, for ever.
+    #[must_use]
+    pub fn constant(gamma: f64) -> Self {
+        Self {
+            first: Theta::repeat(gamma),
+            halvings: 0,
+            periods: f64::INFINITY,
+        }
+    }
+}
+
+/// What the reference is made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Config {
+    /// Parameter set.
+    pub parameters: Parameters,
+    /// Θ at the start.
+    pub theta: Theta,
+    /// The loop.
+    pub tracking: LoopConfig,
+    /// The search.
+    pub search: Search,
+    /// γ.
+    pub gamma: Gamma,
+    /// When Θ may move.
+    pub gate: Gate,
+    /// How far each parameter may go from its start; infinite in the paper.
+    pub bound: Theta,
+    /// How α̂ starts.
+    pub start: Start,
+}
+
+impl Config {
+    /// The paper as printed: final form, one γ for ever, an update each sample, no bounds, α̂ = 0 at the start.
+    #[must_use]
+    pub fn paper(parameters: Parameters, tracking: LoopConfig, gamma: f64) -> Self {
+        Self {
+            parameters,
+            theta: parameters.nominal(1.0),
+            tracking,
+            search: Search::Residual(Form::Final),
+            gamma: Gamma::constant(gamma),
+            gate: Gate::EverySample,
+            bound: Theta::repeat(f64::INFINITY),
+            start: Start::At {
+                alpha_hat: 0.0,
+                speed: 0.0,
+                e_1: 0.0,
+            },
+        }
+    }
+}
+
+/// What is known at a sample.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Estimate {
+    /// α̂_k, unwrapped, radians.
+    pub alpha_hat: f64,
+    /// The same in whole turns, and the phase −π … π that remains: full resolution after any distance.
+    pub turns: i64,
+    /// See [`turns`](Self::turns).
+    pub phase: f64,
+    /// Speed, radians per second.
+    pub speed: f64,
+    /// Θ_k, with which this sample was corrected.
+    pub theta: Theta,
+    /// Phase error, radians.
+    pub e: f64,
+    /// Radial residual.
+    pub rho: f64,
+    /// The loop follows.
+    pub locked: bool,
+    /// This sample was allowed to move Θ.
+    pub updated: bool,
+}
+
+impl Estimate {
+    /// Position in scale periods.
+    #[must_use]
+    pub fn periods(&self) -> f64 {
+        self.turns as f64 + self.phase / TAU
+    }
+}
+
+/// State of the search.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Searching {
+    None,
+    Residual(ResidualGradient),
+    SumOfSquares(SumOfSquares),
+    Completed(Completion),
+}
+
+/// The reference: configuration and state.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reference {
+    config: Config,
+    theta: Theta,
+    tracking: Loop,
+    searching: Searching,
+    gate: GateState,
+    acquisition: Option<Acquisition>,
+    /// Samples out of the window, one after the other.
+    astray: u32,
+    /// Halvings of γ so far, and α̂ where the present one began.
+    geared: (u32, f64),
+}
+
+impl Reference {
+    /// Before the first sample.
+    ///
+    /// # Errors
+    /// A search that this parameter set cannot have, or a step that cannot converge.
+    pub fn new(config: Config) -> Result<Self, ReferenceError> {
+        for &gamma in config.gamma.first.iter() {
+            let reason = "a step is positive and finite";
+            require(gamma >= 0.0 && gamma.is_finite(), "gamma", gamma, reason)?;
+        }
+        let filter = config.tracking.filter;
+        let searching = match config.search {
+            Search::None => Searching::None,
+            Search::Residual(form) => Searching::Residual(ResidualGradient::new(form, filter)),
+            Search::SumOfSquares(smoothing) => {
+                if let Smoothing::Forgetting { lambda } = smoothing {
+                    let reason = "the gradient is forgotten only for 0 <= lambda < 1";
+                    require((0.0..1.0).contains(&lambda), "lambda", lambda, reason)?;
+                }
+                Searching::SumOfSquares(SumOfSquares::new(smoothing))
+            }
+            Search::Completed(completed) => {
+                Searching::Completed(Completion::new(completed, config.parameters, filter)?)
+            }
+        };
+        let (tracking, acquisition) = config.start.begin(config.tracking)?;
+        Ok(Self {
+            config,
+            theta: config.theta,
+            tracking,
+            searching,
+            gate: GateState::new(config.gate),
+            acquisition,
+            astray: 0,
+            geared: (0, tracking.alpha_hat()),
+        })
+    }
+
+    /// One sample, Θ moved as the configured gate and γ say. The signals must be finite.
+    pub fn step(&mut self, y_c: f64, y_s: f64) -> Estimate {
+        if let Some(acquisition) = &mut self.acquisition {
+            let corrected = self.config.parameters.corrected(&self.theta, [y_c, y_s]);
+            let (seen, found) = acquisition.step(corrected, self.config.tracking);
+            if let Some(tracking) = found {
+                self.tracking = tracking;
+                self.geared.1 = tracking.alpha_hat();
+                self.acquisition = None;
+            }
+            return Estimate {
+                theta: self.theta,
+                ..seen
+            };
+        }
+        let seen = self.observe([y_c, y_s]);
+        let open = self.gate.step(seen.e, seen.rho, self.tracking.alpha_hat());
+        let locked = self.gate.locked();
+        let gamma = self.gamma();
+        let estimate = self.go_on([y_c, y_s], &seen, open.then_some(&gamma));
+        self.watch(&seen);
+        Estimate { locked, ..estimate }
+    }
+
+    /// One sample with the decision made outside: Θ moves by this γ, or not at all.
+    pub fn step_with(&mut self, y_c: f64, y_s: f64, gamma: Option<&Theta>) -> Estimate {
+        let seen = self.observe([y_c, y_s]);
+        self.go_on([y_c, y_s], &seen, gamma)
+    }
+
+    /// Θ as it stands for the next sample.
+    #[must_use]
+    pub fn theta(&self) -> &Theta {
+        &self.theta
+    }
+
+    /// The loop as it stands for the next sample.
+    #[must_use]
+    pub fn tracking(&self) -> &Loop {
+        &self.tracking
+    }
+
+    fn observe(&self, y: [f64; 2]) -> Observation {
+        let (_, phase) = self.tracking.turns_and_phase();
+        Observation::new(self.config.parameters, &self.theta, y, phase)
+    }
+
+    fn go_on(&mut self, y: [f64; 2], seen: &Observation, gamma: Option<&Theta>) -> Estimate {
+        let (turns, phase) = self.tracking.turns_and_phase();
+        let theta = self.theta;
+        let estimate = Estimate {
+            alpha_hat: self.tracking.alpha_hat(),
+            turns,
+            phase,
+            speed: self.tracking.speed(),
+            theta,
+            e: seen.e,
+            rho: seen.rho,
+            locked: true,
+            updated: gamma.is_some(),
+        };
+        let along = |gradient: Theta| gamma.map_or(Theta::zeros(), |g| -gradient.component_mul(g));
+        let parameters = self.config.parameters;
+        let change = match &mut self.searching {
+            Searching::None => Theta::zeros(),
+            Searching::Residual(gradient) => along(gradient.step(seen)),
+            // A closed gate takes no sample into the sum.
+            Searching::SumOfSquares(_) if gamma.is_none() => Theta::zeros(),
+            Searching::SumOfSquares(sum) => along(sum.step(parameters, &theta, y)),
+            Searching::Completed(completion) => {
+                let speed = estimate.speed * self.config.tracking.ts;
+                let missing = completion.step(parameters, &theta, seen, speed, gamma.is_some());
+                along(seen.final_form()) + missing
+            }
+        };
+        let Config {
+            bound,
+            theta: start,
+            ..
+        } = &self.config;
+        self.theta = Theta::from_fn(|i, _| {
+            start[i] + (theta[i] + change[i] - start[i]).clamp(-bound[i], bound[i])
+        });
+        self.tracking.advance(seen.e);
+        estimate
+    }
+
+    /// γ after its halvings.
+    fn gamma(&mut self) -> Theta {
+        let Gamma {
+            first,
+            halvings,
+            periods,
+        } = self.config.gamma;
+        let alpha_hat = self.tracking.alpha_hat();
+        let (done, since) = self.geared;
+        if !self.gate.locked() {
+            self.geared.1 = alpha_hat;
+        } else if done < halvings && (alpha_hat - since).abs() >= periods * TAU {
+            self.geared = (done + 1, alpha_hat);
+        }
+        first * 0.5f64.powi(self.geared.0 as i32)
+    }
+
+    /// Starts again from the arctangent where the loop has been astray for as long as lock takes.
+    fn watch(&mut self, seen: &Observation) {
+        let (Gate::Locked(Window { e, rho, samples })
+        | Gate::Travelled(Window { e, rho, samples })) = self.config.gate
+        else {
+            return;
+        };
+        let good = seen.e.abs() < e && seen.rho.abs() < rho;
+        self.astray = if good {
+            0
+        } else {
+            self.astray.saturating_add(1)
+        };
+        if let (true, Start::Arctangent { samples }) = (self.astray > samples, self.config.start) {
+            self.acquisition = Some(Acquisition::after(samples, &self.tracking));
+            self.astray = 0;
+        }
+    }
+}
