@@ -1,4 +1,5 @@
 //! Section 4: what the paper says of its three loops.
+#![cfg_attr(test, allow(clippy::unwrap_used))]
 
 mod reference_support;
 

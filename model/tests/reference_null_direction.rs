@@ -1,4 +1,5 @@
 //! Section 5.4 is singular: one direction of the eight cubic parameters changes no radius, but turns the angle.
+#![cfg_attr(test, allow(clippy::unwrap_used))]
 
 mod reference_support;
 

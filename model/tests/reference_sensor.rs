@@ -1,4 +1,5 @@
 //! Equations (1), (4), (5) and the parameters of sections 5.2 to 5.4.
+#![cfg_attr(test, allow(clippy::unwrap_used))]
 
 mod reference_support;
 
