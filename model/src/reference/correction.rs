@@ -3,7 +3,7 @@
 //! The corrected pair is M Θ in the paper's sets, which are linear in Θ. The Chebyshev sets are not: there M is the
 //! derivative of the corrected pair with respect to Θ, which is what every gradient needs it for.
 
-use nalgebra::{Matrix2xX, SMatrix, SVector};
+use nalgebra::{SMatrix, SVector};
 
 /// Parameters θ1 … θ9; those that a set does not have are zero.
 pub type Theta = SVector<f64, 9>;
@@ -175,12 +175,6 @@ impl Parameters {
             }
         }
         Some(v)
-    }
-
-    /// M of a whole record, one sample after the other: only the columns that the set has.
-    #[must_use]
-    pub fn columns(self, m: &Jacobian) -> Matrix2xX<f64> {
-        Matrix2xX::from_fn(self.count(), |row, column| m[(row, column)])
     }
 }
 
