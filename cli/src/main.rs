@@ -1,6 +1,12 @@
 //! The command `nonius`.
 
 mod build;
+mod design_file;
+mod new;
+mod paper;
+mod recording_args;
+mod simulate;
+mod target;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -17,6 +23,8 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
+    /// A commented design, fitted to a recording if one is given.
+    New(Box<new::New>),
     /// Tables, Verilog, testbench and vectors of a design.
     Build {
         /// The design.
@@ -25,6 +33,8 @@ enum Command {
         #[arg(short)]
         output: PathBuf,
     },
+    /// The bit-true chip, or the paper in floating point, over a recording.
+    Simulate(Box<simulate::Simulate>),
     /// Runs the chip in a folder in Icarus and in Verilator against the model.
     Verify {
         /// What `build` wrote.
@@ -35,6 +45,8 @@ enum Command {
 fn main() -> ExitCode {
     let done = match Cli::parse().command {
         Command::Build { design, output } => build::run(&design, &output).map(|()| true),
+        Command::New(args) => new::run(&args).map(|()| true),
+        Command::Simulate(args) => simulate::run(&args).map(|()| true),
         Command::Verify { dir } => verify(&dir),
     };
     match done {

@@ -1,183 +1,107 @@
-//! One operation, one expression. Widths are explicit everywhere, so that no tool has to guess a sign.
+//! One operation, one statement.
 
-use nonius_model::format::{Overflow, Quantiser, Rounding};
-use nonius_model::graph::{Graph, Kind, NodeId, Op};
+use nonius_model::graph::{NodeId, Op};
 
-use crate::netlist::{base_name, declaration, reference, width};
-use crate::schedule::Schedule;
-
-/// A sized literal.
-pub(crate) fn literal(raw: i64, bits: u32, kind: Kind) -> String {
-    if kind == Kind::Flag {
-        return format!("1'b{raw}");
-    }
-    let mask = if bits >= 64 {
-        u64::MAX
-    } else {
-        (1u64 << bits) - 1
-    };
-    format!("{bits}'sh{:x}", raw as u64 & mask)
-}
-
-/// `name` of `from` bits, sign-extended to `to` bits after appending `zeros`.
-fn extend(name: &str, from: u32, zeros: u32, to: u32) -> String {
-    let copies = to - from - zeros;
-    let mut parts = vec![];
-    if copies > 0 {
-        parts.push(format!("{{{copies}{{{name}[{}]}}}}", from - 1));
-    }
-    parts.push(name.to_owned());
-    if zeros > 0 {
-        parts.push(format!("{zeros}'b0"));
-    }
-    if parts.len() == 1 {
-        name.to_owned()
-    } else {
-        format!("$signed({{{}}})", parts.join(", "))
-    }
-}
+use crate::netlist::width;
+use crate::quantise::{Target, quantise};
+use crate::writer::{Source, Term, Writer};
 
 /// The declarations and assignments that compute node `id` in its cycle.
-pub(crate) fn lines(graph: &Graph, schedule: &Schedule, id: NodeId) -> Vec<String> {
-    let cycle = schedule.ready[id.index()];
+pub(crate) fn lines(w: &Writer, id: NodeId) -> Vec<String> {
+    let graph = w.graph;
+    let cycle = w.schedule.ready[id.index()];
     let node = graph.node(id);
-    let at = |o: NodeId| reference(graph, schedule, o, cycle);
-    let fraction = |o: NodeId| graph.node(o).format.fraction;
     let bits = width(graph, id);
-    let name = format!("{}_now", base_name(graph, id));
-    let declare =
-        |expression: String| format!("{} = {expression};", declaration("wire", graph, id, &name));
-    let aligned = |o: NodeId, fraction_to: u32, to: u32| {
-        let zeros = fraction_to - fraction(o);
-        extend(&at(o), width(graph, o), zeros, to)
-    };
-    // Operands may be wider than the interval of the result: compute wide enough, keep what is needed.
-    let common = |a: NodeId, b: NodeId| {
-        let f = fraction(a).max(fraction(b));
-        let need = |o: NodeId| width(graph, o) + f - fraction(o);
-        (f, need(a).max(need(b)))
-    };
-    let binary = |a: NodeId, b: NodeId, symbol: &str| {
-        let (f, need) = common(a, b);
-        let wide = bits.max(need + 1);
-        let full = format!("{name}_full");
-        let sum = format!("{} {symbol} {}", aligned(a, f, wide), aligned(b, f, wide));
-        narrowed(wide, bits, full, sum, &declare)
-    };
+    let fraction = node.format.fraction;
+    let at = |o: NodeId| w.at(o, cycle);
+    let one = |expression: String| vec![declaration(w, id, &expression)];
     match node.op {
         Op::Input | Op::Constant(_) => vec![],
-        Op::Add(a, b) => binary(a, b, "+"),
-        Op::Sub(a, b) => binary(a, b, "-"),
-        Op::Neg(a) => {
-            let wide = bits.max(width(graph, a) + 1);
-            narrowed(
-                wide,
-                bits,
-                format!("{name}_full"),
-                format!("-{}", aligned(a, fraction(a), wide)),
-                &declare,
-            )
-        }
+        Op::Add(a, b) => one(appended(w, &at(a), &at(b), fraction, bits)
+            .unwrap_or_else(|| sum(w, &at(a), &at(b), "+", fraction, bits, None))),
+        Op::Sub(a, b) => one(mirrored(w, &at(a), &at(b), bits)
+            .unwrap_or_else(|| sum(w, &at(a), &at(b), "-", fraction, bits, None))),
+        Op::Neg(a) => one(format!("-{}", w.fit(&at(a), fraction, bits, None))),
         Op::Mul(..) => {
-            let multiplier = schedule.issue[id.index()].map_or(0, |(m, _)| m);
-            vec![declare(format!(
-                "$signed(product_{multiplier}[{}:0])",
-                bits - 1
-            ))]
+            let unit = w.schedule.issue[id.index()].map_or(0, |(unit, _)| unit);
+            let product = Term {
+                source: Source::Signal(format!("product_{unit}"), 0),
+                width: bits,
+                fraction,
+                range: node.range,
+            };
+            one(w.slice(&product, bits - 1, 0))
         }
         Op::Scale(a, power) => {
-            let pad = (i64::from(power) - i64::from(fraction(a))).max(0) as u32;
-            let (from, wide) = (width(graph, a) + pad, bits.max(width(graph, a) + pad));
-            let _ = from;
-            narrowed(
-                wide,
-                bits,
-                format!("{name}_full"),
-                extend(&at(a), width(graph, a), pad, wide),
-                &declare,
-            )
+            let mut term = at(a);
+            // The point moves; zeros are appended only where it would pass the last bit.
+            let moved = i64::from(term.fraction) - i64::from(power);
+            let zeros = (-moved).max(0) as u32;
+            term.fraction = 0;
+            one(w.fit(&term, zeros, bits, None))
         }
-        Op::Quantise(a, to) => quantise(
-            &at(a),
-            width(graph, a),
-            fraction(a),
-            &to,
-            &name,
-            bits,
-            &declare,
-        ),
+        Op::Quantise(a, to) => {
+            let target = Target { id, to, bits };
+            if let Some(lines) = crate::quantise::of_sum(w, a, &target) {
+                return lines;
+            }
+            quantise(w, &at(a), &target)
+        }
         Op::QuantiseGeared {
             value,
             gear,
             stride,
             last,
             to,
-        } => {
-            // One bit below the last is enough for rounding: floor(floor(2x) + 1) / 2) = floor(x + 1/2).
-            let grow = stride * last;
-            let (from, f) = (width(graph, value), fraction(value));
-            let keep = to.format.fraction + 1;
-            let pad = keep.saturating_sub(f);
-            let wide = from + pad;
-            let whole = format!("{name}_whole");
-            let shifted = format!("{name}_shifted");
-            let amount = if stride == 1 {
-                at(gear)
-            } else {
-                format!(
-                    "({} * {stride})",
-                    extend(&at(gear), width(graph, gear), 0, 8.max(width(graph, gear)))
-                )
-            };
-            let mut lines = vec![format!(
-                "wire signed [{}:0] {whole} = {};",
-                wide - 1,
-                extend(&at(value), from, pad, wide)
-            )];
-            let (source, f, wide) = if f > keep {
-                let cut = format!("{name}_cut");
-                lines.push(format!(
-                    "wire signed [{}:0] {cut} = $signed({whole}[{}:{}]);",
-                    wide - (f - keep) - 1,
-                    wide - 1,
-                    f - keep
-                ));
-                (cut, keep, wide - (f - keep))
-            } else {
-                (whole, f + pad, wide)
-            };
-            let _ = grow;
-            lines.push(format!(
-                "wire signed [{}:0] {shifted} = {source} >>> {amount};",
-                wide - 1
-            ));
-            lines.extend(quantise(&shifted, wide, f, &to, &name, bits, &declare));
-            lines
-        }
-        Op::LessThan(a, b) => {
-            let (f, need) = common(a, b);
-            vec![declare(format!(
-                "{} < {}",
-                aligned(a, f, need),
-                aligned(b, f, need)
-            ))]
-        }
+        } => match w.schedule.shift[id.index()] {
+            Some(unit) if crate::shifter::shared(w.schedule, unit) => {
+                let name = format!("shifted_{unit}");
+                w.read(&name, bits - 1, 0);
+                one(name)
+            }
+            _ => {
+                let keep = to.format.fraction + 1;
+                let input = crate::shifter::input(w, &at(value), keep);
+                let name = w.name(id);
+                let (wide, whole) = (input.1, format!("{name}_unshifted"));
+                let shifted = format!("{name}_shifted");
+                w.declare(&whole, wide);
+                w.declare(&shifted, wide);
+                w.read(&whole, wide - 1, 0);
+                let amount = crate::shifter::amount(w, &at(gear), stride, last);
+                let mut lines = vec![
+                    format!("wire signed [{}:0] {whole} = {};", wide - 1, input.0),
+                    format!(
+                        "wire signed [{}:0] {shifted} = {whole} >>> {amount};",
+                        wide - 1
+                    ),
+                ];
+                let term = Term {
+                    source: Source::Signal(shifted, 0),
+                    width: wide,
+                    fraction: keep,
+                    range: input.2,
+                };
+                lines.extend(quantise(w, &term, &Target { id, to, bits }));
+                lines
+            }
+        },
         Op::Select(c, a, b) => {
-            let f = node.format.fraction;
-            let need = |o: NodeId| width(graph, o) + f - fraction(o);
-            let wide = bits.max(need(a)).max(need(b));
-            let chosen = format!(
-                "{} ? {} : {}",
-                at(c),
-                aligned(a, f, wide),
-                aligned(b, f, wide)
-            );
-            narrowed(wide, bits, format!("{name}_full"), chosen, &declare)
+            let choose = w.condition_of(c, cycle);
+            one(format!(
+                "{choose} ? {} : {}",
+                w.fit(&at(a), fraction, bits, None),
+                w.fit(&at(b), fraction, bits, None)
+            ))
         }
-        Op::And(a, b) => vec![declare(format!("{} & {}", at(a), at(b)))],
-        Op::Or(a, b) => vec![declare(format!("{} | {}", at(a), at(b)))],
-        Op::Xor(a, b) => vec![declare(format!("{} ^ {}", at(a), at(b)))],
-        Op::Not(a) => vec![declare(format!("~{}", at(a)))],
+        Op::LessThan(..) | Op::And(..) | Op::Or(..) | Op::Xor(..) | Op::Not(_) => {
+            if w.inline(id) {
+                return vec![];
+            }
+            let text = w.condition(id);
+            let bare = text.strip_prefix('(').and_then(|t| t.strip_suffix(')'));
+            one(bare.map_or(text.clone(), ToOwned::to_owned))
+        }
         Op::Lookup { rom, column, .. } => {
             let rom = &graph.roms[rom];
             let below: u32 = rom.columns[column + 1..]
@@ -185,146 +109,90 @@ pub(crate) fn lines(graph: &Graph, schedule: &Schedule, id: NodeId) -> Vec<Strin
                 .map(|c| c.format.width)
                 .sum();
             let own = rom.columns[column].format.width;
-            vec![declare(format!(
-                "$signed({{1'b0, {}_row[{}:{below}]}})",
-                rom.name,
-                below + own - 1
-            ))]
-        }
-    }
-}
-
-/// `wide` bits computed, `bits` kept; interval analysis has shown that the rest is sign.
-fn narrowed(
-    wide: u32,
-    bits: u32,
-    full: String,
-    expression: String,
-    declare: &dyn Fn(String) -> String,
-) -> Vec<String> {
-    if wide == bits {
-        return vec![declare(expression)];
-    }
-    vec![
-        format!("wire signed [{}:0] {full} = {expression};", wide - 1),
-        declare(format!("$signed({full}[{}:0])", bits - 1)),
-    ]
-}
-
-fn quantise(
-    source: &str,
-    from: u32,
-    fraction: u32,
-    to: &Quantiser,
-    name: &str,
-    bits: u32,
-    declare: &dyn Fn(String) -> String,
-) -> Vec<String> {
-    let target = to.format;
-    let mut lines = vec![];
-    let drop = fraction.saturating_sub(target.fraction);
-    let pad = target.fraction.saturating_sub(fraction);
-    // `whole` has the target's fraction bits and room for the carry of rounding.
-    let (whole, have) = if drop > 0 {
-        let have = (from + 1).saturating_sub(drop).max(2);
-        let sum_bits = have + drop;
-        let value = extend(source, from, 0, sum_bits);
-        let sum = format!("{name}_sum");
-        let expression = if to.rounding == Rounding::Nearest {
-            format!(
-                "{value} + {}",
-                literal(1i64 << (drop - 1), sum_bits, Kind::Value)
-            )
-        } else {
-            value
-        };
-        lines.push(format!(
-            "wire signed [{}:0] {sum} = {expression};",
-            sum_bits - 1
-        ));
-        let whole = format!("{name}_whole_part");
-        lines.push(format!(
-            "wire signed [{}:0] {whole} = $signed({sum}[{}:{drop}]);",
-            have - 1,
-            sum_bits - 1
-        ));
-        (whole, have)
-    } else {
-        let whole = format!("{name}_whole_part");
-        let have = from + pad;
-        lines.push(format!(
-            "wire signed [{}:0] {whole} = {};",
-            have - 1,
-            extend(source, from, pad, have)
-        ));
-        (whole, have)
-    };
-    let w = target.width;
-    if have <= w || (have == w + 1 && !target.signed && to.overflow != Overflow::Wrap) {
-        // Nothing to cut; but an unsigned target still clamps negative values.
-        let wide = bits.max(have);
-        let value = extend(&whole, have, 0, wide);
-        let kept = match (target.signed, to.overflow) {
-            (true, _) | (false, Overflow::Never) => value,
-            (false, Overflow::Saturate) => format!(
-                "{whole}[{}] ? {} : {value}",
-                have - 1,
-                literal(0, wide, Kind::Value)
-            ),
-            (false, Overflow::Wrap) => {
-                format!("$signed({{1'b0, {}}})", extend_bits(&whole, have, w))
-            }
-        };
-        if wide == bits {
-            lines.push(declare(kept));
-        } else {
-            lines.push(format!(
-                "wire signed [{}:0] {name}_kept = {kept};",
-                wide - 1
-            ));
-            lines.push(declare(format!("$signed({name}_kept[{}:0])", bits - 1)));
-        }
-        return lines;
-    }
-    let low = format!("{whole}[{}:0]", w - 1);
-    let slice = if target.signed {
-        format!("$signed({low})")
-    } else {
-        format!("$signed({{1'b0, {low}}})")
-    };
-    lines.push(declare(match to.overflow {
-        Overflow::Wrap | Overflow::Never => slice,
-        Overflow::Saturate => {
-            let sign = format!("{whole}[{}]", have - 1);
-            if target.signed {
-                let upper = format!("{whole}[{}:{}]", have - 1, w - 1);
-                let fits = format!("(&{upper} | ~|{upper})");
-                format!(
-                    "{fits} ? {slice} : $signed({{{sign}, {{{}{{~{sign}}}}}}})",
-                    w - 1
-                )
+            let row = format!("{}_row", rom.name);
+            w.read(&row, below + own - 1, below);
+            let whole = own == rom.row_width();
+            one(if whole {
+                format!("{{1'b0, {row}}}")
             } else {
-                let upper = format!("{whole}[{}:{w}]", have - 2);
-                let zero = literal(0, w + 1, Kind::Value);
-                format!(
-                    "{sign} ? {zero} : (|{upper}) ? $signed({{1'b0, {{{w}{{1'b1}}}}}}) : {slice}"
-                )
-            }
+                format!("{{1'b0, {row}[{}:{below}]}}", below + own - 1)
+            })
         }
-    }));
-    lines
-}
-
-/// `name` of `from` bits as exactly `to` ≥ `from` bits, sign-extended, as a concatenation.
-fn extend_bits(name: &str, from: u32, to: u32) -> String {
-    if from == to {
-        name.to_owned()
-    } else {
-        format!("{{{}{{{name}[{}]}}}}, {name}", to - from, from - 1)
     }
 }
 
-/// A signed name of `from` bits, sign-extended to `to` bits.
-pub(crate) fn extended(name: &str, from: u32, to: u32) -> String {
-    extend(name, from, 0, to)
+/// A coefficient that fits into the zeros appended to `a` needs no adder.
+fn appended(w: &Writer, a: &Term, b: &Term, fraction: u32, bits: u32) -> Option<String> {
+    let Source::Constant(raw) = b.source else {
+        return None;
+    };
+    let zeros = fraction - a.fraction;
+    let raw = raw << (fraction - b.fraction);
+    if raw <= 0 || raw >> zeros != 0 {
+        return None;
+    }
+    let upper = w.fit(a, a.fraction, bits - zeros, None);
+    Some(format!("{{{upper}, {zeros}'h{raw:x}}}"))
+}
+
+/// 2^n − 1 less a number of n bits is that number with every bit inverted.
+fn mirrored(w: &Writer, a: &Term, b: &Term, bits: u32) -> Option<String> {
+    let Source::Constant(raw) = a.source else {
+        return None;
+    };
+    let n = 128 - raw.leading_zeros();
+    let ones = raw > 0 && raw == (1i128 << n) - 1;
+    let fits = b.range.0 >= 0 && b.range.1 <= raw;
+    if !ones || !fits || a.fraction != b.fraction || bits <= n || b.width < n {
+        return None;
+    }
+    let own = w.slice(b, n - 1, 0);
+    Some(match bits - n {
+        1 => format!("{{1'b0, ~{own}}}"),
+        zeros => format!("{{{zeros}'b0, ~{own}}}"),
+    })
+}
+
+/// `a` and `b`, aligned and cut to `bits`; `half` sets one of the zeros appended to `a` or, failing that, to `b`.
+pub(crate) fn sum(
+    w: &Writer,
+    a: &Term,
+    b: &Term,
+    symbol: &str,
+    fraction: u32,
+    bits: u32,
+    half: Option<u32>,
+) -> String {
+    let room = |t: &Term| match t.source {
+        Source::Constant(_) => true,
+        _ => half.is_some_and(|h| fraction - t.fraction > h),
+    };
+    let (half_a, half_b) = if half.is_none() {
+        (None, None)
+    } else if room(a) {
+        (half, None)
+    } else {
+        (None, half)
+    };
+    format!(
+        "{} {symbol} {}",
+        w.fit(a, fraction, bits, half_a),
+        w.fit(b, fraction, bits, half_b)
+    )
+}
+
+/// The wire of node `id` with its expression, its format and its step.
+pub(crate) fn declaration(w: &Writer, id: NodeId, expression: &str) -> String {
+    let wire = w.wire(id);
+    w.declare(&wire, width(w.graph, id));
+    let range = crate::writer::range(w.graph, id);
+    let line = format!("wire {range}{wire} = {expression};");
+    let node = w.graph.node(id);
+    let step = w.schedule.ready[id.index()];
+    let format = if range.is_empty() {
+        String::new()
+    } else {
+        format!("{}, ", node.format)
+    };
+    format!("{line} // {format}step {step}")
 }

@@ -6,9 +6,16 @@
 
 pub mod evaluate;
 mod expression;
+mod names;
 pub mod netlist;
+mod quantise;
 pub mod schedule;
+mod settle;
+mod shifter;
+mod tables;
 mod templates;
+mod units;
+mod writer;
 
 pub use templates::{Files, generate};
 

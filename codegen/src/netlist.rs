@@ -1,9 +1,10 @@
-//! Names for everything: which values are kept in registers, and the expression of each.
+//! What the Verilog declares, keeps and assigns, in the order in which it is read.
 
 use nonius_model::graph::{Graph, Kind, NodeId, Op};
 
 use crate::expression;
 use crate::schedule::{SAMPLED, Schedule};
+use crate::writer::{Writer, range};
 
 /// The last cycle in which each node is read; `usize::MAX` for registers of the chip and coefficients.
 #[must_use]
@@ -41,152 +42,149 @@ pub fn width(graph: &Graph, id: NodeId) -> u32 {
     }
 }
 
-/// The name of a node in the Verilog.
-#[must_use]
-pub fn base_name(graph: &Graph, id: NodeId) -> String {
-    graph
-        .node(id)
-        .name
-        .clone()
-        .unwrap_or_else(|| format!("t{}", id.0))
-}
-
-/// Whether the node is a register of the chip or a registered input.
-fn is_register(graph: &Graph, id: NodeId) -> bool {
-    graph.node(id).op == Op::Input
-}
-
-/// What to write for `id` in an expression that is evaluated in `cycle`.
-pub(crate) fn reference(graph: &Graph, schedule: &Schedule, id: NodeId, cycle: usize) -> String {
-    let name = base_name(graph, id);
-    match graph.node(id).op {
-        Op::Input | Op::Constant(_) => name,
-        _ if schedule.ready[id.index()] == cycle => format!("{name}_now"),
-        _ => name,
-    }
-}
-
-/// A declaration: `kind`, signedness and range, name.
-pub(crate) fn declaration(kind: &str, graph: &Graph, id: NodeId, name: &str) -> String {
-    let bits = width(graph, id);
-    if graph.node(id).kind == Kind::Flag {
-        format!("{kind} {name}")
-    } else {
-        format!("{kind} signed [{}:0] {name}", bits - 1)
-    }
-}
-
-/// A wire and its expression.
-pub(crate) struct Wire {
+/// A formula and the statements that compute it.
+pub(crate) struct Section {
+    pub(crate) title: String,
+    pub(crate) equation: String,
+    pub(crate) source: String,
     pub(crate) lines: Vec<String>,
 }
 
-/// Everything the core template needs besides structure.
+/// A register: range, name.
+#[derive(Clone)]
+pub(crate) struct Register {
+    pub(crate) range: String,
+    pub(crate) name: String,
+    pub(crate) meaning: String,
+}
+
+/// What the core template needs besides structure.
 pub(crate) struct Netlist {
-    pub(crate) constants: Vec<String>,
-    pub(crate) sections: Vec<(String, String, String, Vec<Wire>)>,
-    pub(crate) captured: Vec<(usize, String)>,
-    pub(crate) captured_names: Vec<(String, String)>,
-    pub(crate) registers: Vec<(String, String, String)>,
-    pub(crate) inputs: Vec<(String, String)>,
-    pub(crate) probes: Vec<(String, String, String)>,
+    pub(crate) sections: Vec<Section>,
+    /// Step, values that are kept at its end.
+    pub(crate) captures: Vec<(usize, Vec<String>)>,
+    pub(crate) kept: Vec<Register>,
+    pub(crate) state: Vec<Register>,
+    /// Register and its next value.
+    pub(crate) commits: Vec<(String, String)>,
+    /// Name of the port and of the register that holds it.
+    pub(crate) held: Vec<Register>,
 }
 
 impl Netlist {
-    pub(crate) fn new(graph: &Graph, schedule: &Schedule) -> Self {
-        let last = last_use(graph, schedule);
+    pub(crate) fn new(w: &Writer) -> Self {
+        let (graph, schedule) = (w.graph, w.schedule);
         let commit = schedule.clocks - 1;
-        let mut sections: Vec<_> = graph
+        let mut sections: Vec<Section> = graph
             .formulas
             .iter()
-            .map(|f| {
-                (
-                    f.title.to_owned(),
-                    f.equation.to_owned(),
-                    f.source.to_owned(),
-                    vec![],
-                )
+            .map(|f| Section {
+                title: f.title.into(),
+                equation: f.equation.into(),
+                source: f.source.into(),
+                lines: vec![],
             })
             .collect();
-        let mut constants = vec![];
-        let mut captured = vec![];
-        let mut captured_names = vec![];
+        let mut captures: Vec<(usize, Vec<String>)> =
+            (0..schedule.clocks).map(|c| (c, vec![])).collect();
+        let mut kept = vec![];
         for id in graph.ids() {
             let node = graph.node(id);
-            let name = base_name(graph, id);
-            match node.op {
-                Op::Input => continue,
-                Op::Constant(raw) => {
-                    if last_read(graph, id) {
-                        let value = expression::literal(raw, width(graph, id), node.kind);
-                        constants.push(format!(
-                            "{} = {value};",
-                            declaration("wire", graph, id, &name)
-                        ));
-                    }
-                    continue;
-                }
-                _ => {}
+            if matches!(node.op, Op::Input | Op::Constant(_))
+                || !w.live(id)
+                || crate::quantise::fused(w, graph, id)
+            {
+                continue;
             }
-            let lines = expression::lines(graph, schedule, id);
-            sections[node.formula].3.push(Wire { lines });
-            if last[id.index()] > schedule.ready[id.index()] {
-                captured.push((schedule.ready[id.index()], format!("{name} <= {name}_now;")));
-                captured_names.push((declaration("reg", graph, id, &name), name));
+            sections[node.formula]
+                .lines
+                .extend(expression::lines(w, id));
+            if w.kept(id) {
+                let name = w.name(id);
+                w.declare(name, width(graph, id));
+                w.read(&w.wire(id), width(graph, id) - 1, 0);
+                captures[schedule.ready[id.index()]]
+                    .1
+                    .push(format!("{name} <= {};", w.wire(id)));
+                kept.push(Register {
+                    range: range(graph, id),
+                    name: name.into(),
+                    meaning: String::new(),
+                });
             }
         }
-        let sampled = |id: NodeId| SAMPLED.contains(&base_name(graph, id).as_str());
-        let next = |name: &str| {
-            let node = graph.next.iter().find(|(n, _)| n == name);
-            node.map(|&(_, id)| reference(graph, schedule, id, commit))
-                .unwrap_or_default()
-        };
-        let registers = graph
-            .inputs
-            .iter()
-            .filter(|(_, id)| is_register(graph, *id) && !sampled(*id))
-            .map(|(name, id)| {
-                (
-                    declaration("reg", graph, *id, name),
-                    name.clone(),
-                    next(name),
-                )
-            })
-            .collect();
-        let inputs = graph
-            .inputs
-            .iter()
-            .filter(|(_, id)| sampled(*id))
-            .map(|(name, id)| (declaration("reg", graph, *id, name), name.clone()))
-            .collect();
-        let probes = graph
-            .probes
-            .iter()
-            .map(|(name, id)| {
-                (
-                    declaration("reg", graph, *id, &format!("probe_{name}")),
-                    name.clone(),
-                    reference(graph, schedule, *id, commit),
-                )
-            })
-            .collect();
+        // A probe that shows a register shows what it was before the sample.
+        for (name, id) in &graph.probes {
+            if graph.node(*id).op == Op::Input {
+                let bits = width(graph, *id);
+                w.read(w.name(*id), bits - 1, 0);
+                w.declare(name, bits);
+                let sampled = SAMPLED.contains(&w.name(*id));
+                let (step, form) = if sampled { (1, "_held") } else { (0, "") };
+                captures[step]
+                    .1
+                    .push(format!("{name} <= {}{form};", w.name(*id)));
+                kept.push(Register {
+                    range: range(graph, *id),
+                    name: name.clone(),
+                    meaning: String::new(),
+                });
+            }
+        }
+        captures.retain(|c| !c.1.is_empty());
+        sections.retain(|s| !s.lines.is_empty());
+        let (mut state, mut commits, mut held) = (vec![], vec![], vec![]);
+        for (name, id) in &graph.inputs {
+            let sampled = SAMPLED.contains(&name.as_str());
+            let form = if sampled {
+                format!("{name}_held")
+            } else {
+                name.clone()
+            };
+            w.declare(&form, width(graph, *id));
+            let register = Register {
+                range: range(graph, *id),
+                name: name.clone(),
+                meaning: meaning(name),
+            };
+            if sampled {
+                held.push(register);
+                continue;
+            }
+            state.push(register);
+            let next = graph.next.iter().find(|(n, _)| n == name);
+            if let Some(&(_, next)) = next {
+                let bits = width(graph, *id);
+                let text = match graph.node(next).kind {
+                    Kind::Flag => w.condition_of(next, commit),
+                    _ => w.fit(
+                        &w.at(next, commit),
+                        graph.node(next).format.fraction,
+                        bits,
+                        None,
+                    ),
+                };
+                commits.push((name.clone(), text));
+            }
+        }
         Self {
-            constants,
             sections,
-            captured,
-            captured_names,
-            registers,
-            inputs,
-            probes,
+            captures,
+            kept,
+            state,
+            commits,
+            held,
         }
     }
 }
 
-fn last_read(graph: &Graph, id: NodeId) -> bool {
-    graph.nodes.iter().any(|n| n.op.operands().contains(&id))
-        || graph
-            .next
-            .iter()
-            .chain(&graph.probes)
-            .any(|(_, n)| *n == id)
+/// What a register, an input or a probe is, in a sentence.
+pub(crate) fn meaning(name: &str) -> String {
+    use nonius_model::bits::Bits;
+    use nonius_model::kernel::{Input, Probes, State};
+    State::<Bits>::meaning(name)
+        .or_else(|| Probes::<Bits>::meaning(name))
+        .or_else(|| Input::<Bits>::meaning(name))
+        .unwrap_or_default()
+        .to_owned()
 }

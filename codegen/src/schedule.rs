@@ -4,16 +4,19 @@
 //! a cycle: its operands are put into the multiplier's operand registers at the end of the cycle before, the product
 //! register holds the result in the cycle after. What is computed from a product register may go straight into an
 //! operand register, so dependent products follow each other every second cycle. A table row is there one cycle after
-//! its address. Everything else is combinational, chained within a cycle up to a depth. All registers of the chip
-//! commit at the end of the last cycle.
+//! its address. Shifts by the same gear share as many shifters as there are multipliers. Everything else is
+//! combinational, chained within a cycle up to a depth. All registers of the chip commit at the end of the last cycle.
 
+use nonius_model::format::{Quantiser, Rounding};
 use nonius_model::graph::{Graph, NodeId, Op};
+
+use crate::settle::settle;
 
 /// Names of the inputs that are registered at the end of cycle 0.
 pub const SAMPLED: [&str; 4] = ["adc_cos", "adc_sin", "preset", "calibrate"];
 
 /// Longest chain in a cycle, in about tenths of nanoseconds of an iCE40 HX.
-const DEPTH: u32 = 110;
+pub(crate) const DEPTH: u32 = 110;
 
 /// When and where each node is computed.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -22,30 +25,64 @@ pub struct Schedule {
     pub ready: Vec<usize>,
     /// For products: multiplier and cycle of issue.
     pub issue: Vec<Option<(usize, usize)>>,
+    /// For geared quantisations that share shifters: index in [`Schedule::shifters`].
+    pub shift: Vec<Option<usize>>,
+    /// The shared shifters.
+    pub shifters: Vec<Shifter>,
     /// Number of multipliers.
     pub multipliers: usize,
     /// Clocks from one sample to the next.
     pub clocks: usize,
 }
 
+/// A shifter that several geared quantisations share.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shifter {
+    /// The gear.
+    pub gear: NodeId,
+    /// Bits of shift per gear.
+    pub stride: u32,
+    /// Last gear.
+    pub last: u32,
+    /// Format, rounding and overflow of the results.
+    pub to: Quantiser,
+}
+
+/// The shifter that node `id` may share.
+fn shifter(graph: &Graph, id: NodeId) -> Option<Shifter> {
+    match graph.node(id).op {
+        Op::QuantiseGeared {
+            gear,
+            stride,
+            last,
+            to,
+            ..
+        } => Some(Shifter {
+            gear,
+            stride,
+            last,
+            to,
+        }),
+        _ => None,
+    }
+}
+
 /// Combinational delay of a node in units of [`DEPTH`].
-fn delay(graph: &Graph, id: NodeId) -> u32 {
+pub(crate) fn delay(graph: &Graph, id: NodeId) -> u32 {
     let width = graph.node(id).format.width;
     match graph.node(id).op {
         Op::Input | Op::Constant(_) | Op::Scale(..) | Op::Lookup { .. } | Op::Mul(..) => 0,
         Op::Add(..) | Op::Sub(..) | Op::Neg(_) | Op::LessThan(..) => 15 + width,
-        Op::Quantise(_, to) if to.rounding != nonius_model::format::Rounding::Nearest => 5,
+        Op::Quantise(_, to) if to.rounding != Rounding::Nearest => 5,
         Op::Quantise(..) => 25 + width,
         Op::QuantiseGeared { .. } => 45 + width,
         Op::Select(..) | Op::And(..) | Op::Or(..) | Op::Xor(..) | Op::Not(_) => 10,
     }
 }
 
-/// Lists the graph on `multipliers` multipliers.
-#[must_use]
-pub fn schedule(graph: &Graph, multipliers: usize) -> Schedule {
-    let n = graph.nodes.len();
-    let mut urgency = vec![0u32; n];
+/// Longest chain of delays from each node to the end.
+fn urgency(graph: &Graph) -> Vec<u32> {
+    let mut urgency = vec![0u32; graph.nodes.len()];
     for id in graph.ids().collect::<Vec<_>>().into_iter().rev() {
         let own = match graph.node(id).op {
             Op::Mul(..) => 200,
@@ -58,8 +95,22 @@ pub fn schedule(graph: &Graph, multipliers: usize) -> Schedule {
             *u = (*u).max(here);
         }
     }
-    let mut ready: Vec<Option<usize>> = vec![None; n];
-    let mut arrival = vec![0u32; n];
+    urgency
+}
+
+/// Lists the graph on `multipliers` multipliers.
+#[must_use]
+pub fn schedule(graph: &Graph, multipliers: usize) -> Schedule {
+    let n = graph.nodes.len();
+    let urgency = urgency(graph);
+    let mut lister = Lister {
+        graph,
+        ready: vec![None; n],
+        arrival: vec![0u32; n],
+        shift: vec![None; n],
+        shifters: vec![],
+        multipliers,
+    };
     let mut issue = vec![None; n];
     for id in graph.ids() {
         let node = graph.node(id);
@@ -69,66 +120,108 @@ pub fn schedule(graph: &Graph, multipliers: usize) -> Schedule {
                     .name
                     .as_deref()
                     .is_some_and(|name| SAMPLED.contains(&name));
-                ready[id.index()] = Some(usize::from(sampled));
+                lister.ready[id.index()] = Some(usize::from(sampled));
             }
-            Op::Constant(_) => ready[id.index()] = Some(0),
+            Op::Constant(_) => lister.ready[id.index()] = Some(0),
             _ => {}
         }
     }
     let mut cycle = 0;
-    while ready.iter().any(Option::is_none) {
-        let done =
-            |ready: &[Option<usize>], id: NodeId| ready[id.index()].is_some_and(|r| r <= cycle);
-        for id in graph.ids() {
-            let op = graph.node(id).op;
-            let waits = matches!(op, Op::Mul(..) | Op::Lookup { .. });
-            if ready[id.index()].is_some()
-                || waits
-                || !op.operands().iter().all(|&o| done(&ready, o))
-            {
-                continue;
-            }
-            let chained = |o: &NodeId| {
-                if ready[o.index()] == Some(cycle) {
-                    arrival[o.index()]
-                } else {
-                    0
-                }
-            };
-            let start = op.operands().iter().map(chained).max().unwrap_or(0);
-            let end = start + delay(graph, id);
-            if start == 0 || end <= DEPTH {
-                ready[id.index()] = Some(cycle);
-                arrival[id.index()] = end;
-            }
-        }
-        read_tables(graph, &mut ready, cycle);
+    while lister.ready.iter().any(Option::is_none) {
+        lister.combinational(cycle);
+        read_tables(graph, &mut lister.ready, cycle);
         let mut waiting: Vec<NodeId> = graph
             .ids()
-            .filter(|&id| matches!(graph.node(id).op, Op::Mul(..)) && ready[id.index()].is_none())
             .filter(|&id| {
-                graph
-                    .node(id)
-                    .op
-                    .operands()
-                    .iter()
-                    .all(|&o| done(&ready, o))
+                matches!(graph.node(id).op, Op::Mul(..))
+                    && lister.ready[id.index()].is_none()
+                    && lister.operands_done(id, cycle)
             })
             .collect();
         waiting.sort_by_key(|id| (std::cmp::Reverse(urgency[id.index()]), id.index()));
         for (multiplier, id) in waiting.into_iter().take(multipliers).enumerate() {
             issue[id.index()] = Some((multiplier, cycle + 1));
-            ready[id.index()] = Some(cycle + 2);
+            lister.ready[id.index()] = Some(cycle + 2);
         }
         cycle += 1;
     }
-    let ready: Vec<usize> = ready.into_iter().flatten().collect();
+    let ready: Vec<usize> = lister.ready.into_iter().flatten().collect();
     let clocks = ready.iter().max().copied().unwrap_or(0) + 1;
-    Schedule {
+    let mut schedule = Schedule {
         ready,
         issue,
+        shift: lister.shift,
+        shifters: lister.shifters,
         multipliers,
         clocks,
+    };
+    settle(graph, &mut schedule);
+    schedule
+}
+
+struct Lister<'a> {
+    graph: &'a Graph,
+    ready: Vec<Option<usize>>,
+    arrival: Vec<u32>,
+    shift: Vec<Option<usize>>,
+    shifters: Vec<Shifter>,
+    multipliers: usize,
+}
+
+impl Lister<'_> {
+    fn operands_done(&self, id: NodeId, cycle: usize) -> bool {
+        let operands = self.graph.node(id).op.operands();
+        operands
+            .iter()
+            .all(|o| self.ready[o.index()].is_some_and(|r| r <= cycle))
+    }
+
+    /// Everything that is neither product nor table and fits into this cycle.
+    fn combinational(&mut self, cycle: usize) {
+        let mut taken: Vec<usize> = vec![];
+        for id in self.graph.ids() {
+            let op = self.graph.node(id).op;
+            let waits = matches!(op, Op::Mul(..) | Op::Lookup { .. });
+            if self.ready[id.index()].is_some() || waits || !self.operands_done(id, cycle) {
+                continue;
+            }
+            let chained = |o: &NodeId| {
+                if self.ready[o.index()] == Some(cycle) {
+                    self.arrival[o.index()]
+                } else {
+                    0
+                }
+            };
+            let start = op.operands().iter().map(chained).max().unwrap_or(0);
+            let end = start + delay(self.graph, id);
+            if start > 0 && end > DEPTH {
+                continue;
+            }
+            if let Some(wanted) = shifter(self.graph, id) {
+                let free = self.unit(wanted, &taken);
+                let Some(unit) = free else { continue };
+                taken.push(unit);
+                self.shift[id.index()] = Some(unit);
+            }
+            self.ready[id.index()] = Some(cycle);
+            self.arrival[id.index()] = end;
+        }
+    }
+
+    /// A shifter of this kind that is not taken in this cycle; a new one while there are fewer than multipliers.
+    fn unit(&mut self, wanted: Shifter, taken: &[usize]) -> Option<usize> {
+        let same: Vec<usize> = (0..self.shifters.len())
+            .filter(|&u| self.shifters[u] == wanted)
+            .collect();
+        same.iter()
+            .copied()
+            .find(|u| !taken.contains(u))
+            .or_else(|| {
+                (same.len() < self.multipliers).then(|| {
+                    self.shifters.push(wanted);
+                    self.shifters.len() - 1
+                })
+            })
     }
 }
 

@@ -3,68 +3,43 @@
 use askama::Template;
 use nonius_model::design::Design;
 use nonius_model::graph::{Kind, NodeId, Op};
+use nonius_model::kernel::{Coefficients, Constant};
 
-use crate::netlist::{Netlist, Wire, base_name, reference, width};
-use crate::schedule::{Schedule, schedule};
-
-/// A port of the core: range, name, source, bits.
-type Port = (String, String, String, u32);
-
-struct Unit {
-    index: usize,
-    a: u32,
-    b: u32,
-    loads: Vec<(usize, String, String, String)>,
-    idle_a: String,
-    idle_b: String,
-}
-
-struct Table {
-    name: String,
-    width: u32,
-    rows: usize,
-    address: u32,
-    reads: Vec<(usize, String)>,
-    fallback: String,
-}
+use crate::netlist::{Netlist, Register, Section, meaning, width};
+use crate::schedule::schedule;
+use crate::shifter::Unit;
+use crate::units::{Multiplier, Table};
+use crate::writer::{Writer, range};
 
 #[derive(Template)]
-#[template(path = "core.v")]
-struct Core<'a> {
+#[template(path = "chip.v")]
+struct Chip<'a> {
     name: &'a str,
-    hash: &'a str,
-    products: usize,
-    multipliers: usize,
-    clocks: usize,
-    step_bits: u32,
-    adc_msb: u32,
-    ports: &'a [Port],
-    constants: &'a [String],
-    registers: &'a [(String, String, String)],
-    inputs: &'a [(String, String)],
-    captured: &'a [(usize, String)],
-    captured_names: &'a [(String, String)],
-    probes: &'a [(String, String, String)],
-    sections: Vec<&'a (String, String, String, Vec<Wire>)>,
-    units: &'a [Unit],
-    roms: &'a [Table],
-    adc_cos: String,
-    adc_sin: String,
-}
-
-#[derive(Template)]
-#[template(path = "top.v")]
-struct Top<'a> {
-    name: &'a str,
+    separator: &'a str,
     description: &'a str,
     hash: &'a str,
+    summary: String,
+    timetable: Vec<String>,
+    constants: Vec<String>,
+    ports: Vec<(String, String, String)>,
+    state: &'a [Register],
+    held: &'a [Register],
+    loads: Vec<(String, String)>,
+    kept: Vec<&'a Register>,
+    multipliers: &'a [Multiplier],
+    shifters: &'a [Unit],
+    tables: &'a [Table],
+    sections: &'a [Section],
+    captures: &'a [(usize, Vec<String>)],
+    commits: &'a [(String, String)],
     clocks: usize,
-    adc_msb: u32,
-    count_bits: u32,
+    step_bits: u32,
     alpha_bits: u32,
-    speed_bits: u32,
-    thetas: &'a [(String, u32, u32)],
+    unread: Vec<String>,
 }
+
+/// Range, name, bits.
+type Signal = (String, String, u32);
 
 #[derive(Template)]
 #[template(path = "chip_tb.v")]
@@ -74,12 +49,39 @@ struct Testbench<'a> {
     adc_msb: u32,
     count_bits: u32,
     alpha_bits: u32,
-    ports: &'a [Port],
-    thetas: &'a [(String, u32, u32)],
-    columns: usize,
+    outputs: &'a [Signal],
+    inner: &'a [Signal],
+    columns: &'a [Signal],
+    fields: usize,
     scan: String,
     scan_args: String,
     stimuli: &'a [(String, usize)],
+}
+
+#[derive(Template)]
+#[template(path = "example.v")]
+struct Example<'a> {
+    name: &'a str,
+    clocks: usize,
+    rate: f64,
+    clock: f64,
+    adc_msb: u32,
+    count_bits: u32,
+    alpha_bits: u32,
+    outputs: &'a [Signal],
+    idle: Vec<String>,
+}
+
+#[derive(Template)]
+#[template(path = "chip.sdc")]
+struct Constraints<'a> {
+    name: &'a str,
+    hash: &'a str,
+    clocks: usize,
+    rate: f64,
+    clock: f64,
+    megahertz: String,
+    period: String,
 }
 
 /// The text files of a chip: path below the output folder, content.
@@ -93,111 +95,131 @@ pub struct Files {
 }
 
 /// Everything that is compared after a sample: probes, then registers.
-fn ports(design: &Design) -> (Vec<Port>, Vec<(String, NodeId, u32)>) {
+fn columns(design: &Design) -> Vec<(String, NodeId, u32)> {
     let graph = &design.graph;
-    let mut columns = vec![];
-    let mut list = vec![];
-    let mut add = |name: String, source: String, id: NodeId| {
-        let bits = width(graph, id);
-        let flag = graph.node(id).kind == Kind::Flag;
-        let range = if flag {
-            String::new()
-        } else {
-            format!("signed [{}:0] ", bits - 1)
-        };
-        list.push((range, name.clone(), source, bits));
-        columns.push((name, id, bits));
-    };
-    for (name, id) in &graph.probes {
-        add(format!("seen_{name}"), format!("probe_{name}"), *id);
-    }
-    for (name, _) in &graph.next {
-        if let Some((_, id)) = graph.inputs.iter().find(|(n, _)| n == name) {
-            add(format!("reg_{name}"), name.clone(), *id);
-        }
-    }
-    (list, columns)
-}
-
-fn units(design: &Design, schedule: &Schedule) -> Vec<Unit> {
-    let graph = &design.graph;
-    (0..schedule.multipliers)
-        .map(|index| {
-            let mut loads: Vec<(usize, NodeId, NodeId, String)> = graph
-                .ids()
-                .filter_map(|id| match (graph.node(id).op, schedule.issue[id.index()]) {
-                    (Op::Mul(a, b), Some((m, cycle))) if m == index => {
-                        let text = format!("{} * {}", base_name(graph, a), base_name(graph, b));
-                        Some((cycle - 1, a, b, text))
-                    }
-                    _ => None,
-                })
-                .collect();
-            loads.sort_by_key(|l| l.0);
-            let a = loads.iter().map(|l| width(graph, l.1)).max().unwrap_or(1);
-            let b = loads.iter().map(|l| width(graph, l.2)).max().unwrap_or(1);
-            let operand = |id: NodeId, cycle: usize, to: u32| {
-                crate::expression::extended(
-                    &reference(graph, schedule, id, cycle),
-                    width(graph, id),
-                    to,
-                )
-            };
-            let loads: Vec<_> = loads
-                .into_iter()
-                .map(|(cycle, x, y, text)| {
-                    (cycle, operand(x, cycle, a), operand(y, cycle, b), text)
-                })
-                .collect();
-            let (idle_a, idle_b) = loads
-                .last()
-                .map_or(("0".into(), "0".into()), |l| (l.1.clone(), l.2.clone()));
-            Unit {
-                index,
-                a,
-                b,
-                loads,
-                idle_a,
-                idle_b,
-            }
-        })
+    let register = |name: &str| graph.inputs.iter().find(|(n, _)| n == name);
+    let registers = graph.next.iter().filter_map(|(name, _)| register(name));
+    graph
+        .probes
+        .iter()
+        .chain(registers)
+        .map(|(name, id)| (name.clone(), *id, width(graph, *id)))
         .collect()
 }
 
-fn tables(design: &Design, schedule: &Schedule) -> Vec<Table> {
+/// Registers and probes that have a port of their own.
+pub(crate) fn has_port(name: &str) -> bool {
+    let parameter = name
+        .strip_prefix("theta_")
+        .is_some_and(|n| n.chars().all(|c| c.is_ascii_digit()));
+    parameter || ["speed", "locked", "lock_lost", "signal_lost", "direction"].contains(&name)
+}
+
+fn constants(design: &Design) -> Vec<String> {
     let graph = &design.graph;
-    let table = |(index, rom): (usize, &nonius_model::rom::Rom)| {
-        let mut reads: Vec<(usize, String)> = graph
-            .ids()
-            .filter_map(|id| match graph.node(id).op {
-                Op::Lookup {
-                    rom,
-                    column: 0,
-                    address,
-                } if rom == index => {
-                    let cycle = schedule.ready[id.index()] - 1;
-                    let drop = graph.node(address).format.fraction - graph.roms[rom].index_fraction;
-                    let name = reference(graph, schedule, address, cycle);
-                    Some((
-                        cycle,
-                        format!("{name}[{}:{drop}]", drop + graph.roms[rom].address_bits - 1),
-                    ))
-                }
-                _ => None,
-            })
-            .collect();
-        reads.sort();
-        let fallback = reads.pop().map_or_else(|| "0".into(), |r| r.1);
-        Table {
-            name: rom.name.into(),
-            width: rom.row_width(),
-            rows: rom.rows(),
-            address: rom.address_bits,
-            reads,
-            fallback,
-        }
+    let read = |id: NodeId| {
+        graph.nodes.iter().any(|n| n.op.operands().contains(&id))
+            || graph
+                .next
+                .iter()
+                .chain(&graph.probes)
+                .any(|(_, n)| *n == id)
     };
-    graph.roms.iter().enumerate().map(table).collect()
+    let mut lines = vec![];
+    for id in graph.ids() {
+        let node = graph.node(id);
+        let (Op::Constant(raw), Kind::Value) = (node.op, node.kind) else {
+            continue;
+        };
+        let Some(name) = node.name.as_deref().filter(|_| read(id)) else {
+            continue;
+        };
+        let value = raw as f64 * node.format.lsb();
+        let first = format!("  {name:<18} {value:<24}");
+        let what = Coefficients::<Constant>::meaning(name).unwrap_or_default();
+        lines.extend(crate::units::wrap(&first, what, 116));
+    }
+    lines
+}
+
+fn ports(
+    design: &Design,
+    clocks: usize,
+    columns: &[(String, NodeId, u32)],
+) -> Vec<(String, String, String)> {
+    let f = &design.structure.formats;
+    let adc = format!("[{}:0] ", design.spec.adc.bits - 1);
+    let coding = if design.structure.offset_binary {
+        "offset binary"
+    } else {
+        "two's complement"
+    };
+    let input = |range: &str, name: &str, what: String| {
+        (format!("input  wire {range}"), format!("{name},"), what)
+    };
+    let mut list = vec![
+        input(
+            "",
+            "clk",
+            "every register changes at the rising edge".into(),
+        ),
+        input("", "rst_n", "asynchronous reset, active low".into()),
+        input(
+            "",
+            "sample_valid",
+            format!(
+                "one clock per sample, {clocks} clocks apart or more; the inputs below are valid"
+            ),
+        ),
+        input(
+            &adc,
+            "adc_cos",
+            format!("code of the cosine channel, {coding}"),
+        ),
+        input(
+            &adc,
+            "adc_sin",
+            format!("code of the sine channel, {coding}"),
+        ),
+        input(
+            "",
+            "preset",
+            "this sample's period becomes number 0; clears lock_lost".into(),
+        ),
+        input(
+            "",
+            "calibrate",
+            "this sample may move the parameters".into(),
+        ),
+        (
+            format!("output wire [{}:0] ", f.count.width + f.alpha.width - 1),
+            "position,".into(),
+            format!(
+                "periods, s{}.{}: whole periods and alpha_hat for the next sample",
+                f.count.width + f.alpha.width,
+                f.alpha.width
+            ),
+        ),
+    ];
+    for (name, id, _) in columns.iter().filter(|c| has_port(&c.0)) {
+        let node = design.graph.node(*id);
+        let format = if node.kind == Kind::Flag {
+            String::new()
+        } else {
+            format!(" {}", node.format)
+        };
+        list.push((
+            format!("output reg {}", range(&design.graph, *id)),
+            format!("{name},"),
+            format!("{}{format}", meaning(name)),
+        ));
+    }
+    list.push((
+        "output reg ".into(),
+        "valid".into(),
+        "one clock per sample: the outputs are those of the sample".into(),
+    ));
+    list
 }
 
 /// Writes the Verilog of a design; `stimuli` are the names of the vector files and their rows.
@@ -211,107 +233,135 @@ pub fn generate(
 ) -> Result<Files, askama::Error> {
     let graph = &design.graph;
     let schedule = schedule(graph, design.spec.chip.multipliers.count(graph.products()));
-    let netlist = Netlist::new(graph, &schedule);
-    let (ports, columns) = ports(design);
-    let units = units(design, &schedule);
-    let roms = tables(design, &schedule);
+    let writer = Writer::new(graph, &schedule);
+    let tables = crate::units::tables(&writer);
+    let netlist = Netlist::new(&writer);
+    let multipliers = crate::units::multipliers(&writer);
+    for m in &multipliers {
+        writer.declare(&format!("product_{}", m.index), m.a + m.b);
+    }
+    let shifters = crate::shifter::units(&writer);
+    let columns = columns(design);
     let name = design.spec.name.as_str();
-    let adc_bits = design.spec.adc.bits;
+    let description = design.spec.description.replace(['\n', '\r'], " ");
+    let adc_msb = design.spec.adc.bits - 1;
     let f = &design.structure.formats;
-    let code = |pin: &str| {
-        if design.structure.offset_binary {
-            format!("$signed({{1'b0, {pin}}})")
-        } else {
-            format!("$signed({pin})")
+    for (port, id, bits) in &columns {
+        if has_port(port) {
+            writer.read(port, bits - 1, 0);
         }
-    };
-    let thetas: Vec<(String, u32, u32)> = graph
-        .probes
-        .iter()
-        .filter(|(n, id)| n.starts_with("theta_") && graph.node(*id).kind != Kind::Flag)
-        .map(|(n, id)| {
-            (
-                n.clone(),
-                width(graph, *id),
-                graph.node(*id).format.fraction,
-            )
-        })
-        .collect();
-    let speed_bits = columns
-        .iter()
-        .find(|c| c.0 == "seen_speed")
-        .map_or(1, |c| c.2);
-    let core = Core {
+        // Both parts of the position.
+        if ["count", "alpha_hat"].contains(&port.as_str()) {
+            writer.read(port, design.graph.node(*id).format.width - 1, 0);
+        }
+    }
+    let offset_binary = design.structure.offset_binary;
+    let loads = netlist.held.iter().map(|r| {
+        let code = offset_binary && r.name.starts_with("adc_");
+        let load = if code {
+            format!("{{1'b0, {}}}", r.name)
+        } else {
+            r.name.clone()
+        };
+        (r.name.clone(), load)
+    });
+    let (clocks, rate) = (schedule.clocks, design.spec.adc.sample_rate_hz);
+    let clock = rate * clocks as f64;
+    let chip = Chip {
         name,
+        separator: if description.is_empty() { "." } else { ": " },
+        description: &description,
         hash,
-        products: graph.products(),
-        multipliers: schedule.multipliers,
-        clocks: schedule.clocks,
-        step_bits: usize::BITS - schedule.clocks.leading_zeros(),
-        adc_msb: adc_bits - 1,
-        ports: &ports,
-        constants: &netlist.constants,
-        registers: &netlist.registers,
-        inputs: &netlist.inputs,
-        captured: &netlist.captured,
-        captured_names: &netlist.captured_names,
-        probes: &netlist.probes,
-        sections: netlist
-            .sections
+        summary: format!(
+            "{} products on {} multiplier{}, {clocks} clocks per sample",
+            graph.products(),
+            schedule.multipliers,
+            if schedule.multipliers == 1 { "" } else { "s" }
+        ),
+        timetable: crate::units::timetable(&writer),
+        constants: constants(design),
+        ports: ports(design, clocks, &columns),
+        state: &netlist
+            .state
             .iter()
-            .filter(|s| !s.3.is_empty())
-            .collect(),
-        units: &units,
-        roms: &roms,
-        adc_cos: code("adc_cos_pin"),
-        adc_sin: code("adc_sin_pin"),
-    };
-    let top = Top {
-        name,
-        description: &design.spec.description.replace(['\n', '\r'], " "),
-        hash,
-        clocks: schedule.clocks,
-        adc_msb: adc_bits - 1,
-        count_bits: f.count.width,
+            .filter(|r| !has_port(&r.name))
+            .cloned()
+            .collect::<Vec<_>>(),
+        held: &netlist.held,
+        loads: loads.collect(),
+        kept: netlist.kept.iter().filter(|r| !has_port(&r.name)).collect(),
+        multipliers: &multipliers,
+        shifters: &shifters,
+        tables: &tables,
+        sections: &netlist.sections,
+        captures: &netlist.captures,
+        commits: &netlist.commits,
+        clocks,
+        step_bits: crate::units::step_bits(&writer),
         alpha_bits: f.alpha.width,
-        speed_bits,
-        thetas: &thetas,
+        unread: writer.unread(),
     };
-    let args: Vec<String> = columns
+    let signals: Vec<Signal> = columns
+        .iter()
+        .map(|(name, id, bits)| (range(graph, *id), name.clone(), *bits))
+        .collect();
+    let (outputs, inner): (Vec<Signal>, Vec<Signal>) =
+        signals.iter().cloned().partition(|s| has_port(&s.1));
+    let args: String = columns
         .iter()
         .map(|c| format!(", expect_{}", c.0))
         .collect();
     let testbench = Testbench {
         name,
-        clocks: schedule.clocks,
-        adc_msb: adc_bits - 1,
+        clocks,
+        adc_msb,
         count_bits: f.count.width,
         alpha_bits: f.alpha.width,
-        ports: &ports,
-        thetas: &thetas,
-        columns: columns.len() + 5,
+        outputs: &outputs,
+        inner: &inner,
+        columns: &signals,
+        fields: columns.len() + 5,
         scan: vec!["%h"; columns.len() + 5].join(" "),
-        scan_args: format!(
-            ", sample, adc_cos, adc_sin, preset, calibrate{}",
-            args.concat()
-        ),
+        scan_args: format!(", sample, adc_cos, adc_sin, preset, calibrate{args}"),
         stimuli,
     };
+    let example = Example {
+        name,
+        clocks,
+        rate,
+        clock,
+        adc_msb,
+        count_bits: f.count.width,
+        alpha_bits: f.alpha.width,
+        outputs: &outputs,
+        idle: outputs
+            .iter()
+            .map(|o| o.1.clone())
+            .filter(|n| n != "locked" && n != "signal_lost")
+            .collect(),
+    };
+    let constraints = Constraints {
+        name,
+        hash,
+        clocks,
+        rate,
+        clock,
+        megahertz: format!("{:.3}", clock / 1e6),
+        period: format!("{:.3}", 1e9 / clock),
+    };
     let mut files = vec![
-        (format!("rtl/{name}_core.v"), core.render()? + "\n"),
-        (format!("rtl/{name}.v"), top.render()? + "\n"),
+        (format!("rtl/{name}.v"), chip.render()? + "\n"),
+        (format!("rtl/{name}.sdc"), constraints.render()? + "\n"),
+        (
+            format!("example/{name}_example.v"),
+            example.render()? + "\n",
+        ),
         ("tb/chip_tb.v".into(), testbench.render()? + "\n"),
     ];
-    for rom in &graph.roms {
-        let digits = rom.row_width().div_ceil(4) as usize;
-        let rows: String = (0..rom.rows())
-            .map(|row| format!("{:0digits$x}\n", rom.word(row)))
-            .collect();
-        files.push((format!("coefficients/{}.mem", rom.name), rows));
-    }
+    files.extend(crate::tables::files(name, hash, graph));
     Ok(Files {
         files,
-        clocks: schedule.clocks,
+        clocks,
         columns,
     })
 }

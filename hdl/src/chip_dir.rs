@@ -19,6 +19,8 @@ pub struct ChipDir {
     pub rtl: Vec<String>,
     /// `tb/*.v`, sorted.
     pub testbench: Vec<String>,
+    /// `example/*.v`, sorted; none if there is no such folder.
+    pub example: Vec<String>,
     /// Names of the stimuli: `vectors/*.vec` without folder and ending, sorted.
     pub stimuli: Vec<String>,
     /// Lines of all vector files together.
@@ -87,6 +89,11 @@ impl ChipDir {
             clocks_per_sample: design.clocks_per_sample,
             rtl,
             testbench,
+            example: if root.join("example").is_dir() {
+                files(root, "example", ".v")?
+            } else {
+                vec![]
+            },
             stimuli: vectors.iter().map(|it| stem(it)).collect(),
             rows,
         })

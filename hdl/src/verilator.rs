@@ -86,13 +86,23 @@ fn build(chip: &ChipDir, effort: Effort, verilator: &Found, to: &Path) -> Result
         .run()
 }
 
-/// Every warning of `verilator --lint-only -Wall` for the chip alone and for the chip in its
-/// testbench. Files that Verilator does not accept are an error.
+/// Every warning of `verilator --lint-only -Wall` for the chip alone, in its testbench and in its
+/// example. Files that Verilator does not accept are an error.
 pub fn lint(chip: &ChipDir) -> Result<Vec<String>, Error> {
     let [verilator] = require([Tool::Verilator])?;
     let mut warnings = lint_top(&verilator, chip, &chip.name, &chip.rtl)?;
     let all: Vec<String> = chip.rtl.iter().chain(&chip.testbench).cloned().collect();
-    for warning in lint_top(&verilator, chip, TESTBENCH, &all)? {
+    let mut more = lint_top(&verilator, chip, TESTBENCH, &all)?;
+    if !chip.example.is_empty() {
+        let all: Vec<String> = chip.rtl.iter().chain(&chip.example).cloned().collect();
+        more.extend(lint_top(
+            &verilator,
+            chip,
+            &format!("{}_example", chip.name),
+            &all,
+        )?);
+    }
+    for warning in more {
         if !warnings.contains(&warning) {
             warnings.push(warning);
         }

@@ -1,49 +1,11 @@
 //! The generated chips agree with the model in every bit of every probe and register, in Icarus and in Verilator.
 
-use std::fs;
-use std::path::Path;
+mod chip;
 
+use chip::{optical, write};
+use nonius_hdl::ChipDir;
 use nonius_hdl::verify::{Options, verify};
-use nonius_model::design::Design;
 use nonius_model::spec::{All, Coding, Multipliers, Spec};
-use nonius_testvectors::{stimulus, vectors};
-
-fn optical() -> Spec {
-    let text = fs::read_to_string(concat!(
-        env!("CARGO_MANIFEST_DIR"),
-        "/../designs/optical.toml"
-    ));
-    Spec::from_toml(&text.expect("designs/optical.toml"), "optical.toml").expect("a shipped design")
-}
-
-fn write(spec: &Spec, rows: usize, dir: &Path) {
-    let design = Design::new(spec).expect("a design that works");
-    let stimuli = stimulus::named(&design, rows);
-    let names: Vec<_> = stimuli
-        .iter()
-        .map(|s| (s.name.clone(), s.samples.len()))
-        .collect();
-    let chip = nonius_codegen::generate(&design, "test", &names).expect("templates render");
-    let put = |path: &str, text: &str| {
-        let path = dir.join(path);
-        fs::create_dir_all(path.parent().expect("below dir")).expect("folder");
-        fs::write(path, text).expect("file");
-    };
-    for (path, text) in &chip.files {
-        put(path, text);
-    }
-    for one in &stimuli {
-        put(
-            &format!("vectors/{}.vec", one.name),
-            &vectors::rows(&design, one, &chip.columns),
-        );
-    }
-    let json = format!(
-        "{{\"name\": \"{}\", \"clocks_per_sample\": {}}}",
-        spec.name, chip.clocks
-    );
-    put("design.json", &json);
-}
 
 fn agrees(spec: &Spec, rows: usize, options: &Options) {
     let dir = tempfile::tempdir().expect("scratch folder");
@@ -55,6 +17,9 @@ fn agrees(spec: &Spec, rows: usize, options: &Options) {
         "{:?} {:?} {:?} {:?}: {report:#?}",
         spec.tracking, spec.calibration, spec.adc, spec.chip
     );
+    for run in &report.runs {
+        assert_eq!(run.warnings, Vec::<String>::new(), "{}", run.tool);
+    }
 }
 
 /// Method, type, parameters, multipliers, ADC bits: one after the other away from the shipped design.
@@ -97,6 +62,21 @@ fn variants() -> Vec<Spec> {
         })
     }));
     all
+}
+
+/// Nobody's linter has anything to say, without waivers: Verilator -Wall, Icarus -Wall, Yosys check.
+#[test]
+fn every_variant_is_clean() {
+    for spec in variants() {
+        let dir = tempfile::tempdir().expect("scratch folder");
+        write(&spec, 2, dir.path());
+        let chip = ChipDir::open(dir.path()).expect("a chip");
+        let lint = nonius_hdl::verilator::lint(&chip).unwrap_or_else(|e| panic!("{e}"));
+        assert_eq!(lint, Vec::<String>::new(), "{:?}", spec.chip);
+        let check = nonius_hdl::yosys::check(&chip).unwrap_or_else(|e| panic!("{e}"));
+        assert!(check.passed, "{:?}", check.failure);
+        assert_eq!(check.warnings, Vec::<String>::new());
+    }
 }
 
 #[test]

@@ -47,6 +47,14 @@ impl Chip<Bits> {
             + i128::from(self.state.alpha_hat.raw(alpha.fraction))
     }
 
+    /// The parameters that the next sample is corrected with, as the kernels see them.
+    #[must_use]
+    pub fn theta(&self) -> [f64; 5] {
+        let theta =
+            crate::kernel::correction::parameters(&self.state, &self.coefficients, &self.structure);
+        theta.map(Bits::to_f64)
+    }
+
     /// The position in periods.
     #[must_use]
     pub fn position(&self) -> f64 {

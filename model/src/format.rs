@@ -152,6 +152,15 @@ impl Quantiser {
         }
     }
 
+    /// The same where half a bit was added before: what is left of rounding to nearest is to cut off.
+    #[must_use]
+    pub const fn rounded_before(self) -> Self {
+        Self {
+            rounding: Rounding::Floor,
+            ..self
+        }
+    }
+
     /// Cut off and wrap: the rule for angles and counters.
     #[must_use]
     pub const fn wrapping(format: Format) -> Self {

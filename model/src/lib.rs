@@ -10,6 +10,7 @@ pub mod design;
 pub mod format;
 pub mod graph;
 pub mod kernel;
+pub mod physical;
 mod real;
 mod record;
 pub mod reference;

@@ -2,12 +2,12 @@
 
 /// Declares a bundle of values and flags, generic over the reading, that can name and list its members.
 macro_rules! bundle {
-    ($(#[$doc:meta])* $name:ident { $($(#[$vdoc:meta])* $value:ident),* $(,)? } { $($(#[$fdoc:meta])* $flag:ident),* $(,)? }) => {
+    ($(#[$doc:meta])* $name:ident { $($(#[doc = $vdoc:literal])* $value:ident),* $(,)? } { $($(#[doc = $fdoc:literal])* $flag:ident),* $(,)? }) => {
         $(#[$doc])*
         #[derive(Clone, Copy, Debug)]
         pub struct $name<S: $crate::signal::Signal> {
-            $($(#[$vdoc])* pub $value: S,)*
-            $($(#[$fdoc])* pub $flag: S::Bool,)*
+            $($(#[doc = $vdoc])* pub $value: S,)*
+            $($(#[doc = $fdoc])* pub $flag: S::Bool,)*
         }
 
         impl<S: $crate::signal::Signal> $name<S> {
@@ -15,6 +15,15 @@ macro_rules! bundle {
             pub const VALUES: &'static [&'static str] = &[$(stringify!($value)),*];
             /// Names of the flags, in order.
             pub const FLAGS: &'static [&'static str] = &[$(stringify!($flag)),*];
+
+            /// What the member of this name is, in a sentence.
+            pub fn meaning(name: &str) -> Option<&'static str> {
+                match name {
+                    $(stringify!($value) => Some(concat!($($vdoc),*).trim_ascii()),)*
+                    $(stringify!($flag) => Some(concat!($($fdoc),*).trim_ascii()),)*
+                    _ => None,
+                }
+            }
 
             /// Builds the bundle, member by member.
             pub fn build(

@@ -12,21 +12,27 @@ pub struct Column {
     pub format: Format,
     /// Entries in units of the format's last bit.
     pub raw: Vec<i64>,
-    /// The entries without rounding, for the `f64` reading.
+    /// What the entries stand for, without rounding, for the `f64` reading.
     pub exact: Vec<f64>,
     /// The entries in the container, for the bit-true reading.
     pub(crate) bits: Vec<Bits>,
 }
 
 impl Column {
-    /// Rounds `exact` to `format` and checks that every entry fits.
+    /// Rounds `exact` + `carried` to `format` and checks that every entry fits. `carried` is what the entries hold on
+    /// top for a later rounding; the `f64` reading does not see it.
     ///
     /// # Errors
     /// The index of the first entry that does not fit.
-    pub fn new(name: &'static str, format: Format, exact: Vec<f64>) -> Result<Self, usize> {
+    pub fn new(
+        name: &'static str,
+        format: Format,
+        exact: Vec<f64>,
+        carried: f64,
+    ) -> Result<Self, usize> {
         let raw: Vec<i64> = exact
             .iter()
-            .map(|x| (x / format.lsb()).round() as i64)
+            .map(|x| ((x + carried) / format.lsb()).round() as i64)
             .collect();
         if let Some(i) = raw
             .iter()

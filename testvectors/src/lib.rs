@@ -1,4 +1,6 @@
 //! Stimuli and the vector files of the testbench.
 
+pub mod read_vectors;
 pub mod stimulus;
 pub mod vectors;
+pub mod waves;

@@ -108,6 +108,19 @@ pub fn named(design: &Design, rows: usize) -> Vec<Stimulus> {
                 )
             }
         }),
+        // The parameters are led to their bounds and beyond, then come codes that the correction cannot hold.
+        motion("bounds", &|k| {
+            let t = (k as f64 / n * 1.5).min(1.0);
+            let alpha = std::f64::consts::TAU * k as f64 * top.min(1.0 / 20.0);
+            if t < 1.0 {
+                let cos = a * (1.0 - 0.5 * t) * alpha.cos() + o * 6.0 * t;
+                let sin = a * (1.0 - 0.5 * t) * (alpha - beta * 6.0 * t).sin() - o * 6.0 * t;
+                (code(cos), code(sin))
+            } else {
+                let rail = |v: f64| if v < 0.0 { low } else { full };
+                (rail(alpha.cos()), rail(alpha.sin()))
+            }
+        }),
         motion("ties", &|k| {
             (
                 middle + (1 << (k % (spec.adc.bits as usize - 1))),

@@ -17,8 +17,11 @@ fn hex(out: &mut String, raw: i64, bits: u32) {
     let _ = write!(out, " {:x}", raw as u64 & mask);
 }
 
-/// The rows of a stimulus. `columns` names what the testbench compares: `seen_` probes and `reg_` registers after the
-/// sample, each with its node and bits.
+/// The rows of a stimulus. `columns` names what the testbench compares: probes of the sample and registers after it,
+/// each with its node and bits.
+///
+/// # Panics
+/// If a column is neither a probe nor a register, which is a defect of the generator.
 #[must_use]
 pub fn rows(design: &Design, stimulus: &Stimulus, columns: &[(String, NodeId, u32)]) -> String {
     let mut chip = Chip::bit_true(design);
@@ -32,15 +35,15 @@ pub fn rows(design: &Design, stimulus: &Stimulus, columns: &[(String, NodeId, u3
         hex(&mut out, sample.calibrate.into(), 1);
         for (column, id, bits) in columns {
             let entry = design.graph.node(*id);
-            let flag = entry.kind == Kind::Flag;
-            let raw = match (column.strip_prefix("seen_"), column.strip_prefix("reg_")) {
-                (Some(name), _) if flag => probes.flag(name).map(i64::from),
-                (Some(name), _) => probes.value(name).map(|v| v.raw(entry.format.fraction)),
-                (_, Some(name)) if flag => chip.state.flag(name).map(i64::from),
-                (_, Some(name)) => chip.state.value(name).map(|v| v.raw(entry.format.fraction)),
-                _ => None,
+            let raw = if entry.kind == Kind::Flag {
+                let flag = probes.flag(column).or_else(|| chip.state.flag(column));
+                flag.map(i64::from)
+            } else {
+                let value = probes.value(column).or_else(|| chip.state.value(column));
+                value.map(|v| v.raw(entry.format.fraction))
             };
-            hex(&mut out, raw.unwrap_or_default(), *bits);
+            let raw = raw.expect("every column is a probe or a register");
+            hex(&mut out, raw, *bits);
         }
         out.push('\n');
     }

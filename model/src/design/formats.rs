@@ -43,6 +43,11 @@ fn level_bits(tracking: &Loop) -> u32 {
     (power_of(4.0 / tracking.omega).clamp(5, 12)) as u32
 }
 
+/// Format of a counter from 0 to `last`.
+fn counting_to(last: u32) -> Format {
+    Format::unsigned((32 - last.leading_zeros()).max(1), 0)
+}
+
 fn bits(n: i32) -> u32 {
     u32::try_from(n).unwrap_or(0)
 }
@@ -92,10 +97,11 @@ pub(super) fn structure(
         count: Format::signed(spec.chip.count_bits, spec.chip.count_bits),
         theta: [gain, gain, multiplied(exp2(r.deviation[4].into()))],
         deviation: r.deviation.map(accumulator),
+        step: accumulator(r.deviation.into_iter().max().unwrap_or(0) + 1),
         level: Quantiser::saturating(Format::unsigned(level_bits(tracking), 0)),
         loop_gear: Format::unsigned(2, 0),
-        gamma_gear: Format::unsigned(4, 0),
-        gear_periods: Format::unsigned(8, 0),
+        gamma_gear: counting_to(spec.calibration.gamma_last - spec.calibration.gamma_first),
+        gear_periods: counting_to(spec.calibration.gear_periods.saturating_sub(1)),
     };
     Ok(Structure {
         method: match spec.tracking.method {
@@ -115,7 +121,8 @@ pub(super) fn structure(
     })
 }
 
-/// A quarter wave, each segment expanded about its centre; the value is lowered by half the error at the ends.
+/// A quarter wave, each segment expanded about its centre; the value is lowered by half the error at the ends. It
+/// carries the half bit that rounds the interpolated result.
 fn sine_table(words: &Words) -> Result<Rom, DesignError> {
     let (rows, f) = (words.sine_rows_log2, words.signal_fraction);
     let segment = exp2(-i64::from(rows) - 2);
@@ -137,11 +144,18 @@ fn sine_table(words: &Words) -> Result<Rom, DesignError> {
         address_bits: rows,
         index_fraction: rows + 2,
         columns: vec![
-            Column::new("value", Format::unsigned(f + 3, f + 2), values).map_err(unfit)?,
+            Column::new(
+                "value",
+                Format::unsigned(f + 3, f + 2),
+                values,
+                exp2(-i64::from(f) - 1),
+            )
+            .map_err(unfit)?,
             Column::new(
                 "slope",
                 Format::unsigned(slope_fraction + 3, slope_fraction),
                 slopes,
+                0.0,
             )
             .map_err(unfit)?,
         ],
@@ -183,10 +197,15 @@ pub(super) fn constants(
         theta_1_nominal: nominal,
         theta_3_nominal: nominal,
         quarter_turn: corrected(0.25, 2.0 * half_bit, p),
-        half_segment: corrected(half_segment, half_bit, p + 1),
-        lock_error: Constant::rounded((0.75 * worst).clamp(0.35, 0.6), f.min(8)),
-        lock_residual: Constant::rounded((1.25 * worst).clamp(0.4, 0.9), f.min(8)),
-        weak_signal: Constant::rounded(0.25, f.min(8)),
+        half_bit: Constant {
+            ideal: 0.0,
+            ..Constant::rounded(half_bit, p + 1)
+        },
+        half_segment: Constant::rounded(half_segment, words.sine_rows_log2 + 3),
+        // Limits of few bits make short comparators.
+        lock_error: Constant::rounded((0.75 * worst).clamp(0.35, 0.6), 4),
+        lock_residual: Constant::rounded((1.25 * worst).clamp(0.4, 0.9), 4),
+        weak_signal: Constant::rounded(0.25, 2),
         restart_residual: Constant::rounded(spec.calibration.restart_residual, f.min(8)),
         direction_rate: Constant::rounded(exp2(-i64::from(f)), words.phase_bits),
         lock_down: whole(-8),
@@ -195,6 +214,7 @@ pub(super) fn constants(
         loop_gear_last: whole(acquisition.gears.into()),
         gamma_gear_last: whole(structure.gamma_gears.into()),
         gear_periods_last: whole(i64::from(spec.calibration.gear_periods) - 1),
+        unit_radius: corrected(1.0, exp2(-i64::from(f) - 1), f + 1),
         zero: whole(0),
         one: whole(1),
         half: Constant::rounded(0.5, 1),

@@ -82,7 +82,7 @@ impl Design {
 }
 
 /// Nominal amplitude after normalisation, between ½ and 1, and the power of two that makes it so.
-fn normalisation(spec: &Spec) -> (f64, u32) {
+pub(crate) fn normalisation(spec: &Spec) -> (f64, u32) {
     let ratio = spec.sensor.amplitude / spec.adc.full_scale;
     let power = (-ratio.log2()).floor().max(0.0) as u32;
     (ratio * crate::format::exp2(power.into()), power)

@@ -122,19 +122,7 @@ impl Recorder {
 
     /// A coefficient of value `raw` · 2^-`fraction`. Equal coefficients of one name are one node.
     pub fn constant(&self, name: Option<&str>, raw: i64, fraction: u32) -> Node<'_> {
-        let mut inner = self.inner.borrow_mut();
-        let format = Format::covering(raw.into(), raw.into(), fraction);
-        let range = (raw.into(), raw.into());
-        let name = name.map(str::to_owned);
-        let entry = Entry {
-            op: Op::Constant(raw),
-            kind: Kind::Value,
-            format,
-            range,
-            name,
-            formula: 0,
-        };
-        let id = inner.push(entry);
+        let id = self.inner.borrow_mut().constant(name, raw, fraction);
         Node { recorder: self, id }
     }
 
@@ -175,7 +163,47 @@ impl Inner {
         id
     }
 
+    fn constant(&mut self, name: Option<&str>, raw: i64, fraction: u32) -> NodeId {
+        let entry = Entry {
+            op: Op::Constant(raw),
+            kind: Kind::Value,
+            format: Format::covering(raw.into(), raw.into(), fraction),
+            range: (raw.into(), raw.into()),
+            name: name.map(str::to_owned),
+            formula: 0,
+        };
+        let same = |e: &Entry| e.name.is_some() && *e == entry;
+        if let Some(known) = self.graph.nodes.iter().position(same) {
+            return NodeId(known as u32);
+        }
+        self.push(entry)
+    }
+
+    /// What needs no operation: a quantisation to the format the value has, the opposite of an opposite, the negative
+    /// of a coefficient.
+    fn trivial(&mut self, op: &Op) -> Option<NodeId> {
+        match *op {
+            Op::Quantise(a, to) if self.graph.node(a).format == to.format => Some(a),
+            Op::Not(a) => match self.graph.node(a).op {
+                Op::Not(inner) => Some(inner),
+                _ => None,
+            },
+            Op::Neg(a) => {
+                let Op::Constant(raw) = self.graph.node(a).op else {
+                    return None;
+                };
+                let negative = self.graph.node(a).name.clone()?;
+                let fraction = self.graph.node(a).format.fraction;
+                Some(self.constant(Some(&format!("minus_{negative}")), -raw, fraction))
+            }
+            _ => None,
+        }
+    }
+
     fn record(&mut self, op: Op) -> NodeId {
+        if let Some(id) = self.trivial(&op) {
+            return id;
+        }
         let reached = match reach(&op, &self.graph.nodes, &self.graph.roms) {
             Ok(reached) => reached,
             Err(mut error) => {

@@ -14,6 +14,15 @@ const OFFSET: i32 = 0;
 const GAIN: i32 = 1;
 const PHASE: i32 = 2;
 
+const GRADIENT: [&str; 5] = [
+    "gradient_1",
+    "gradient_2",
+    "gradient_3",
+    "gradient_4",
+    "gradient_5",
+];
+const STEP: [&str; 5] = ["step_1", "step_2", "step_3", "step_4", "step_5"];
+
 static DIRECTION: Formula = Formula {
     title: "Gradient along the radius",
     equation: "rho_c = cos(alpha_hat) rho,  rho_s = sin(alpha_hat) rho",
@@ -63,19 +72,17 @@ pub fn update<S: Signal>(
         return old;
     }
     let step = |gradient: S::Wide, i: usize, equaliser: i32| {
-        let accumulator = structure.formats.deviation[i];
-        let geared = gradient.scale(equaliser - structure.gamma_first as i32);
-        let format = crate::format::Format::signed(
-            accumulator.format.width + 1,
-            accumulator.format.fraction,
-        );
-        let step = geared.quantise_geared(
-            state.gamma_gear,
-            1,
-            structure.gamma_gears,
-            &Quantiser::saturating(format),
-        );
-        S::select(fresh, (old[i] - step).quantise(&accumulator), old[i])
+        let geared = gradient
+            .scale(equaliser - structure.gamma_first as i32)
+            .named(GRADIENT[i])
+            .quantise_geared(
+                state.gamma_gear,
+                1,
+                structure.gamma_gears,
+                &structure.formats.step,
+            );
+        let step = S::select(fresh, geared, k.zero).named(STEP[i]);
+        (old[i] - step).quantise(&structure.formats.deviation[i])
     };
     let fifth = if structure.parameters >= 5 {
         step(y_c * rho_s, 4, PHASE)

@@ -53,14 +53,23 @@ impl Constant {
 }
 
 macro_rules! coefficients {
-    ($($(#[$doc:meta])* $name:ident),* $(,)?) => {
+    ($($(#[doc = $doc:literal])* $name:ident),* $(,)?) => {
         /// The coefficients as the kernels take them: constants of the design, or those lifted into a reading.
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub struct Coefficients<T> {
-            $($(#[$doc])* pub $name: T,)*
+            $($(#[doc = $doc])* pub $name: T,)*
         }
 
         impl<T: Copy> Coefficients<T> {
+            /// What the coefficient of this name is, in a sentence.
+            #[must_use]
+            pub fn meaning(name: &str) -> Option<&'static str> {
+                match name {
+                    $(stringify!($name) => Some(concat!($($doc),*).trim_ascii()),)*
+                    _ => None,
+                }
+            }
+
             /// Applies `f` to every coefficient and its name.
             pub fn map<U>(&self, mut f: impl FnMut(&'static str, T) -> U) -> Coefficients<U> {
                 Coefficients { $($name: f(stringify!($name), self.$name),)* }
@@ -84,7 +93,9 @@ coefficients! {
     theta_3_nominal,
     /// A quarter turn, less one bit of the sine phase.
     quarter_turn,
-    /// Half a sine table segment, less half a bit of the sine phase.
+    /// Half a bit of the sine phase: what was cut off, on average.
+    half_bit,
+    /// Half a sine table segment.
     half_segment,
     /// Largest |e| in lock, radians.
     lock_error,
@@ -108,6 +119,8 @@ coefficients! {
     gamma_gear_last,
     /// Periods of travel per γ gear, less one.
     gear_periods_last,
+    /// The radius 1, less half a bit of the residual.
+    unit_radius,
     /// 0.
     zero,
     /// 1.

@@ -11,7 +11,7 @@ static PHASE: Formula = Formula {
 
 static RADIUS: Formula = Formula {
     title: "Radial residual",
-    equation: "rho = c cos(alpha_hat) + s sin(alpha_hat) - 1",
+    equation: "rho = c cos(alpha_hat) + s sin(alpha_hat) - 1, the half bit of rounding in the 1",
     source: "paper section 5.5.1, n^T r",
 };
 
@@ -29,7 +29,8 @@ pub fn phase_error<S: Signal>(c: S, s: S, cos_hat: S, sin_hat: S, structure: &St
         .quantise(&structure.formats.signal)
 }
 
-/// ρ: projection of the corrected pair on the estimate's direction, less one.
+/// ρ: projection of the corrected pair on the estimate's direction, less one. The 1 is half a bit short, which rounds
+/// the result without an adder of its own.
 pub fn radial_residual<S: Signal>(
     c: S,
     s: S,
@@ -39,14 +40,14 @@ pub fn radial_residual<S: Signal>(
     structure: &Structure,
 ) -> S {
     c.begin(&RADIUS);
-    (c * cos_hat - k.one.widen() + s * sin_hat)
+    (c * cos_hat - k.unit_radius.widen() + s * sin_hat)
         .named("rho_exact")
-        .quantise(&structure.formats.signal)
+        .quantise(&structure.formats.signal.rounded_before())
 }
 
-/// Whether x lies strictly between −`limit` and `limit`.
+/// Whether −`limit` ≤ x < `limit`: both comparisons need only the bits above the last one of `limit`.
 pub fn within<S: Signal>(x: S, limit: S) -> S::Bool {
-    x.less_than(limit).and((-limit).less_than(x))
+    x.less_than(limit).and(x.less_than(-limit).not())
 }
 
 /// Both corrected signals are too small to tell an angle.

@@ -52,7 +52,8 @@ pub fn rate<S: Signal>(e: S, state: &State<S>, k: &Coefficients<S>, structure: &
         .named("e_change");
     let kick = geared(k.loop_a * change, structure.loop_stride).named("kick");
     let drift = geared(k.loop_ab * state.error_previous, 2 * structure.loop_stride).named("drift");
-    (kept + kick + drift).quantise(&formats.rate)
+    // The drift is there long before the kick.
+    (kept + drift + kick).quantise(&formats.rate)
 }
 
 /// A difference of two phases is known modulo one turn.

@@ -81,6 +81,8 @@ pub struct Formats {
     pub theta: [Quantiser; 3],
     /// Accumulators of the five parameters: deviation from the nominal value.
     pub deviation: [Quantiser; 5],
+    /// One step of any parameter: one format, so that one shifter serves all.
+    pub step: Quantiser,
     /// Lock level.
     pub level: Quantiser,
     /// Loop gear.

@@ -58,6 +58,6 @@ pub fn advance<S: Signal>(
 pub fn direction<S: Signal>(rate: S, before: S::Bool, k: &Coefficients<S>) -> S::Bool {
     rate.begin(&DIRECTION);
     let backwards = rate.less_than(-k.direction_rate);
-    let forwards = k.direction_rate.less_than(rate);
+    let forwards = rate.less_than(k.direction_rate).not();
     backwards.or(before.and(forwards.not()))
 }

@@ -35,22 +35,24 @@ pub fn sine<S: Signal>(alpha_hat: S, k: &Coefficients<S>, structure: &Structure)
     let rising = phase.quantise(&modulo(2)).named("quarter_phase");
     let falling = (k.quarter_turn - rising).named("quarter_phase_mirrored");
 
-    let quarter = |address: S, name: (&'static str, &'static str)| {
+    let quarter = |address: S, name: [&'static str; 4]| {
         let rom = &structure.sine;
-        let inside = address.quantise(&modulo(rom.index_fraction)) - k.half_segment;
-        let value = S::lookup(rom, VALUE, address);
-        let slope = S::lookup(rom, SLOPE, address).named(name.1);
+        let inside = (address.quantise(&modulo(rom.index_fraction)) + k.half_bit - k.half_segment)
+            .named(name[0]);
+        let value = S::lookup(rom, VALUE, address).named(name[1]);
+        let slope = S::lookup(rom, SLOPE, address).named(name[2]);
+        // The table's value carries the half bit of rounding.
         (slope * inside + value.widen())
-            .quantise(&structure.formats.signal)
-            .named(name.0)
+            .quantise(&structure.formats.signal.rounded_before())
+            .named(name[3])
     };
     let sin = quarter(
         S::select(odd, falling, rising).named("sin_address"),
-        ("sin_magnitude", "sin_slope"),
+        ["sin_inside", "sin_value", "sin_slope", "sin_magnitude"],
     );
     let cos = quarter(
         S::select(odd, rising, falling).named("cos_address"),
-        ("cos_magnitude", "cos_slope"),
+        ["cos_inside", "cos_value", "cos_slope", "cos_magnitude"],
     );
     let sin_hat = S::select(upper_half, -sin, sin).quantise(&structure.formats.signal);
     let cos_hat = S::select(upper_half.xor(odd), -cos, cos).quantise(&structure.formats.signal);

@@ -35,6 +35,20 @@ impl Normalise {
     pub fn y(&self, signal: f64) -> f64 {
         (signal - self.middle) / self.amplitude
     }
+
+    /// The five parameters of section 5.3 for y, as those for the signals themselves.
+    #[must_use]
+    pub fn theta_of_signals(&self, theta: [f64; 5]) -> [f64; 5] {
+        let [t1, t2, t3, t4, t5] = theta;
+        let [gain_c, gain_s, cross] = [t1, t3, t5].map(|t| t / self.amplitude);
+        [
+            gain_c,
+            t2 - gain_c * self.middle,
+            gain_s,
+            t4 - (gain_s + cross) * self.middle,
+            cross,
+        ]
+    }
 }
 
 /// The loop of a design.
@@ -49,7 +63,7 @@ pub fn tracking(spec: &Spec) -> Result<LoopConfig, ReferenceError> {
 }
 
 /// The whole system for a design, for signals in the unit of [`Normalise`]: final form of the residual gradient, γ
-/// and its halvings as the design says, an update per sector of travel and in lock only, started from the arctangent.
+/// and its halvings as the design says, the modes equalised, an update per sector of travel and in lock only, started from the arctangent.
 ///
 /// # Errors
 /// As [`tracking`]; a number of parameters other than 0, 4, 5, 8, 9.
@@ -72,6 +86,13 @@ pub fn config(spec: &Spec) -> Result<Config, ReferenceError> {
         + s.amplitude_tolerance
         + s.phase_error_max_deg.to_radians()
         + 5.0 * s.noise_rms;
+    // The gradient's modes are 1/2 for offsets, 1/4 for gains, 1/8 for the phase: brought to one speed.
+    let mut equaliser = Theta::repeat(1.0);
+    let [gain_c, _, gain_s, _] = parameters.linear();
+    (equaliser[gain_c], equaliser[gain_s]) = (2.0, 2.0);
+    if parameters.count() % 2 == 1 {
+        equaliser[parameters.count() - 1] = 4.0;
+    }
     // A loop settles within some multiples of 1/ω0.
     let omega = TAU * spec.tracking.bandwidth_hz / spec.adc.sample_rate_hz;
     let settled = (4.0 / omega).ceil().clamp(8.0, 1e6) as u32;
@@ -90,7 +111,7 @@ pub fn config(spec: &Spec) -> Result<Config, ReferenceError> {
             Search::Residual(Form::Final)
         },
         gamma: Gamma {
-            first: Theta::repeat(0.5f64.powi(k.gamma_first as i32)),
+            first: equaliser * 0.5f64.powi(k.gamma_first as i32),
             halvings: k.gamma_last.saturating_sub(k.gamma_first),
             periods: k.gear_periods.into(),
         },

@@ -214,6 +214,29 @@ impl Reference {
         self.go_on([y_c, y_s], &seen, gamma)
     }
 
+    /// What is known of the next sample before it comes: e and ρ are not, and are 0.
+    #[must_use]
+    pub fn expected(&self) -> Estimate {
+        if let Some(acquisition) = &self.acquisition {
+            return Estimate {
+                theta: self.theta,
+                ..acquisition.expected(self.config.tracking.ts)
+            };
+        }
+        let (turns, phase) = self.tracking.turns_and_phase();
+        Estimate {
+            alpha_hat: self.tracking.alpha_hat(),
+            turns,
+            phase,
+            speed: self.tracking.speed(),
+            theta: self.theta,
+            e: 0.0,
+            rho: 0.0,
+            locked: self.gate.locked(),
+            updated: false,
+        }
+    }
+
     /// Θ as it stands for the next sample.
     #[must_use]
     pub fn theta(&self) -> &Theta {
@@ -232,18 +255,12 @@ impl Reference {
     }
 
     fn go_on(&mut self, y: [f64; 2], seen: &Observation, gamma: Option<&Theta>) -> Estimate {
-        let (turns, phase) = self.tracking.turns_and_phase();
         let theta = self.theta;
         let estimate = Estimate {
-            alpha_hat: self.tracking.alpha_hat(),
-            turns,
-            phase,
-            speed: self.tracking.speed(),
-            theta,
             e: seen.e,
             rho: seen.rho,
-            locked: true,
             updated: gamma.is_some(),
+            ..self.expected()
         };
         let along = |gradient: Theta| gamma.map_or(Theta::zeros(), |g| -gradient.component_mul(g));
         let parameters = self.config.parameters;

@@ -60,6 +60,8 @@ pub(super) struct Acquisition {
     first: f64,
     sum: f64,
     moment: f64,
+    /// What the last sample said.
+    last: Estimate,
 }
 
 /// Below this radius the pair tells no angle.
@@ -67,14 +69,38 @@ const WEAK: f64 = 0.25;
 
 impl Acquisition {
     pub(super) fn after(samples: u32, tracking: &Loop) -> Self {
+        let (turns, phase) = tracking.turns_and_phase();
         Self {
             wanted: samples,
             arctangent: Arctangent::default(),
-            turns: tracking.turns_and_phase().0,
+            last: Estimate {
+                alpha_hat: tracking.alpha_hat(),
+                turns,
+                phase,
+                speed: 0.0,
+                theta: Theta::zeros(),
+                e: 0.0,
+                rho: 0.0,
+                locked: false,
+                updated: false,
+            },
+            turns,
             seen: 0,
             first: 0.0,
             sum: 0.0,
             moment: 0.0,
+        }
+    }
+
+    /// What the last sample said, one sample on at the speed known so far.
+    pub(super) fn expected(&self, ts: f64) -> Estimate {
+        let moved = self.last.phase + self.last.speed * ts;
+        let turns = (moved / TAU).round();
+        Estimate {
+            alpha_hat: self.last.alpha_hat + self.last.speed * ts,
+            turns: self.last.turns + turns as i64,
+            phase: moved - turns * TAU,
+            ..self.last
         }
     }
 
@@ -84,6 +110,12 @@ impl Acquisition {
         corrected: [f64; 2],
         config: LoopConfig,
     ) -> (Estimate, Option<Loop>) {
+        let (seen, found) = self.extend(corrected, config);
+        self.last = seen;
+        (seen, found)
+    }
+
+    fn extend(&mut self, corrected: [f64; 2], config: LoopConfig) -> (Estimate, Option<Loop>) {
         let radius = corrected[0].hypot(corrected[1]);
         let angle = self.arctangent.step(corrected);
         let (turns, phase) = self.arctangent.turns_and_phase();

@@ -1,0 +1,276 @@
+//! `nonius simulate`: the chip over a recording.
+
+use std::io::{BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result, bail};
+use clap::Args;
+use indicatif::{ProgressBar, ProgressStyle};
+use nonius_model::chip::Chip;
+use nonius_model::design::Design;
+use nonius_model::physical::{Converter, theta};
+use nonius_model::spec::Spec;
+use nonius_recording::{Recording, Survey};
+
+use crate::recording_args::RecordingArgs;
+use crate::target::Target;
+
+/// Largest jump, in periods, from the end of a repeated recording to its beginning, beyond the usual step.
+const JOINT: f64 = 0.1;
+
+/// What to simulate.
+#[derive(Args)]
+pub(crate) struct Simulate {
+    /// The design.
+    design: PathBuf,
+    /// The recording (CSV).
+    recording: PathBuf,
+    /// File to write (CSV): time_s, position_periods, speed_periods_per_s, locked, theta_1, …
+    #[arg(short)]
+    output: PathBuf,
+    /// The paper in floating point instead of the bit-true chip.
+    #[arg(long)]
+    reference: bool,
+    /// Plays a recording of whole turns so many times.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
+    repeat: u32,
+    #[command(flatten)]
+    recording_args: RecordingArgs,
+}
+
+/// What a simulated interpolator says before it sees a sample.
+struct Estimate {
+    /// Whole periods and fraction, written with every bit.
+    position: String,
+    speed_per_sample: f64,
+    locked: bool,
+    theta: Vec<f64>,
+}
+
+/// A bit-true chip, or the paper.
+trait Interpolator {
+    fn estimate(&self) -> Estimate;
+    fn step(&mut self, cos: f64, sin: f64);
+}
+
+struct BitTrue<'a> {
+    design: &'a Design,
+    chip: Chip<nonius_model::bits::Bits>,
+    converter: Converter,
+    speed: f64,
+}
+
+impl Interpolator for BitTrue<'_> {
+    fn estimate(&self) -> Estimate {
+        let parameters = self.design.spec.calibration.parameters as usize;
+        Estimate {
+            position: exact(
+                self.chip.position_raw(),
+                self.design.structure.formats.alpha.fraction,
+            ),
+            speed_per_sample: self.speed,
+            locked: self.chip.state.locked,
+            theta: theta(&self.design.spec, self.chip.theta())[..parameters].to_vec(),
+        }
+    }
+
+    fn step(&mut self, cos: f64, sin: f64) {
+        let code = |v| self.converter.code(v);
+        let probes = self.chip.step_codes(code(cos), code(sin), false, true);
+        self.speed = probes.speed.to_f64();
+    }
+}
+
+struct Paper {
+    paper: crate::paper::Paper,
+    parameters: usize,
+}
+
+impl Interpolator for Paper {
+    fn estimate(&self) -> Estimate {
+        let (known, step) = self.paper.expected();
+        Estimate {
+            position: format!("{}", known.periods()),
+            speed_per_sample: step / std::f64::consts::TAU,
+            locked: known.locked,
+            theta: self.paper.theta(self.parameters),
+        }
+    }
+
+    fn step(&mut self, cos: f64, sin: f64) {
+        self.paper.step(cos, sin);
+    }
+}
+
+/// An integer in units of 2^-`fraction`, as a decimal number with every digit it has.
+fn exact(raw: i128, fraction: u32) -> String {
+    let magnitude = raw.unsigned_abs();
+    let below = magnitude & ((1u128 << fraction) - 1);
+    // Fraction bits fit an f64, and a binary fraction of n bits has n decimals.
+    let digits = format!(
+        "{:.*}",
+        fraction as usize,
+        below as f64 / 2f64.powi(fraction as i32)
+    );
+    let decimals = digits.trim_start_matches('0').trim_end_matches('0');
+    let sign = if raw < 0 { "-" } else { "" };
+    let decimals = if decimals == "." { ".0" } else { decimals };
+    format!("{sign}{}{decimals}", magnitude >> fraction)
+}
+
+pub(crate) fn run(args: &Simulate) -> Result<()> {
+    let file = args.design.display().to_string();
+    let spec = crate::design_file::read(&args.design)?;
+    let design = Design::new(&spec).with_context(|| format!("{file} cannot work"))?;
+    let recording = Recording::read(&args.recording, &args.recording_args.overrides())?;
+    for note in &recording.notes {
+        eprintln!("note: {note}");
+    }
+    if args.repeat > 1 {
+        joins(&recording, &args.recording)?;
+    }
+    compare(&spec, &recording);
+    let parameters = spec.calibration.parameters as usize;
+    let mut interpolator: Box<dyn Interpolator> = if args.reference {
+        Box::new(Paper {
+            paper: crate::paper::Paper::of(&design)?,
+            parameters,
+        })
+    } else {
+        Box::new(BitTrue {
+            design: &design,
+            chip: Chip::bit_true(&design),
+            converter: Converter::of(&spec),
+            speed: 0.0,
+        })
+    };
+    let target = Target::new(&args.output)?;
+    write(
+        &target,
+        interpolator.as_mut(),
+        &recording,
+        args.repeat,
+        parameters,
+    )
+    .with_context(|| format!("cannot write {}", args.output.display()))?;
+    target.keep()
+}
+
+fn write(
+    target: &Target,
+    interpolator: &mut dyn Interpolator,
+    recording: &Recording,
+    repeat: u32,
+    parameters: usize,
+) -> Result<()> {
+    let mut out = BufWriter::with_capacity(1 << 16, target.file());
+    write!(out, "time_s,position_periods,speed_periods_per_s,locked")?;
+    for i in 1..=parameters {
+        write!(out, ",theta_{i}")?;
+    }
+    writeln!(out)?;
+    let rate = recording.metadata.sample_rate_hz;
+    let first = recording.time_s.first().copied().unwrap_or_default();
+    let last = recording.time_s.last().copied().unwrap_or_default();
+    let turn = last - first + 1.0 / rate;
+    let samples = recording.samples() as u64;
+    let bar = ProgressBar::new(samples * u64::from(repeat));
+    if let Ok(style) = ProgressStyle::with_template("{bar:40} {pos}/{len} samples, {eta} left") {
+        bar.set_style(style);
+    }
+    for round in 0..repeat {
+        for k in 0..recording.samples() {
+            let now = interpolator.estimate();
+            let time = recording.time_s[k] + f64::from(round) * turn;
+            write!(
+                out,
+                "{time:.9},{},{},{}",
+                now.position,
+                now.speed_per_sample * rate,
+                u8::from(now.locked)
+            )?;
+            for theta in &now.theta {
+                write!(out, ",{theta}")?;
+            }
+            writeln!(out)?;
+            interpolator.step(recording.cos[k], recording.sin[k]);
+            if k & 0xfff == 0 {
+                bar.set_position(u64::from(round) * samples + k as u64);
+            }
+        }
+    }
+    bar.finish_and_clear();
+    out.flush()?;
+    Ok(())
+}
+
+/// A recording that is to be repeated begins where it ends.
+fn joins(recording: &Recording, path: &Path) -> Result<()> {
+    let motion = Survey::of(recording).motion;
+    let angle = &motion.angle_periods;
+    let (Some(first), Some(last)) = (angle.first(), angle.last()) else {
+        return Ok(());
+    };
+    let steps = angle.len().saturating_sub(1).max(1) as f64;
+    let usual = (last - first) / steps;
+    let jump = first - (last + usual);
+    let jump = jump - jump.round();
+    if jump.abs() > JOINT {
+        bail!(
+            "{}: --repeat needs a recording of whole turns; its end and its beginning are {:.3} of a scale period \
+             apart. Cut it to whole scale periods, or play it once.",
+            path.display(),
+            jump.abs()
+        );
+    }
+    Ok(())
+}
+
+/// Says where recording and design do not fit each other.
+fn compare(spec: &Spec, recording: &Recording) {
+    let (designed, recorded) = (spec.adc.sample_rate_hz, recording.metadata.sample_rate_hz);
+    if (recorded / designed - 1.0).abs() > 0.01 {
+        eprintln!(
+            "note: the design samples at {designed} Hz, the recording at {recorded:.6} Hz; the chip counts samples, so \
+             its bandwidth is {:.4} times the designed one here",
+            recorded / designed
+        );
+    }
+    let converter = Converter::of(spec);
+    let pairs = recording.cos.iter().zip(&recording.sin);
+    let clipped = pairs
+        .filter(|(c, s)| converter.clips(**c) || converter.clips(**s))
+        .count();
+    if clipped > 0 {
+        eprintln!(
+            "note: {clipped} of {} samples lie outside the design's ADC range {} … {} and are held at its ends; \
+             `nonius new NAME --from RECORDING.csv` fits a range",
+            recording.samples(),
+            spec.adc.middle - spec.adc.full_scale,
+            spec.adc.middle + spec.adc.full_scale
+        );
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::exact;
+
+    #[test]
+    fn positions_are_written_with_every_bit() {
+        assert_eq!(exact(0, 4), "0.0");
+        assert_eq!(exact(1, 4), "0.0625");
+        assert_eq!(exact(-1, 4), "-0.0625");
+        assert_eq!(exact(16 * 7 + 8, 4), "7.5");
+        assert_eq!(exact(-(16 * 7 + 8), 4), "-7.5");
+        assert_eq!(exact(-16, 4), "-1.0");
+    }
+
+    proptest::proptest! {
+        #[test]
+        fn written_positions_are_exact(raw in -(1i128 << 52)..(1i128 << 52), fraction in 0u32..44) {
+            let written: f64 = exact(raw, fraction).parse().expect("a number");
+            proptest::prop_assert_eq!(written, raw as f64 / 2f64.powi(fraction as i32));
+        }
+    }
+}

@@ -1,0 +1,70 @@
+//! A file that appears whole or not at all: written under a temporary name beside its place, then renamed.
+
+use std::fs::File;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result, bail};
+use tempfile::NamedTempFile;
+
+/// A file being written.
+pub(crate) struct Target {
+    file: NamedTempFile,
+    path: PathBuf,
+}
+
+impl Target {
+    /// Begins a file at `path`.
+    pub(crate) fn new(path: &Path) -> Result<Self> {
+        if path.is_dir() {
+            bail!("{} is a folder; name a file", path.display());
+        }
+        let folder = path
+            .parent()
+            .filter(|p| !p.as_os_str().is_empty())
+            .unwrap_or(Path::new("."));
+        if !folder.is_dir() {
+            bail!("there is no folder {}; make it first", folder.display());
+        }
+        let file = NamedTempFile::new_in(folder)
+            .with_context(|| format!("cannot write into {}", folder.display()))?;
+        Ok(Self {
+            file,
+            path: path.to_owned(),
+        })
+    }
+
+    /// Where to write.
+    pub(crate) fn file(&self) -> &File {
+        self.file.as_file()
+    }
+
+    /// Gives the file its name; what stood there before is replaced.
+    pub(crate) fn keep(self) -> Result<()> {
+        self.everybodys();
+        self.file
+            .persist(&self.path)
+            .with_context(|| format!("cannot write {}", self.path.display()))?;
+        Ok(())
+    }
+
+    /// Gives the file its name, unless a file of that name is there.
+    pub(crate) fn keep_new(self) -> Result<()> {
+        self.everybodys();
+        self.file
+            .persist_noclobber(&self.path)
+            .with_context(|| format!("{} is left as it is", self.path.display()))?;
+        Ok(())
+    }
+
+    fn everybodys(&self) {
+        #[cfg(unix)]
+        {
+            use std::os::unix::fs::PermissionsExt;
+            // A temporary file is the owner's alone; a result is for everybody.
+            let _ = self
+                .file
+                .as_file()
+                .set_permissions(std::fs::Permissions::from_mode(0o644));
+        }
+    }
+}

@@ -1,0 +1,210 @@
+//! The commands as a user types them: what they write, what they refuse, exit codes.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use proptest::prelude::*;
+
+fn nonius(dir: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_nonius"))
+        .current_dir(dir)
+        .args(arguments)
+        .output()
+        .expect("nonius runs")
+}
+
+fn design() -> String {
+    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../designs/optical.toml");
+    path.display().to_string()
+}
+
+/// A recording of an imperfect encoder, `per_period` samples a period, in volts.
+fn recording(rows: usize, per_period: f64) -> String {
+    let head = "# sample_rate_hz: 1000000\n# adc_bits: 12\n# full_scale: 1\ntime_s,cos,sin\n";
+    let mut text = String::from(head);
+    for k in 0..rows {
+        let alpha = std::f64::consts::TAU * k as f64 / per_period;
+        let code = |v: f64| (v * 2048.0).round() / 2048.0;
+        let (cos, sin) = (
+            0.75 * alpha.cos() + 0.04,
+            0.85 * (alpha - 0.03).sin() - 0.03,
+        );
+        text += &format!("{:.7},{},{}\n", k as f64 * 1e-6, code(cos), code(sin));
+    }
+    text
+}
+
+fn refused(output: &Output, words: &[&str]) {
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    for word in words {
+        assert!(said.contains(word), "{word:?} is not in: {said}");
+    }
+}
+
+#[test]
+fn simulate_writes_the_contract() {
+    let dir = tempfile::tempdir().expect("scratch");
+    fs::write(dir.path().join("r.csv"), recording(4096, 64.0)).expect("recording");
+    let design = design();
+    for extra in [&[][..], &["--reference"][..]] {
+        let mut arguments = vec![
+            "simulate", &design, "r.csv", "-o", "out.csv", "--repeat", "3",
+        ];
+        arguments.extend(extra);
+        let output = nonius(dir.path(), &arguments);
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{said}");
+        let csv = fs::read_to_string(dir.path().join("out.csv")).expect("out.csv");
+        let numbers = |l: &str| l.split(',').map(|c| c.parse().expect("a number")).collect();
+        let rows: Vec<Vec<f64>> = csv.lines().skip(1).map(numbers).collect();
+        assert_eq!(
+            csv.lines().next(),
+            Some(
+                "time_s,position_periods,speed_periods_per_s,locked,theta_1,theta_2,theta_3,theta_4,theta_5"
+            )
+        );
+        assert_eq!(rows.len(), 3 * 4096);
+        // Time goes on from turn to turn.
+        assert!((rows[4096][0] - 4096e-6).abs() < 1e-9);
+        let last = rows.last().expect("rows");
+        assert_eq!(last[3], 1.0, "locked");
+        let travelled = last[1] - rows[4096][1];
+        assert!(
+            (travelled - 2.0 * 64.0 + 1.0 / 64.0).abs() < 2e-3,
+            "{travelled}"
+        );
+        assert!((last[2] - 15625.0).abs() < 30.0, "{}", last[2]);
+        // The paper's parameters of this encoder, in 1/V.
+        let beta: f64 = 0.03;
+        let theta = [
+            1.0 / 0.75,
+            -0.04 / 0.75,
+            1.0 / (0.85 * beta.cos()),
+            0.03 / (0.85 * beta.cos()) - 0.04 * beta.tan() / 0.75,
+            beta.tan() / 0.75,
+        ];
+        for (i, expected) in theta.iter().enumerate() {
+            let found = last[4 + i];
+            assert!(
+                (found - expected).abs() < 2e-3,
+                "theta_{}: {found} {expected}",
+                i + 1
+            );
+        }
+    }
+}
+
+#[test]
+fn simulate_refuses_what_cannot_be() {
+    let dir = tempfile::tempdir().expect("scratch");
+    let design = design();
+    fs::write(dir.path().join("r.csv"), recording(1000, 64.0)).expect("recording");
+    fs::write(dir.path().join("bad.csv"), "time_s,cos,sin\n0,1,x\n").expect("recording");
+    let run = |rest: &[&str]| {
+        let mut arguments = vec!["simulate", &design];
+        arguments.extend(rest);
+        nonius(dir.path(), &arguments)
+    };
+    refused(
+        &run(&["r.csv", "-o", "o.csv", "--repeat", "2"]),
+        &["whole turns", "r.csv"],
+    );
+    refused(&run(&["none.csv", "-o", "o.csv"]), &["none.csv"]);
+    refused(&run(&["bad.csv", "-o", "o.csv"]), &["bad.csv:2"]);
+    refused(&run(&["r.csv", "-o", "no/o.csv"]), &["no"]);
+    refused(
+        &run(&["r.csv", "-o", "o.csv", "--repeat", "0"]),
+        &["--repeat"],
+    );
+    refused(
+        &nonius(
+            dir.path(),
+            &["simulate", "none.toml", "r.csv", "-o", "o.csv"],
+        ),
+        &["none.toml"],
+    );
+    assert!(!dir.path().join("o.csv").exists());
+}
+
+#[test]
+fn new_writes_a_design_that_builds_and_never_overwrites() {
+    let dir = tempfile::tempdir().expect("scratch");
+    let read = || fs::read_to_string(dir.path().join("mine.toml")).expect("mine.toml");
+    assert!(nonius(dir.path(), &["new", "mine"]).status.success());
+    let written = read();
+    refused(
+        &nonius(dir.path(), &["new", "mine"]),
+        &["mine.toml", "exists"],
+    );
+    assert_eq!(read(), written);
+    let built = nonius(dir.path(), &["build", "mine.toml", "-o", "out/mine"]);
+    assert!(
+        built.status.success(),
+        "{}",
+        String::from_utf8_lossy(&built.stderr)
+    );
+    assert!(dir.path().join("out/mine/rtl/mine.v").is_file());
+    refused(&nonius(dir.path(), &["new", "2nd"]), &["name", "2nd"]);
+    assert!(!dir.path().join("2nd.toml").exists());
+}
+
+#[test]
+fn build_refuses_before_anything_is_written() {
+    let dir = tempfile::tempdir().expect("scratch");
+    let text = fs::read_to_string(design()).expect("designs/optical.toml");
+    for (from, to, words) in [
+        (
+            "bandwidth_hz = 10e3",
+            "bandwidth_hz = 900e3",
+            &["loop.bandwidth_hz", "limit"][..],
+        ),
+        ("method = 3", "method = 2", &["Method 2", "type 2"]),
+        ("bits = 12", "bitz = 12", &["bitz", "bits"]),
+        (
+            "sample_rate_hz = 1e6",
+            "sample_rate_hz = 1e5",
+            &["sample_rate_hz"],
+        ),
+    ] {
+        assert!(text.contains(from));
+        fs::write(dir.path().join("d.toml"), text.replacen(from, to, 1)).expect("design");
+        refused(
+            &nonius(dir.path(), &["build", "d.toml", "-o", "out"]),
+            words,
+        );
+        assert!(!dir.path().join("out").exists());
+    }
+    // A folder that is not ours is left alone.
+    fs::create_dir(dir.path().join("mine")).expect("folder");
+    fs::write(dir.path().join("mine/letter.txt"), "dear").expect("file");
+    refused(
+        &nonius(dir.path(), &["build", &design(), "-o", "mine"]),
+        &["mine"],
+    );
+    assert!(dir.path().join("mine/letter.txt").is_file());
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    #[test]
+    fn damaged_recordings_never_panic(cut in 0usize..4000, byte in any::<u8>(), at in 0usize..4000) {
+        let dir = tempfile::tempdir().expect("scratch");
+        let mut bytes = recording(120, 40.0).into_bytes();
+        let at = at % bytes.len();
+        bytes[at] = byte;
+        bytes.truncate(cut.max(10));
+        fs::write(dir.path().join("r.csv"), bytes).expect("recording");
+        for arguments in [
+            vec!["new", "n", "--from", "r.csv"],
+            vec!["simulate", &design(), "r.csv", "-o", "o.csv"],
+        ] {
+            let output = nonius(dir.path(), &arguments);
+            let said = String::from_utf8_lossy(&output.stderr);
+            prop_assert!(matches!(output.status.code(), Some(0 | 2)), "{}", said);
+            prop_assert!(!said.contains("panicked"), "{}", said);
+        }
+    }
+}

@@ -1,0 +1,155 @@
+//! Designs made by `nonius new --from` follow the recordings they were made from and calibrate on line.
+//!
+//! The table is kept in docs/followed-recordings.md; NONIUS_BLESS=1 writes it anew.
+
+use std::f64::consts::TAU;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use nonius_recording::{Overrides, Recording, Survey};
+
+const KEPT: &str = concat!(
+    env!("CARGO_MANIFEST_DIR"),
+    "/../docs/followed-recordings.md"
+);
+
+fn shared(name: &str) -> Option<PathBuf> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../../shared/data")
+        .join(name);
+    if !path.is_file() {
+        println!(
+            "NOT RUN: designs_from_recordings_follow_them: ../shared/data/{name} is not there"
+        );
+        return None;
+    }
+    Some(path)
+}
+
+fn nonius(dir: &Path, arguments: &[&str]) {
+    let output = Command::new(env!("CARGO_BIN_EXE_nonius"))
+        .current_dir(dir)
+        .args(arguments)
+        .output()
+        .expect("nonius runs");
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{arguments:?}: {said}");
+}
+
+/// Column `name` of what `simulate` wrote.
+fn column(csv: &str, name: &str) -> Vec<f64> {
+    let mut lines = csv.lines();
+    let header = lines.next().expect("a header");
+    let index = header.split(',').position(|h| h == name).expect("a column");
+    let cell = |l: &str| l.split(',').nth(index).and_then(|c| c.parse().ok());
+    lines.map(|l| cell(l).expect("a number")).collect()
+}
+
+/// Rms in degrees of angles in turns against a reference in radians; the best constant, and the sense of the
+/// reference, removed.
+fn error_degrees(turns: &[f64], reference: &[f64]) -> f64 {
+    let against = |sense: f64| {
+        let pairs = turns.iter().zip(reference);
+        let differences: Vec<f64> = pairs.map(|(t, r)| t - sense * r / TAU).collect();
+        let first = differences[0];
+        let near = differences
+            .iter()
+            .map(|d| d - first - (d - first).round())
+            .collect::<Vec<f64>>();
+        let n = near.len() as f64;
+        let mean = near.iter().sum::<f64>() / n;
+        (near.iter().map(|d| (d - mean).powi(2)).sum::<f64>() / n).sqrt() * 360.0
+    };
+    against(1.0).min(against(-1.0))
+}
+
+/// Positions that the chip of a design made for the recording says, and whether it was locked.
+fn followed(dir: &Path, path: &Path, name: &str, repeat: &str) -> (Vec<f64>, Vec<f64>) {
+    let file = path.display().to_string();
+    nonius(dir, &["new", name, "--from", &file]);
+    let (design, out) = (format!("{name}.toml"), format!("{name}.csv"));
+    nonius(
+        dir,
+        &["simulate", &design, &file, "-o", &out, "--repeat", repeat],
+    );
+    let csv = std::fs::read_to_string(dir.join(out)).expect("what simulate wrote");
+    (column(&csv, "position_periods"), column(&csv, "locked"))
+}
+
+#[test]
+fn designs_from_recordings_follow_them() {
+    let dir = tempfile::tempdir().expect("scratch folder");
+    let mut table = String::from(
+        "# Recordings followed by the chip\n\n\
+         Written by `NONIUS_BLESS=1 cargo test -p nonius --test followed_recordings`; do not edit. Each design is made by\n\
+         `nonius new --from` and simulated bit-true with `nonius simulate`.\n\n\
+         ## RM44 magnetic encoder, one turn played sixty times\n\n\
+         Rms angle error in degrees against the optical reference; the best constant offset is removed.\n\n\
+         | recording | arctangent, uncorrected | off-line ellipse fit | chip, calibrated on line, last turn |\n\
+         |---|---|---|---|\n",
+    );
+    let mut complete = true;
+    for name in ["rm44_center", "rm44_static_x500um", "rm44_gap_z500um"] {
+        let Some(path) = shared(&format!("{name}.csv")) else {
+            complete = false;
+            continue;
+        };
+        let recording = Recording::read(&path, &Overrides::default()).expect("a recording");
+        let reference = recording.reference_rad.clone().expect("a reference");
+        let pairs = recording.cos.iter().zip(&recording.sin);
+        let raw: Vec<f64> = pairs.map(|(c, s)| s.atan2(*c) / TAU).collect();
+        let offline = error_degrees(&Survey::of(&recording).motion.angle_periods, &reference);
+        let (positions, _) = followed(dir.path(), &path, name, "60");
+        let online = error_degrees(&positions[positions.len() - reference.len()..], &reference);
+        let before = error_degrees(&raw, &reference);
+        writeln!(
+            table,
+            "| {name} | {before:.3} | {offline:.3} | {online:.3} |"
+        )
+        .expect("text");
+        assert!(
+            online <= 1.1 * offline,
+            "{name}: {online:.3} on line, {offline:.3} degrees off line"
+        );
+    }
+    table += "\n## Homodyne interferometers\n\n\
+              Largest difference, in periods, between the chip's position and the angle of the off-line ellipse fit after the\n\
+              first 300 samples. Half a period would be a lost one.\n\n\
+              | recording | periods travelled | largest difference | locked |\n|---|---|---|---|\n";
+    for name in ["homodyne_settle", "homodyne_stop"] {
+        let Some(path) = shared(&format!("{name}.csv")) else {
+            complete = false;
+            continue;
+        };
+        let recording = Recording::read(&path, &Overrides::default()).expect("a recording");
+        let motion = Survey::of(&recording).motion;
+        let (positions, locked) = followed(dir.path(), &path, name, "1");
+        let at = |k: usize| positions[k] - motion.angle_periods[k];
+        let anchor = at(300).round();
+        let largest = (300..positions.len())
+            .map(|k| (at(k) - anchor).abs())
+            .fold(0.0, f64::max);
+        let share = locked.iter().sum::<f64>() / locked.len() as f64;
+        writeln!(
+            table,
+            "| {name} | {:.1} | {largest:.3} | {:.2} % |",
+            motion.periods_travelled,
+            share * 100.0
+        )
+        .expect("text");
+        assert!(largest < 0.1, "{name}: {largest} periods apart");
+        assert!(locked[300..].iter().all(|l| *l == 1.0), "{name} lost lock");
+    }
+    if !complete {
+        return;
+    }
+    if std::env::var_os("NONIUS_BLESS").is_some() {
+        std::fs::write(KEPT, &table).expect("docs");
+    }
+    let kept = std::fs::read_to_string(KEPT).unwrap_or_default();
+    assert_eq!(
+        kept, table,
+        "stale: NONIUS_BLESS=1 cargo test -p nonius --test followed_recordings"
+    );
+}

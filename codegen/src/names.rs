@@ -1,0 +1,69 @@
+//! A name for every value of the graph. Kernels name what matters; the rest is named after what it goes into.
+
+use std::collections::HashSet;
+
+use nonius_model::graph::{Graph, NodeId, Op};
+
+/// Names of all nodes, by index.
+pub(crate) fn names(graph: &Graph) -> Vec<String> {
+    let mut names: Vec<Option<String>> = graph.nodes.iter().map(|n| n.name.clone()).collect();
+    let mut taken: HashSet<String> = names.iter().flatten().cloned().collect();
+    let mut give = |wish: String| {
+        let mut unique = wish.clone();
+        let mut count = 1;
+        while !taken.insert(unique.clone()) {
+            count += 1;
+            unique = format!("{wish}_{count}");
+        }
+        unique
+    };
+    for (register, id) in &graph.next {
+        if names[id.index()].is_none() {
+            names[id.index()] = Some(give(format!("{register}_next")));
+        }
+    }
+    for id in graph.ids() {
+        if let (None, Op::Mul(a, b)) = (&names[id.index()], graph.node(id).op)
+            && let (Some(a), Some(b)) = (&graph.node(a).name, &graph.node(b).name)
+        {
+            names[id.index()] = Some(give(format!("{a}_times_{b}")));
+        }
+    }
+    // Last first, so that every consumer has its name before what goes into it.
+    let mut consumer: Vec<Option<NodeId>> = vec![None; graph.nodes.len()];
+    for id in graph.ids() {
+        for operand in graph.node(id).op.operands() {
+            consumer[operand.index()].get_or_insert(id);
+        }
+    }
+    // What a nameless value is a part of: the nearest named value down the line.
+    let mut root = names.clone();
+    for id in graph.ids().collect::<Vec<_>>().into_iter().rev() {
+        if names[id.index()].is_some() {
+            continue;
+        }
+        let whole = consumer[id.index()].and_then(|c| root[c.index()].clone());
+        let whole = whole.unwrap_or_else(|| "value".into());
+        names[id.index()] = Some(give(format!("{whole}_{}", part(graph, id))));
+        root[id.index()] = Some(whole);
+    }
+    names.into_iter().flatten().collect()
+}
+
+/// What a nameless value is in the one it goes into.
+fn part(graph: &Graph, id: NodeId) -> &'static str {
+    match graph.node(id).op {
+        Op::Input => "input",
+        Op::Constant(_) => "constant",
+        Op::Add(..) => "sum",
+        Op::Sub(..) => "difference",
+        Op::Neg(_) => "negated",
+        Op::Mul(..) => "product",
+        Op::Scale(..) => "scaled",
+        Op::Quantise(..) => "bits",
+        Op::QuantiseGeared { .. } => "geared",
+        Op::Select(..) => "chosen",
+        Op::Lookup { .. } => "entry",
+        Op::LessThan(..) | Op::And(..) | Op::Or(..) | Op::Xor(..) | Op::Not(_) => "condition",
+    }
+}

@@ -1,0 +1,381 @@
+//! What the expressions are made of: references to values, their bits, and a record of which bits are read.
+//!
+//! Widths are explicit everywhere, so that no tool has to guess an extension or a sign. Concatenations and
+//! part-selects are unsigned; where the sign matters (comparisons, shifts, products) they are marked `$signed`.
+
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+
+use nonius_model::graph::{Graph, Kind, NodeId, Op};
+
+use crate::names::names;
+use crate::netlist::{last_use, width};
+use crate::schedule::{SAMPLED, Schedule};
+
+/// Writes expressions of one chip.
+pub(crate) struct Writer<'a> {
+    pub(crate) graph: &'a Graph,
+    pub(crate) schedule: &'a Schedule,
+    pub(crate) names: Vec<String>,
+    last: Vec<usize>,
+    probed: Vec<bool>,
+    uses: Vec<usize>,
+    live: Vec<bool>,
+    /// What is made of the held inputs alone stands from step 1 until the next sample.
+    stable: Vec<bool>,
+    widths: RefCell<BTreeMap<String, u32>>,
+    read: RefCell<BTreeMap<String, u128>>,
+    declared: RefCell<Vec<(String, u32)>>,
+}
+
+/// A value in an expression.
+#[derive(Clone, Debug)]
+pub(crate) struct Term {
+    /// Its name, or the number of a coefficient.
+    pub(crate) source: Source,
+    /// Bits, sign included.
+    pub(crate) width: u32,
+    /// Fraction bits.
+    pub(crate) fraction: u32,
+    /// Smallest and largest value in units of the last bit.
+    pub(crate) range: (i128, i128),
+}
+
+#[derive(Clone, Debug)]
+pub(crate) enum Source {
+    /// A declared signal; the value starts at this bit.
+    Signal(String, u32),
+    /// A coefficient.
+    Constant(i128),
+    /// A condition in brackets.
+    Condition(String),
+}
+
+impl<'a> Writer<'a> {
+    pub(crate) fn new(graph: &'a Graph, schedule: &'a Schedule) -> Self {
+        let mut live = vec![false; graph.nodes.len()];
+        for (_, id) in graph.next.iter().chain(&graph.probes) {
+            live[id.index()] = true;
+        }
+        let mut uses = vec![0; graph.nodes.len()];
+        for id in graph.ids().collect::<Vec<_>>().into_iter().rev() {
+            if live[id.index()] {
+                for operand in graph.node(id).op.operands() {
+                    live[operand.index()] = true;
+                    uses[operand.index()] += 1;
+                }
+            }
+        }
+        let mut probed = vec![false; graph.nodes.len()];
+        for (_, id) in &graph.probes {
+            probed[id.index()] = true;
+        }
+        let names = names(graph);
+        let mut stable = vec![false; graph.nodes.len()];
+        for id in graph.ids() {
+            let op = graph.node(id).op;
+            stable[id.index()] = match op {
+                Op::Input => SAMPLED.contains(&names[id.index()].as_str()),
+                Op::Constant(_) => true,
+                Op::Mul(..) | Op::Lookup { .. } | Op::QuantiseGeared { .. } => false,
+                // A port is a register.
+                _ if crate::templates::has_port(&names[id.index()]) => false,
+                _ => op.operands().iter().all(|o| stable[o.index()]),
+            };
+        }
+        let mut widths = BTreeMap::new();
+        for id in graph.ids() {
+            let (name, bits) = (&names[id.index()], width(graph, id));
+            for form in [name.clone(), format!("{name}_now"), format!("{name}_held")] {
+                widths.insert(form, bits);
+            }
+        }
+        Self {
+            graph,
+            schedule,
+            names,
+            last: last_use(graph, schedule),
+            probed,
+            uses,
+            live,
+            stable,
+            widths: RefCell::new(widths),
+            read: RefCell::default(),
+            declared: RefCell::default(),
+        }
+    }
+
+    /// Whether anything comes of the value.
+    pub(crate) fn live(&self, id: NodeId) -> bool {
+        self.live[id.index()]
+    }
+
+    /// Whether a register keeps the value after its cycle.
+    pub(crate) fn kept(&self, id: NodeId) -> bool {
+        let leaf = matches!(self.graph.node(id).op, Op::Input | Op::Constant(_));
+        !leaf
+            && !self.stable[id.index()]
+            && (self.last[id.index()] > self.schedule.ready[id.index()] || self.probed[id.index()])
+    }
+
+    /// A condition that stands where it is read instead of having a wire.
+    pub(crate) fn inline(&self, id: NodeId) -> bool {
+        let node = self.graph.node(id);
+        node.kind == Kind::Flag
+            && node.name.is_none()
+            && !self.kept(id)
+            && !matches!(node.op, Op::Input | Op::Constant(_) | Op::Select(..))
+            && (self.uses[id.index()] == 1 || matches!(node.op, Op::Not(_)))
+    }
+
+    pub(crate) fn name(&self, id: NodeId) -> &str {
+        &self.names[id.index()]
+    }
+
+    /// The wire on which the value is computed.
+    pub(crate) fn wire(&self, id: NodeId) -> String {
+        if self.kept(id) {
+            format!("{}_now", self.name(id))
+        } else {
+            self.name(id).to_owned()
+        }
+    }
+
+    /// Whether nothing but node `by` reads `id`, in the cycle in which it is computed.
+    pub(crate) fn only_for(&self, id: NodeId, by: NodeId) -> bool {
+        let used_next = self.graph.next.iter().any(|(_, n)| *n == id);
+        self.uses[id.index()] == 1
+            && !self.kept(id)
+            && !used_next
+            && self.schedule.ready[id.index()] == self.schedule.ready[by.index()]
+    }
+
+    /// Node `id`, read in `cycle`.
+    pub(crate) fn at(&self, id: NodeId, cycle: usize) -> Term {
+        let node = self.graph.node(id);
+        let source = match node.op {
+            Op::Constant(raw) => Source::Constant(raw.into()),
+            Op::Input if SAMPLED.contains(&self.name(id)) => {
+                Source::Signal(format!("{}_held", self.name(id)), 0)
+            }
+            Op::Input => Source::Signal(self.name(id).to_owned(), 0),
+            _ if self.schedule.ready[id.index()] != cycle && !self.stable[id.index()] => {
+                Source::Signal(self.name(id).to_owned(), 0)
+            }
+            _ if self.inline(id) => Source::Condition(self.condition(id)),
+            _ => Source::Signal(self.wire(id), 0),
+        };
+        Term {
+            source,
+            width: width(self.graph, id),
+            fraction: node.format.fraction,
+            range: node.range,
+        }
+    }
+
+    /// The expression of a condition.
+    pub(crate) fn condition(&self, id: NodeId) -> String {
+        let cycle = self.schedule.ready[id.index()];
+        let flag = |o: NodeId| self.flag(&self.at(o, cycle));
+        match self.graph.node(id).op {
+            Op::And(a, b) => format!("({} & {})", flag(a), flag(b)),
+            Op::Or(a, b) => format!("({} | {})", flag(a), flag(b)),
+            Op::Xor(a, b) => format!("({} ^ {})", flag(a), flag(b)),
+            Op::Not(a) => format!("~{}", flag(a)),
+            Op::LessThan(a, b) => {
+                let (a, b) = (self.at(a, cycle), self.at(b, cycle));
+                let fraction = a.fraction.max(b.fraction);
+                let need = |t: &Term| t.width + fraction - t.fraction;
+                let wide = need(&a).max(need(&b));
+                if let Some(short) = self.short_comparison(&a, &b, fraction, wide) {
+                    return short;
+                }
+                format!(
+                    "({} < {})",
+                    self.signed(&a, fraction, wide),
+                    self.signed(&b, fraction, wide)
+                )
+            }
+            _ => flag(id),
+        }
+    }
+
+    /// Condition `id`, read in `cycle`.
+    pub(crate) fn condition_of(&self, id: NodeId, cycle: usize) -> String {
+        self.flag(&self.at(id, cycle))
+    }
+
+    /// Below the last one of a coefficient no bit matters: x < m 2^k is floor(x / 2^k) < m.
+    fn short_comparison(&self, a: &Term, b: &Term, fraction: u32, wide: u32) -> Option<String> {
+        let Source::Constant(limit) = b.source else {
+            return None;
+        };
+        let Source::Signal(..) = a.source else {
+            return None;
+        };
+        let limit = limit << (fraction - b.fraction);
+        let below = if limit == 0 {
+            wide - 1
+        } else {
+            limit.trailing_zeros()
+        };
+        let below = below.min(wide - 1);
+        let drop = below.checked_sub(fraction - a.fraction)?.min(a.width - 1);
+        if drop == 0 {
+            return None;
+        }
+        let limit = limit >> (drop + fraction - a.fraction);
+        let upper = self.slice(a, a.width - 1, drop);
+        if limit == 0 {
+            // Negative or not: the sign bit.
+            return Some(self.slice(a, a.width - 1, a.width - 1));
+        }
+        let bits = (a.width - drop).max(crate::quantise::covering(limit, limit));
+        let upper = if bits > a.width - drop {
+            let sign = self.slice(a, a.width - 1, a.width - 1);
+            format!("{{{{{}{{{sign}}}}}, {upper}}}", bits - (a.width - drop))
+        } else {
+            upper
+        };
+        Some(format!("($signed({upper}) < {})", literal(limit, bits)))
+    }
+
+    fn flag(&self, term: &Term) -> String {
+        match &term.source {
+            Source::Constant(raw) => format!("1'b{raw}"),
+            Source::Condition(text) => text.clone(),
+            Source::Signal(name, _) => {
+                self.read(name, 0, 0);
+                name.clone()
+            }
+        }
+    }
+
+    /// Declares a signal of `bits` bits, so that bits nobody reads can be named.
+    pub(crate) fn declare(&self, name: &str, bits: u32) {
+        self.widths.borrow_mut().insert(name.to_owned(), bits);
+        self.declared.borrow_mut().push((name.to_owned(), bits));
+    }
+
+    /// Notes that the bits from `high` to `low` are read.
+    pub(crate) fn read(&self, name: &str, high: u32, low: u32) {
+        let mut read = self.read.borrow_mut();
+        let entry = read.entry(name.to_owned()).or_insert(0);
+        for bit in low..=high {
+            *entry |= 1u128 << bit;
+        }
+    }
+
+    /// Parts of declared signals that nothing reads.
+    pub(crate) fn unread(&self) -> Vec<String> {
+        let all = self.read.borrow();
+        let mut list = vec![];
+        for (name, bits) in self.declared.borrow().iter() {
+            let (bits, read) = (*bits, all.get(name).copied().unwrap_or(0));
+            let mut bit = 0;
+            while bit < bits {
+                let start = bit;
+                let is_read = |b: u32| read >> b & 1 == 1;
+                while bit < bits && is_read(bit) == is_read(start) {
+                    bit += 1;
+                }
+                if is_read(start) {
+                    continue;
+                }
+                list.push(if bit - start == bits {
+                    name.clone()
+                } else if bit - start == 1 {
+                    format!("{name}[{start}]")
+                } else {
+                    format!("{name}[{}:{start}]", bit - 1)
+                });
+            }
+        }
+        list
+    }
+
+    /// Bits `high` to `low` of a term that is a signal.
+    pub(crate) fn slice(&self, term: &Term, high: u32, low: u32) -> String {
+        let Source::Signal(name, base) = &term.source else {
+            return literal(slice_of(term, high, low), high - low + 1);
+        };
+        let (high, low) = (high + base, low + base);
+        self.read(name, high, low);
+        let whole = self.widths.borrow().get(name).copied().unwrap_or(0);
+        if low == 0 && high + 1 == whole {
+            name.clone()
+        } else if high == low {
+            format!("{name}[{high}]")
+        } else {
+            format!("{name}[{high}:{low}]")
+        }
+    }
+
+    /// The term with `fraction` fraction bits in exactly `bits` bits; `half` sets one of the appended zeros. Right
+    /// modulo 2^`bits`: what the interval says cannot be there is cut off.
+    pub(crate) fn fit(&self, term: &Term, fraction: u32, bits: u32, half: Option<u32>) -> String {
+        let zeros = fraction - term.fraction;
+        if let Source::Constant(raw) = term.source {
+            let half = half.map_or(0, |h| 1i128 << h);
+            return literal((raw << zeros) + half, bits);
+        }
+        let own = term.width.min(bits - zeros.min(bits - 1));
+        let copies = bits - zeros - own;
+        let mut parts = vec![];
+        if copies > 0 {
+            let sign = self.slice(term, own - 1, own - 1);
+            parts.push(match copies {
+                1 => sign,
+                _ => format!("{{{copies}{{{sign}}}}}"),
+            });
+        }
+        parts.push(self.slice(term, own - 1, 0));
+        if zeros > 0 {
+            parts.push(match half {
+                Some(bit) => format!("{zeros}'h{:x}", 1u128 << bit),
+                None => format!("{zeros}'b0"),
+            });
+        }
+        if parts.len() == 1 {
+            parts.remove(0)
+        } else {
+            format!("{{{}}}", parts.join(", "))
+        }
+    }
+
+    /// The same where the sign matters.
+    pub(crate) fn signed(&self, term: &Term, fraction: u32, bits: u32) -> String {
+        let text = self.fit(term, fraction, bits, None);
+        if text.starts_with('{') || text.ends_with(']') {
+            format!("$signed({text})")
+        } else {
+            text
+        }
+    }
+}
+
+fn slice_of(term: &Term, high: u32, low: u32) -> i128 {
+    let raw = match term.source {
+        Source::Constant(raw) => raw,
+        _ => 0,
+    };
+    (raw >> low) & ((1i128 << (high - low + 1)) - 1)
+}
+
+/// A sized literal, decimal where it is short.
+pub(crate) fn literal(raw: i128, bits: u32) -> String {
+    let mask = (1u128 << bits) - 1;
+    if (0..10).contains(&raw) {
+        return format!("{bits}'sd{raw}");
+    }
+    format!("{bits}'sh{:x}", raw as u128 & mask)
+}
+
+/// `signed [n:0] ` or nothing for a flag.
+pub(crate) fn range(graph: &Graph, id: NodeId) -> String {
+    if graph.node(id).kind == Kind::Flag {
+        String::new()
+    } else {
+        format!("signed [{}:0] ", width(graph, id) - 1)
+    }
+}

@@ -1,0 +1,125 @@
+//! Every table file holds the table.
+
+use nonius_codegen::generate;
+use nonius_model::design::Design;
+use nonius_model::spec::Spec;
+
+fn optical() -> Design {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../designs/optical.toml");
+    let text = std::fs::read_to_string(path).expect("designs/optical.toml");
+    let spec = Spec::from_toml(&text, "optical.toml").expect("a shipped design");
+    Design::new(&spec).expect("a shipped design")
+}
+
+fn hex(text: &str) -> u128 {
+    u128::from_str_radix(text.trim(), 16).unwrap_or_else(|_| panic!("{text:?} is not hexadecimal"))
+}
+
+#[test]
+fn every_format_reads_back_as_the_table() {
+    let design = optical();
+    let files = generate(&design, "0123", &[])
+        .expect("templates render")
+        .files;
+    let file = |ending: &str| {
+        let name = format!("coefficients/sine_table.{ending}");
+        let found = files.iter().find(|f| f.0 == name);
+        found.unwrap_or_else(|| panic!("no {name}")).1.clone()
+    };
+    let rom = &design.structure.sine;
+    let table: Vec<u128> = (0..rom.rows()).map(|row| rom.word(row)).collect();
+
+    for ending in ["mem", "hex"] {
+        let rows: Vec<u128> = file(ending).lines().map(hex).collect();
+        assert_eq!(rows, table, "{ending}");
+    }
+
+    let coe = file("coe");
+    assert!(coe.contains("memory_initialization_radix=16;"));
+    let vector = coe
+        .split("memory_initialization_vector=")
+        .nth(1)
+        .expect("a vector");
+    let vector = vector
+        .trim()
+        .strip_suffix(';')
+        .expect("the vector ends with ;");
+    assert_eq!(vector.split(',').map(hex).collect::<Vec<_>>(), table);
+
+    let mif = file("mif");
+    assert!(mif.contains(&format!(
+        "WIDTH={};\nDEPTH={};",
+        rom.row_width(),
+        rom.rows()
+    )));
+    let content = mif.split("CONTENT BEGIN").nth(1).expect("content");
+    let content = content.split("END;").next().expect("an end");
+    let rows: Vec<(u128, u128)> = content
+        .split(';')
+        .filter_map(|row| row.split_once(':'))
+        .map(|(address, word)| (hex(address), hex(word)))
+        .collect();
+    assert_eq!(rows.len(), table.len());
+    for (address, word) in rows {
+        assert_eq!(word, table[address as usize]);
+    }
+
+    let vh = file("vh");
+    let rows: Vec<u128> = vh
+        .lines()
+        .filter_map(|line| line.split_once("'h"))
+        .map(|(_, word)| hex(word.trim_end_matches(';')))
+        .collect();
+    assert_eq!(rows, table);
+
+    let json: serde_json::Value = serde_json::from_str(&file("json")).expect("JSON");
+    let words: Vec<u128> = json["words"]
+        .as_array()
+        .expect("words")
+        .iter()
+        .map(|w| hex(w.as_str().expect("a word")))
+        .collect();
+    assert_eq!(words, table);
+    for (column, expected) in json["columns"]
+        .as_array()
+        .expect("columns")
+        .iter()
+        .zip(&rom.columns)
+    {
+        let raw: Vec<i64> = serde_json::from_value(column["raw"].clone()).expect("integers");
+        assert_eq!(raw, expected.raw);
+    }
+}
+
+#[test]
+fn coefficients_are_those_of_the_design() {
+    let design = optical();
+    let files = generate(&design, "0123", &[])
+        .expect("templates render")
+        .files;
+    let json = files
+        .iter()
+        .find(|f| f.0 == "coefficients/coefficients.json");
+    let json: serde_json::Value = serde_json::from_str(&json.expect("a file").1).expect("JSON");
+    let list = json["coefficients"].as_array().expect("a list");
+    let value = |name: &str| {
+        let found = list.iter().find(|c| c["name"] == name);
+        found.unwrap_or_else(|| panic!("no {name}"))["value"].as_f64()
+    };
+    assert_eq!(value("loop_a"), Some(design.constants.loop_a.value()));
+    assert_eq!(value("loop_ab"), Some(design.constants.loop_ab.value()));
+    assert_eq!(
+        value("theta_1_nominal"),
+        Some(design.constants.theta_1_nominal.value())
+    );
+    let vh = files
+        .iter()
+        .find(|f| f.0 == "coefficients/coefficients.vh")
+        .expect("a file");
+    for name in list
+        .iter()
+        .map(|c| c["name"].as_str().expect("a name").to_uppercase())
+    {
+        assert!(vh.1.contains(&format!(" {name} = ")), "{name}");
+    }
+}

@@ -1,0 +1,151 @@
+//! A testbench that cannot fail is worthless: single faults in the Verilog, and the vectors catch each.
+
+mod chip;
+
+use std::fs;
+use std::path::Path;
+
+use chip::{optical, write};
+use nonius_hdl::verify::{Options, verify};
+
+const ROWS: usize = 400;
+
+fn verdict(dir: &Path) -> (bool, String) {
+    let options = Options {
+        verilator: false,
+        ..Options::default()
+    };
+    let report =
+        verify(dir, &options, &nonius_hdl::progress::silent).unwrap_or_else(|e| panic!("{e}"));
+    let failure = report.runs[0].failure.clone().unwrap_or_default();
+    (report.passed, failure)
+}
+
+/// The one line that holds all of `words`.
+fn line_with<'a>(verilog: &'a str, words: &[&str]) -> &'a str {
+    let mut lines = verilog
+        .lines()
+        .filter(|line| words.iter().all(|word| line.contains(word)));
+    let found = lines.next();
+    assert!(lines.next().is_none(), "{words:?} stand in two lines");
+    found.unwrap_or_else(|| panic!("no line holds {words:?}"))
+}
+
+fn replaced(verilog: &str, words: &[&str], from: &str, to: &str) -> String {
+    let line = line_with(verilog, words);
+    assert!(line.contains(from), "{from} is not in {line}");
+    verilog.replacen(line, &line.replacen(from, to, 1), 1)
+}
+
+/// The text between `from` and `to` in the one line that holds all of `words`.
+fn between(verilog: &str, words: &[&str], from: &str, to: &str) -> String {
+    let line = line_with(verilog, words);
+    let rest = line.split_once(from).map(|parts| parts.1);
+    let inner = rest.and_then(|rest| rest.split_once(to));
+    inner.unwrap_or_else(|| panic!("{line}")).0.to_owned()
+}
+
+/// The chip that commits some steps late or early.
+fn another_last_step(verilog: &str, by: i32) -> String {
+    let step = between(verilog, &["wire last ="], "5'd", ";");
+    let other = step.parse::<i32>().expect("a number") + by;
+    replaced(verilog, &["wire last ="], &step, &other.to_string())
+}
+
+type Fault = (&'static str, Box<dyn Fn(&str) -> String>);
+
+/// Faults in the Verilog, each of one place.
+fn faults() -> Vec<Fault> {
+    let fault = |name, change: fn(&str) -> String| -> Fault { (name, Box::new(change)) };
+    vec![
+        fault("rounding of the phase error: by the wrong bit", |v| {
+            replaced(
+                v,
+                &["wire", " e_seen_rounded ="],
+                "e_exact[15]}",
+                "e_exact[14]}",
+            )
+        }),
+        fault("rounding of c: cut off", |v| {
+            replaced(v, &["wire", " c_rounded ="], "c_exact[10]", "1'b0")
+        }),
+        fault("rounding of theta_1: cut off", |v| {
+            replaced(v, &["wire", " theta_1_rounded ="], "200 +", "000 +")
+        }),
+        fault("saturation of s: wraps", |v| {
+            let kept = between(v, &["wire", " s_now = "], "? ", " :");
+            let all = between(v, &["wire", " s_now = "], "= ", ";");
+            replaced(v, &["wire", " s_now = "], &all, &kept)
+        }),
+        fault("saturation of theta_2: wraps", |v| {
+            let words = ["wire", " theta_2_deviation_next_now = "];
+            let kept = between(v, &words, "? ", " :");
+            let all = between(v, &words, "= ", ";");
+            replaced(v, &words, &all, &kept)
+        }),
+        fault("saturation of theta_4: at the other end", |v| {
+            let words = ["wire", " theta_4_deviation_next_now = "];
+            replaced(v, &words, "{24{~", "{24{")
+        }),
+        fault("sign extension of a product", |v| {
+            let words = ["wire", " sin_magnitude_sum ="];
+            replaced(v, &words, "{{7{sin_slope_times_sin_inside[24]}}", "{7'b0")
+        }),
+        fault("sign extension of the speed", |v| {
+            let words = ["wire", " alpha_hat_sum ="];
+            replaced(v, &words, "{{3{speed[25]}}", "{3'b0")
+        }),
+        fault("logical shift in place of the arithmetic one", |v| {
+            replaced(v, &["wire", " kick_shifted ="], ">>>", ">>")
+        }),
+        fault("latency: one clock more", |v| another_last_step(v, 1)),
+        fault("latency: a register committed one step early", |v| {
+            another_last_step(v, -1)
+        }),
+        fault("last bit of the coefficient a", |v| {
+            replaced(v, &["operand_", "sh1cf1c"], "sh1cf1c", "sh1cf1d")
+        }),
+        fault("last bit of the coefficient a + b", |v| {
+            replaced(v, &["operand_", "sh13b1b"], "sh13b1b", "sh13b1a")
+        }),
+        fault("last bit of the lock limit", |v| {
+            replaced(v, &["wire", "< 5'sd3)"], "5'sd3", "5'sd4")
+        }),
+        fault("a stale operand", |v| {
+            let forwarded = |line: &&str| line.contains("operand_") && line.ends_with("_now;");
+            let line = v.lines().find(forwarded).expect("a forwarded operand");
+            v.replacen(line, &line.replace("_now;", ";"), 1)
+        }),
+    ]
+}
+
+#[test]
+fn vectors_catch_every_planted_fault() {
+    let dir = tempfile::tempdir().expect("scratch folder");
+    write(&optical(), ROWS, dir.path());
+    assert!(verdict(dir.path()).0, "the chip without a fault");
+    let rtl = dir.path().join("rtl/optical.v");
+    let sound = fs::read_to_string(&rtl).expect("rtl");
+    for (name, change) in faults() {
+        let faulty = change(&sound);
+        assert_ne!(faulty, sound, "{name}");
+        fs::write(&rtl, faulty).expect("rtl");
+        let (passed, failure) = verdict(dir.path());
+        assert!(!passed, "{name}: not caught");
+        assert!(failure.contains("signal"), "{name}: {failure}");
+    }
+    fs::write(&rtl, &sound).expect("rtl");
+
+    // One entry of the table: first, last and some between, the last bit of value or slope.
+    let table = dir.path().join("coefficients/sine_table.mem");
+    let entries = fs::read_to_string(&table).expect("table");
+    let rows: Vec<&str> = entries.lines().collect();
+    for (row, bit) in [(0, 14), (rows.len() - 1, 0), (13, 14), (37, 0)] {
+        let word = u64::from_str_radix(rows[row], 16).expect("hex") ^ (1 << bit);
+        let digits = rows[row].len();
+        let mut faulty: Vec<String> = rows.iter().map(ToString::to_string).collect();
+        faulty[row] = format!("{word:0digits$x}");
+        fs::write(&table, faulty.join("\n") + "\n").expect("table");
+        assert!(!verdict(dir.path()).0, "row {row}, bit {bit}: not caught");
+    }
+}

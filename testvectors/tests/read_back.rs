@@ -1,0 +1,217 @@
+//! Vectors and waves are read back and replayed: model, recorded graph and scheduled graph agree with every value.
+
+use std::collections::HashMap;
+
+use nonius_codegen::evaluate::evaluate;
+use nonius_codegen::schedule::schedule;
+use nonius_codegen::{Files, generate};
+use nonius_model::chip::Chip;
+use nonius_model::design::Design;
+use nonius_model::graph::{Evaluation, Kind};
+use nonius_model::spec::Spec;
+use nonius_testvectors::read_vectors::{Row, rows};
+use nonius_testvectors::waves::{Waves, gtkw};
+use nonius_testvectors::{stimulus, vectors};
+use proptest::prelude::*;
+
+const ROWS: usize = 300;
+
+fn optical() -> Design {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../designs/optical.toml");
+    let text = std::fs::read_to_string(path).expect("designs/optical.toml");
+    let spec = Spec::from_toml(&text, "optical.toml").expect("a shipped design");
+    Design::new(&spec).expect("a shipped design")
+}
+
+fn chip_files(design: &Design) -> Files {
+    generate(design, "test", &[]).expect("templates render")
+}
+
+fn word(raw: i128, bits: u32) -> u64 {
+    (raw as u128 & ((1u128 << bits) - 1)) as u64
+}
+
+/// Columns of the registers before the sample, as the graph wants them: integers with their sign.
+fn integer(word: u64, bits: u32, flag: bool) -> i128 {
+    let word = i128::from(word);
+    if !flag && word >> (bits - 1) & 1 == 1 {
+        word - (1i128 << bits)
+    } else {
+        word
+    }
+}
+
+/// Every row of every stimulus: the graph, given the registers of the row before and the inputs of this one, and the
+/// schedule on one and on three multipliers, give what the row says.
+#[test]
+fn vectors_replay_through_recorded_and_scheduled_graph() {
+    let design = optical();
+    let files = chip_files(&design);
+    let graph = &design.graph;
+    let schedules = [1, 3].map(|m| schedule(graph, m));
+    for stimulus in stimulus::named(&design, ROWS) {
+        let text = vectors::rows(&design, &stimulus, &files.columns);
+        let read: Vec<Row> =
+            rows(&text, design.spec.adc.bits, true, files.columns.len()).expect("rows");
+        assert_eq!(read.len(), ROWS);
+        let mut registers: HashMap<&str, i128> = HashMap::new();
+        for (row, sample) in read.iter().zip(&stimulus.samples) {
+            assert_eq!(row.input, *sample, "{}", stimulus.name);
+            let input = |name: &str| match name {
+                "adc_cos" => row.input.cos.into(),
+                "adc_sin" => row.input.sin.into(),
+                "preset" => row.input.preset.into(),
+                "calibrate" => row.input.calibrate.into(),
+                other => registers.get(other).copied().unwrap_or(0),
+            };
+            let recorded = Evaluation::new(graph, input);
+            let timed: Vec<_> = schedules
+                .iter()
+                .map(|s| evaluate(graph, s, input))
+                .collect();
+            let mut after = HashMap::new();
+            for ((name, id, bits), seen) in files.columns.iter().zip(&row.words) {
+                let next = graph.next.iter().find(|n| n.0 == *name).map(|n| n.1);
+                let node = next.unwrap_or(*id);
+                let place = || format!("{} sample {} {name}", stimulus.name, row.number);
+                assert_eq!(word(recorded.raw(node), *bits), *seen, "{}", place());
+                for timed in &timed {
+                    let raw = timed[node.index()].unwrap_or_else(|| panic!("{} lost", place()));
+                    assert_eq!(word(raw, *bits), *seen, "{}", place());
+                }
+                if next.is_some() {
+                    let flag = graph.node(*id).kind == Kind::Flag;
+                    after.insert(name.as_str(), integer(*seen, *bits, flag));
+                }
+            }
+            registers = after;
+        }
+    }
+}
+
+#[test]
+fn waves_read_back_as_the_chip() {
+    let design = optical();
+    let files = chip_files(&design);
+    let stimuli = stimulus::named(&design, ROWS);
+    let sweep = stimuli.iter().find(|s| s.name == "sweep").expect("sweep");
+    let mut bytes = vec![];
+    let mut chip = Chip::bit_true(&design);
+    let mut waves = Waves::new(&mut bytes, &design, &files.columns, files.clocks).expect("memory");
+    for s in &sweep.samples {
+        let probes = chip.step_codes(s.cos, s.sin, s.preset, s.calibrate);
+        waves.sample(s, &probes, &chip).expect("memory");
+    }
+    waves.finish().expect("memory");
+
+    // Read as any viewer would: values by hierarchical name over time.
+    let mut parser = vcd::Parser::new(&bytes[..]);
+    let header = parser.parse_header().expect("a header");
+    let path = |name: &str| {
+        let found = header.find_var(&["chip_tb", "chip", name]);
+        found.unwrap_or_else(|| panic!("no {name}")).code
+    };
+    let mut now: HashMap<vcd::IdCode, u128> = HashMap::new();
+    let mut reals: HashMap<vcd::IdCode, f64> = HashMap::new();
+    let mut time = 0;
+    let mut snapshots = vec![];
+    for command in parser {
+        match command.expect("a command") {
+            vcd::Command::Timestamp(t) => {
+                snapshots.push((time, now.clone(), reals.clone()));
+                time = t;
+            }
+            vcd::Command::ChangeScalar(id, value) => {
+                now.insert(id, u128::from(value == vcd::Value::V1));
+            }
+            vcd::Command::ChangeVector(id, values) => {
+                let bits = values.iter().map(|v| u128::from(v == vcd::Value::V1));
+                now.insert(id, bits.fold(0, |word, bit| word << 1 | bit));
+            }
+            vcd::Command::ChangeReal(id, value) => {
+                reals.insert(id, value);
+            }
+            _ => {}
+        }
+    }
+    // Before the first stamp, then two stamps a sample: inputs, results; the end closes the last.
+    assert_eq!(snapshots.len(), 1 + 2 * ROWS);
+    let mut replay = Chip::bit_true(&design);
+    let position = header
+        .find_var(&["chip_tb", "position_periods"])
+        .expect("a real")
+        .code;
+    for (k, after) in snapshots.iter().skip(2).step_by(2).enumerate() {
+        let (stamp, values, analogue) = after;
+        let bits = design.spec.adc.bits;
+        let signed = |name: &str| integer(values[&path(name)] as u64, bits, false) as i64;
+        let probes = replay.step_codes(
+            signed("adc_cos"),
+            signed("adc_sin"),
+            values[&path("preset")] == 1,
+            values[&path("calibrate")] == 1,
+        );
+        assert_eq!(
+            *stamp as usize,
+            (2 + k * files.clocks + files.clocks - 1) * 10
+        );
+        for (name, id, bits) in &files.columns {
+            let node = design.graph.node(*id);
+            let expected = if node.kind == Kind::Flag {
+                let flag = probes.flag(name).or_else(|| replay.state.flag(name));
+                i64::from(flag.expect("a flag"))
+            } else {
+                let value = probes.value(name).or_else(|| replay.state.value(name));
+                value.expect("a value").raw(node.format.fraction)
+            };
+            assert_eq!(
+                values[&path(name)],
+                u128::from(word(expected.into(), *bits)),
+                "{name} at {k}"
+            );
+        }
+        assert_eq!(analogue[&position], replay.position(), "position at {k}");
+    }
+}
+
+#[test]
+fn the_save_file_names_signals_that_are_there() {
+    let design = optical();
+    let files = chip_files(&design);
+    let mut bytes = vec![];
+    Waves::new(&mut bytes, &design, &files.columns, files.clocks)
+        .and_then(Waves::finish)
+        .expect("memory");
+    let mut parser = vcd::Parser::new(&bytes[..]);
+    let header = parser.parse_header().expect("a header");
+    let save = gtkw("sweep.vcd", &design, &files.columns, files.clocks);
+    let signals: Vec<&str> = save.lines().filter(|l| l.starts_with("chip_tb.")).collect();
+    assert!(signals.len() > files.columns.len());
+    for signal in signals {
+        let name = signal.split('[').next().expect("a name");
+        let parts: Vec<&str> = name.split('.').collect();
+        let var = header
+            .find_var(&parts)
+            .unwrap_or_else(|| panic!("no {signal}"));
+        let range = var.index.map(|i| i.to_string()).unwrap_or_default();
+        assert_eq!(format!("{name}{range}"), signal);
+    }
+}
+
+proptest! {
+    #[test]
+    fn damaged_vectors_are_refused_by_line(at in 0usize..2000, byte in any::<u8>()) {
+        let design = optical();
+        let files = chip_files(&design);
+        let stimuli = stimulus::named(&design, 10);
+        let text = vectors::rows(&design, &stimuli[1], &files.columns);
+        let mut bytes = text.clone().into_bytes();
+        let at = at % bytes.len();
+        bytes[at] = byte;
+        let damaged = String::from_utf8_lossy(&bytes).into_owned();
+        match rows(&damaged, design.spec.adc.bits, true, files.columns.len()) {
+            Ok(read) => prop_assert!(read.len() <= 11),
+            Err(error) => prop_assert!(error.line >= 1 && error.line <= 11, "{}", error),
+        }
+    }
+}
