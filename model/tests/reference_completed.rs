@@ -219,11 +219,19 @@ fn the_completion_learns_at_the_rate_stated() {
     }
 }
 
-/// Slower than its gate the completion rests, and at standstill; what is left is the radial update alone.
+/// Slower than its gate the completion rests, at standstill, and under a vibration of a tenth of a period however fast;
+/// what is left is the radial update alone.
 #[test]
 fn below_its_gate_the_completion_rests() {
     let set = Parameters::ChebyshevEight;
-    for speed in [0.0, 0.005] {
+    let still = |_: f64| 0.0;
+    let slow = |k: f64| 0.005 * k;
+    let vibration = |k: f64| 0.3 * (0.2 * k).sin();
+    for (motion, speed) in [
+        (&still as &dyn Fn(f64) -> f64, 0.0),
+        (&slow, 0.005),
+        (&vibration, 0.06),
+    ] {
         let run = |search| {
             let mut settings = config(set, search, 1.0);
             settings.start = Start::At {
@@ -233,7 +241,7 @@ fn below_its_gate_the_completion_rests() {
             };
             let mut reference = Reference::new(settings).unwrap();
             for k in 0..20_000 {
-                let y = cubic(0.3 + speed * f64::from(k));
+                let y = cubic(0.3 + motion(f64::from(k)));
                 reference.step(y[0], y[1]);
             }
             *reference.theta()

@@ -4,8 +4,11 @@
 //! w_v = n⊥ᵀ M v;  ∇_v α̂ by recursion (11), one scalar;  μ ← μ − γ_v (w_v − ∇_v α̂) e;  Θ moves along v with μ.
 //!
 //! It learns at γ_v |S(2f)|²/8 per sample, S the loop's sensitivity at twice the signal frequency f: what a wide loop
-//! follows, it cannot tell from motion. Hence the gate: slower than `slowest`, it rests. It cannot tell motion at two
-//! cycles per scale period from sensor error either; where a scale period is a revolution, do not use it.
+//! follows, it cannot tell from motion. Hence its gate of its own: net travel slower than `slowest` and it rests, and so
+//! it does under vibration, however fast. It cannot tell motion at two cycles per scale period from sensor error either;
+//! where a scale period is a revolution, do not use it.
+
+use std::f64::consts::TAU;
 
 use nalgebra::RowSVector;
 
@@ -18,14 +21,39 @@ use super::{Parameters, ReferenceError, Theta, require};
 pub struct CompletedConfig {
     /// γ_v, at most 4 per sample.
     pub gamma_v: f64,
-    /// Below this speed, radians per sample, the completion rests.
+    /// Below this speed of net travel, radians per sample, the completion rests; 0: it never does.
     pub slowest: f64,
+}
+
+/// Whether whole periods of net travel follow one another fast enough.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Moving {
+    slowest: f64,
+    /// α̂, radians, where the running period began, and samples since.
+    began: Option<f64>,
+    samples: f64,
+    open: bool,
+}
+
+impl Moving {
+    fn step(&mut self, alpha_hat: f64) -> bool {
+        let began = *self.began.get_or_insert(alpha_hat);
+        self.samples += 1.0;
+        let late = self.samples * self.slowest > TAU;
+        if late || (alpha_hat - began).abs() >= TAU {
+            self.open = !late;
+            self.began = Some(alpha_hat);
+            self.samples = 0.0;
+        }
+        self.open
+    }
 }
 
 /// The scalar sensitivity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Completion {
-    config: CompletedConfig,
+    gamma_v: f64,
+    moving: Moving,
     recursion: Recursion<1>,
 }
 
@@ -54,20 +82,26 @@ impl Completion {
             ));
         }
         Ok(Self {
-            config,
+            gamma_v,
+            moving: Moving {
+                slowest,
+                began: None,
+                samples: 0.0,
+                open: slowest == 0.0,
+            },
             recursion: Recursion::new(filter),
         })
     }
 
-    /// What is to be added to Θ along v, if `open` and the signal (`speed` in radians per sample) is fast enough; the
-    /// recursion goes on in either case.
+    /// What is to be added to Θ along v, if `locked` and the signal travels fast enough; recursion and gate go on in
+    /// either case. `alpha_hat` is unwrapped, radians.
     pub fn step(
         &mut self,
         parameters: Parameters,
         theta: &Theta,
         seen: &Observation,
-        speed: f64,
-        open: bool,
+        alpha_hat: f64,
+        locked: bool,
     ) -> Theta {
         let Some(v) = parameters.null_direction(theta) else {
             return Theta::zeros();
@@ -75,8 +109,9 @@ impl Completion {
         let w_v = seen.w() * v;
         let sensitivity = w_v.x - self.recursion.value().x;
         self.recursion.advance(RowSVector::from(w_v));
-        if open && speed.abs() >= self.config.slowest {
-            v * (-self.config.gamma_v * sensitivity * seen.e)
+        let moving = self.moving.step(alpha_hat);
+        if locked && moving {
+            v * (-self.gamma_v * sensitivity * seen.e)
         } else {
             Theta::zeros()
         }

@@ -203,15 +203,22 @@ impl Reference {
         let open = self.gate.step(seen.e, seen.rho, self.tracking.alpha_hat());
         let locked = self.gate.locked();
         let gamma = self.gamma();
-        let estimate = self.go_on([y_c, y_s], &seen, open.then_some(&gamma));
+        let estimate = self.go_on([y_c, y_s], &seen, open.then_some(&gamma), locked);
         self.watch(&seen);
         Estimate { locked, ..estimate }
     }
 
-    /// One sample with the decision made outside: Θ moves by this γ, or not at all.
-    pub fn step_with(&mut self, y_c: f64, y_s: f64, gamma: Option<&Theta>) -> Estimate {
+    /// One sample with the decisions made outside: Θ moves by this γ, or not at all; the completion, where there is one,
+    /// may `complete` (and still has its own gate).
+    pub fn step_with(
+        &mut self,
+        y_c: f64,
+        y_s: f64,
+        gamma: Option<&Theta>,
+        complete: bool,
+    ) -> Estimate {
         let seen = self.observe([y_c, y_s]);
-        self.go_on([y_c, y_s], &seen, gamma)
+        self.go_on([y_c, y_s], &seen, gamma, complete)
     }
 
     /// What is known of the next sample before it comes: e and ρ are not, and are 0.
@@ -254,7 +261,13 @@ impl Reference {
         Observation::new(self.config.parameters, &self.theta, y, phase)
     }
 
-    fn go_on(&mut self, y: [f64; 2], seen: &Observation, gamma: Option<&Theta>) -> Estimate {
+    fn go_on(
+        &mut self,
+        y: [f64; 2],
+        seen: &Observation,
+        gamma: Option<&Theta>,
+        complete: bool,
+    ) -> Estimate {
         let theta = self.theta;
         let estimate = Estimate {
             e: seen.e,
@@ -271,8 +284,8 @@ impl Reference {
             Searching::SumOfSquares(_) if gamma.is_none() => Theta::zeros(),
             Searching::SumOfSquares(sum) => along(sum.step(parameters, &theta, y)),
             Searching::Completed(completion) => {
-                let speed = estimate.speed * self.config.tracking.ts;
-                let missing = completion.step(parameters, &theta, seen, speed, gamma.is_some());
+                let alpha_hat = estimate.alpha_hat;
+                let missing = completion.step(parameters, &theta, seen, alpha_hat, complete);
                 along(seen.final_form()) + missing
             }
         };

@@ -168,7 +168,7 @@ pub(crate) fn compare(
         }
         let y = codes.map(|code| code as f64 / half * unit);
         let fresh = fresh && spec.calibration.parameters > 0;
-        let seen = paper.step_with(y[0], y[1], fresh.then_some(&gamma));
+        let seen = paper.step_with(y[0], y[1], fresh.then_some(&gamma), false);
 
         let angle = wrapped(chip.position() - paper.tracking().alpha_hat() / TAU);
         let ts = paper.tracking().config.ts;
