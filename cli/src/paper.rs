@@ -1,50 +1,47 @@
 //! The paper's system in floating point with the numbers of a design.
 
-use std::f64::consts::TAU;
-
+use anyhow::{Context, Result};
 use nonius_model::design::Design;
-use nonius_model::reference::{
-    Calibration, Configuration, Gamma, Interpolator, Method, Objective, ParameterSet, Poles,
-};
+use nonius_model::reference::from_spec::{self, Normalise};
+use nonius_model::reference::{Estimate, Reference};
 
-/// The reference interpolator of a design.
-pub(crate) fn interpolator(design: &Design) -> Interpolator {
-    let spec = &design.spec;
-    let ts = 1.0 / spec.adc.sample_rate_hz;
-    let t = &spec.tracking;
-    let set = match spec.calibration.parameters {
-        0 => None,
-        4 => Some(ParameterSet::Four),
-        _ => Some(ParameterSet::Five),
-    };
-    let method = match t.method {
-        1 => Method::One,
-        2 => Method::Two,
-        _ => Method::Three,
-    };
-    let configuration = Configuration {
-        method,
-        poles: Poles::of(TAU * t.bandwidth_hz * ts, t.damping),
-        second_pole: match (t.filter_type, method) {
-            (2, _) => Some(1.0),
-            (_, Method::Two) => None,
-            _ => t.pole,
-        },
-        ts,
-        amplitude: spec.sensor.amplitude,
-        middle: spec.adc.middle,
-        calibration: set.map(|set| Calibration {
-            set,
-            objective: Objective::FinalForm,
-            gamma: Gamma {
-                first: 0.5f64.powi(spec.calibration.gamma_first as i32),
-                last: 0.5f64.powi(spec.calibration.gamma_last as i32),
-                periods: spec.calibration.gear_periods.into(),
-            },
-            equaliser: vec![2.0, 1.0, 2.0, 1.0, 4.0],
-            bound: 0.8,
-        }),
-    };
-    // A design that stands is one that the paper can build.
-    Interpolator::new(configuration).expect("Design::new refuses what the paper cannot build")
+/// The reference of a design, for signals in the unit of its ADC's range.
+pub(crate) struct Paper {
+    reference: Reference,
+    normalise: Normalise,
+}
+
+impl Paper {
+    /// As the design says.
+    pub(crate) fn of(design: &Design) -> Result<Self> {
+        let config =
+            from_spec::config(&design.spec).context("the paper cannot build this design")?;
+        Ok(Self {
+            reference: Reference::new(config).context("the paper cannot build this design")?,
+            normalise: Normalise::of(&design.spec),
+        })
+    }
+
+    /// What is known before the next sample; speed in radians per sample.
+    pub(crate) fn expected(&self) -> (Estimate, f64) {
+        let known = self.reference.expected();
+        (known, known.speed * self.reference.tracking().config.ts)
+    }
+
+    /// The first parameters, for signals in their own unit; those of sections 5.4 for y, the signals in units of the
+    /// nominal amplitude.
+    pub(crate) fn theta(&self, parameters: usize) -> Vec<f64> {
+        let all: Vec<f64> = self.reference.theta().iter().copied().collect();
+        if parameters > 5 {
+            return all[..parameters].to_vec();
+        }
+        let five = [all[0], all[1], all[2], all[3], all[4]];
+        self.normalise.theta_of_signals(five)[..parameters].to_vec()
+    }
+
+    /// One sample.
+    pub(crate) fn step(&mut self, cos: f64, sin: f64) {
+        let (y_c, y_s) = (self.normalise.y(cos), self.normalise.y(sin));
+        self.reference.step(y_c, y_s);
+    }
 }

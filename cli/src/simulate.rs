@@ -110,23 +110,23 @@ impl Interpolator for BitTrue<'_> {
 }
 
 struct Paper {
-    interpolator: nonius_model::reference::Interpolator,
+    paper: crate::paper::Paper,
     parameters: usize,
 }
 
 impl Interpolator for Paper {
     fn estimate(&self) -> Estimate {
-        let estimate = self.interpolator.estimate();
+        let (known, step) = self.paper.expected();
         Estimate {
-            position: format!("{}", estimate.alpha_hat / std::f64::consts::TAU),
-            speed_per_sample: estimate.step / std::f64::consts::TAU,
-            locked: estimate.locked,
-            theta: estimate.theta[..self.parameters].to_vec(),
+            position: format!("{}", known.periods()),
+            speed_per_sample: step / std::f64::consts::TAU,
+            locked: known.locked,
+            theta: self.paper.theta(self.parameters),
         }
     }
 
     fn step(&mut self, cos: f64, sin: f64) -> Result<()> {
-        self.interpolator.step(cos, sin);
+        self.paper.step(cos, sin);
         Ok(())
     }
 
@@ -166,7 +166,7 @@ pub(crate) fn run(args: &Simulate) -> Result<()> {
     let parameters = spec.calibration.parameters as usize;
     let mut interpolator: Box<dyn Interpolator> = if args.reference {
         Box::new(Paper {
-            interpolator: crate::paper::interpolator(&design),
+            paper: crate::paper::Paper::of(&design)?,
             parameters,
         })
     } else {

@@ -1,7 +1,7 @@
 //! What the chip computes.
 //!
 //! One arithmetic with three readings ([`signal`]), the formulas written in it ([`kernel`]), the chip they make
-//! ([`chip`]), and the way from a design in physical units to integers ([`spec`], [`design`]). [`reference`] is the
+//! ([`chip`]), and the way from a design in physical units to integers ([`spec`], [`design`]). [`mod@reference`] is the
 //! paper in plain `f64`, independent of all of it.
 
 pub mod bits;

@@ -1,207 +1,339 @@
-//! The complete system of the paper: correction, loop, calibration on line.
+//! The paper's complete system: correction, loop and on-line calibration.
+//!
+//! Each sample k: Θ_k corrects y_k, the phase detector compares it with α̂_k, the loop goes on to α̂_{k+1}, the search to
+//! Θ_{k+1}. The estimate returned for sample k is α̂_k, made from samples before it.
 
-use super::lock::{Lock, Travel};
-use super::{Filter, FilterError, Method, Objective, ParameterSet, Poles, Search};
+use std::f64::consts::TAU;
 
-/// Poles of the loop while it acquires: wide, and well damped.
-const ACQUISITION: (f64, f64) = (0.6, 0.8);
+use super::completed::{CompletedConfig, Completion};
+use super::gate::{Gate, GateState, Window};
+use super::gradient::{Form, Observation, ResidualGradient};
+use super::loops::{Loop, LoopConfig};
+use super::start::{Acquisition, Start};
+use super::sum_of_squares::{Smoothing, SumOfSquares};
+use super::{Parameters, ReferenceError, Theta, require};
 
-/// The whole system.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Configuration {
-    /// The loop filter.
-    pub method: Method,
-    /// Closed-loop poles.
-    pub poles: Poles,
-    /// The filter's second pole; see [`Filter::new`].
-    pub second_pole: Option<f64>,
-    /// Sampling period in seconds.
-    pub ts: f64,
-    /// Nominal amplitude of both signals, in their unit, above 0.
-    pub amplitude: f64,
-    /// What both signals are centred about.
-    pub middle: f64,
-    /// Calibration on line; `None` corrects with the nominal amplitude alone.
-    pub calibration: Option<Calibration>,
+/// Which gradient moves Θ.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Search {
+    /// None: Θ stays as it is.
+    None,
+    /// Section 5.5: δΘ = −γ (∇r)ᵀ r.
+    Residual(Form),
+    /// Sections 5.2 to 5.4: δΘ = −γ ∇J.
+    SumOfSquares(Smoothing),
+    /// Final form, and one scalar sensitivity for what it cannot see.
+    Completed(CompletedConfig),
 }
 
-/// How Θ is searched. The search sees signals divided by the nominal amplitude.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Calibration {
-    /// Which parameters.
-    pub set: ParameterSet,
-    /// Which objective.
-    pub objective: Objective,
-    /// γ, which the paper leaves to the reader.
-    pub gamma: Gamma,
-    /// A factor of γ for each parameter; 1 is the paper's.
-    pub equaliser: Vec<f64>,
-    /// Largest deviation of each parameter from its nominal value.
-    pub bound: f64,
-}
-
-/// γ shifts gear: it starts at `first` and halves after every `periods` periods of travel, down to `last`.
+/// γ, one for each parameter, and how it shrinks. The paper has one γ that stays.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gamma {
-    /// The largest.
-    pub first: f64,
-    /// The smallest.
-    pub last: f64,
-    /// Periods of travel between two gears, at least 1.
-    pub periods: u64,
+    /// The first.
+    pub first: Theta,
+    /// How often it is halved.
+    pub halvings: u32,
+    /// After so many periods of net travel in one direction, each time.
+    pub periods: f64,
 }
 
 impl Gamma {
-    /// One γ for ever, as in the paper.
+    /// The paper's: one for all parameters, for ever.
     #[must_use]
     pub fn constant(gamma: f64) -> Self {
         Self {
-            first: gamma,
-            last: gamma,
-            periods: 1,
+            first: Theta::repeat(gamma),
+            halvings: 0,
+            periods: f64::INFINITY,
         }
     }
+}
 
-    fn after(&self, periods: u64) -> f64 {
-        let gear = (periods / self.periods.max(1)).min(60) as i32;
-        (self.first * 0.5f64.powi(gear)).max(self.last)
+/// What the reference is made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Config {
+    /// Parameter set.
+    pub parameters: Parameters,
+    /// Θ at the start.
+    pub theta: Theta,
+    /// The loop.
+    pub tracking: LoopConfig,
+    /// The search.
+    pub search: Search,
+    /// γ.
+    pub gamma: Gamma,
+    /// When Θ may move.
+    pub gate: Gate,
+    /// How far each parameter may go from its start; infinite in the paper.
+    pub bound: Theta,
+    /// How α̂ starts.
+    pub start: Start,
+}
+
+impl Config {
+    /// The paper as printed: final form, one γ for ever, an update each sample, no bounds, α̂ = 0 at the start.
+    #[must_use]
+    pub fn paper(parameters: Parameters, tracking: LoopConfig, gamma: f64) -> Self {
+        Self {
+            parameters,
+            theta: parameters.nominal(1.0),
+            tracking,
+            search: Search::Residual(Form::Final),
+            gamma: Gamma::constant(gamma),
+            gate: Gate::EverySample,
+            bound: Theta::repeat(f64::INFINITY),
+            start: Start::At {
+                alpha_hat: 0.0,
+                speed: 0.0,
+                e_1: 0.0,
+            },
+        }
     }
 }
 
-/// What the system knows before sample k.
-#[derive(Clone, Debug, PartialEq)]
+/// What is known at a sample.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
-    /// α̂_k in radians, unwrapped.
+    /// α̂_k, unwrapped, radians.
     pub alpha_hat: f64,
-    /// Its increment per sample in radians.
-    pub step: f64,
+    /// The same in whole turns, and the phase −π … π that remains: full resolution after any distance.
+    pub turns: i64,
+    /// See [`turns`](Self::turns).
+    pub phase: f64,
+    /// Speed, radians per second.
+    pub speed: f64,
+    /// Θ_k, with which this sample was corrected.
+    pub theta: Theta,
+    /// Phase error, radians.
+    pub e: f64,
+    /// Radial residual.
+    pub rho: f64,
     /// The loop follows.
     pub locked: bool,
-    /// Θ for signals in their own unit.
-    pub theta: Vec<f64>,
+    /// This sample was allowed to move Θ.
+    pub updated: bool,
 }
 
-/// The system with what it remembers.
-#[derive(Clone, Debug)]
-pub struct Interpolator {
-    configuration: Configuration,
-    designed: Filter,
-    wide: Filter,
-    search: Option<Search>,
-    set: ParameterSet,
-    theta: Vec<f64>,
-    lock: Lock,
-    travel: Travel,
-    started: bool,
+impl Estimate {
+    /// Position in scale periods.
+    #[must_use]
+    pub fn periods(&self) -> f64 {
+        self.turns as f64 + self.phase / TAU
+    }
 }
 
-impl Interpolator {
-    /// The system at rest.
+/// State of the search.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Searching {
+    None,
+    Residual(ResidualGradient),
+    SumOfSquares(SumOfSquares),
+    Completed(Completion),
+}
+
+/// The reference: configuration and state.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reference {
+    config: Config,
+    theta: Theta,
+    tracking: Loop,
+    searching: Searching,
+    gate: GateState,
+    acquisition: Option<Acquisition>,
+    /// Samples out of the window, one after the other.
+    astray: u32,
+    /// Halvings of γ so far, and α̂ where the present one began.
+    geared: (u32, f64),
+}
+
+impl Reference {
+    /// Before the first sample.
     ///
     /// # Errors
-    /// What the paper says cannot be built.
-    pub fn new(configuration: Configuration) -> Result<Self, FilterError> {
-        let (poles, ts) = (configuration.poles, configuration.ts);
-        let designed = Filter::new(configuration.method, poles, configuration.second_pole, ts)?;
-        let wide = Poles::of(ACQUISITION.0, ACQUISITION.1);
-        let wide = Filter::new(Method::Three, wide, Some(1.0), ts)?;
-        let calibration = configuration.calibration.as_ref();
-        let set = calibration.map_or(ParameterSet::Five, |c| c.set);
+    /// A search that this parameter set cannot have, or a step that cannot converge.
+    pub fn new(config: Config) -> Result<Self, ReferenceError> {
+        for &gamma in config.gamma.first.iter() {
+            let reason = "a step is positive and finite";
+            require(gamma >= 0.0 && gamma.is_finite(), "gamma", gamma, reason)?;
+        }
+        let filter = config.tracking.filter;
+        let searching = match config.search {
+            Search::None => Searching::None,
+            Search::Residual(form) => Searching::Residual(ResidualGradient::new(form, filter)),
+            Search::SumOfSquares(smoothing) => {
+                if let Smoothing::Forgetting { lambda } = smoothing {
+                    let reason = "the gradient is forgotten only for 0 <= lambda < 1";
+                    require((0.0..1.0).contains(&lambda), "lambda", lambda, reason)?;
+                }
+                Searching::SumOfSquares(SumOfSquares::new(smoothing))
+            }
+            Search::Completed(completed) => {
+                Searching::Completed(Completion::new(completed, config.parameters, filter)?)
+            }
+        };
+        let (tracking, acquisition) = config.start.begin(config.tracking)?;
         Ok(Self {
-            search: calibration.map(|c| Search::new(c.set, c.objective)),
-            theta: set.nominal(1.0),
-            set,
-            designed,
-            wide,
-            lock: Lock::default(),
-            travel: Travel::default(),
-            started: false,
-            configuration,
+            config,
+            theta: config.theta,
+            tracking,
+            searching,
+            gate: GateState::new(config.gate),
+            acquisition,
+            astray: 0,
+            geared: (0, tracking.alpha_hat()),
         })
     }
 
-    fn filter(&self) -> &Filter {
-        if self.lock.locked {
-            &self.designed
-        } else {
-            &self.wide
+    /// One sample, Θ moved as the configured gate and γ say. The signals must be finite.
+    pub fn step(&mut self, y_c: f64, y_s: f64) -> Estimate {
+        if let Some(acquisition) = &mut self.acquisition {
+            let corrected = self.config.parameters.corrected(&self.theta, [y_c, y_s]);
+            let (seen, found) = acquisition.step(corrected, self.config.tracking);
+            if let Some(tracking) = found {
+                self.tracking = tracking;
+                self.geared.1 = tracking.alpha_hat();
+                self.acquisition = None;
+            }
+            return Estimate {
+                theta: self.theta,
+                ..seen
+            };
         }
+        let seen = self.observe([y_c, y_s]);
+        let open = self.gate.step(seen.e, seen.rho, self.tracking.alpha_hat());
+        let locked = self.gate.locked();
+        let gamma = self.gamma();
+        let estimate = self.go_on([y_c, y_s], &seen, open.then_some(&gamma), locked);
+        self.watch(&seen);
+        Estimate { locked, ..estimate }
     }
 
-    /// What is known before the next sample.
+    /// One sample with the decisions made outside: Θ moves by this γ, or not at all; the completion, where there is one,
+    /// may `complete` (and still has its own gate).
+    pub fn step_with(
+        &mut self,
+        y_c: f64,
+        y_s: f64,
+        gamma: Option<&Theta>,
+        complete: bool,
+    ) -> Estimate {
+        let seen = self.observe([y_c, y_s]);
+        self.go_on([y_c, y_s], &seen, gamma, complete)
+    }
+
+    /// What is known of the next sample before it comes: e and ρ are not, and are 0.
     #[must_use]
-    pub fn estimate(&self) -> Estimate {
-        let filter = self.filter();
+    pub fn expected(&self) -> Estimate {
+        if let Some(acquisition) = &self.acquisition {
+            return Estimate {
+                theta: self.theta,
+                ..acquisition.expected(self.config.tracking.ts)
+            };
+        }
+        let (turns, phase) = self.tracking.turns_and_phase();
         Estimate {
-            alpha_hat: filter.alpha_hat(),
-            step: filter.speed() * self.configuration.ts,
-            locked: self.lock.locked,
-            theta: self.theta(),
+            alpha_hat: self.tracking.alpha_hat(),
+            turns,
+            phase,
+            speed: self.tracking.speed(),
+            theta: self.theta,
+            e: 0.0,
+            rho: 0.0,
+            locked: self.gate.locked(),
+            updated: false,
         }
     }
 
-    /// Θ for signals in their own unit: the search divides them by the amplitude, after taking off the middle.
+    /// Θ as it stands for the next sample.
     #[must_use]
-    pub fn theta(&self) -> Vec<f64> {
-        let (amplitude, middle) = (self.configuration.amplitude, self.configuration.middle);
-        let mut theta = self.theta.clone();
-        if theta.len() > 5 {
-            return theta;
-        }
-        theta[0] /= amplitude;
-        theta[2] /= amplitude;
-        let cross = theta.get(4).map_or(0.0, |t| t / amplitude);
-        theta[1] -= theta[0] * middle;
-        theta[3] -= (theta[2] + cross) * middle;
-        if let Some(last) = theta.get_mut(4) {
-            *last = cross;
-        }
-        theta
+    pub fn theta(&self) -> &Theta {
+        &self.theta
     }
 
-    /// One sample, in the unit of the amplitude.
-    pub fn step(&mut self, cos: f64, sin: f64) {
-        let (amplitude, middle) = (self.configuration.amplitude, self.configuration.middle);
-        let (y_c, y_s) = ((cos - middle) / amplitude, (sin - middle) / amplitude);
-        let (c, s) = self.set.correct(&self.theta, y_c, y_s);
-        if !self.started {
-            self.started = true;
-            self.wide.start(s.atan2(c), 0.0);
-        }
-        let filter = self.filter().clone();
-        let (sin_hat, cos_hat) = filter.alpha_hat().sin_cos();
-        let e = s * cos_hat - c * sin_hat;
-        let rho = c * cos_hat + s * sin_hat - 1.0;
-        let was = self.lock.locked;
-        let good = self.lock.judge(e, rho);
-        let mut next = filter.clone();
-        next.step(e);
-        if was {
-            self.calibrate((y_c, y_s), &filter, e, good);
-        } else {
-            self.travel.stop();
-        }
-        self.designed.continue_from(&next);
-        self.wide.continue_from(&next);
+    /// The loop as it stands for the next sample.
+    #[must_use]
+    pub fn tracking(&self) -> &Loop {
+        &self.tracking
     }
 
-    fn calibrate(&mut self, y: (f64, f64), filter: &Filter, e: f64, good: bool) {
-        let (Some(search), Some(calibration)) = (&mut self.search, &self.configuration.calibration)
+    fn observe(&self, y: [f64; 2]) -> Observation {
+        let (_, phase) = self.tracking.turns_and_phase();
+        Observation::new(self.config.parameters, &self.theta, y, phase)
+    }
+
+    fn go_on(
+        &mut self,
+        y: [f64; 2],
+        seen: &Observation,
+        gamma: Option<&Theta>,
+        complete: bool,
+    ) -> Estimate {
+        let theta = self.theta;
+        let estimate = Estimate {
+            e: seen.e,
+            rho: seen.rho,
+            updated: gamma.is_some(),
+            ..self.expected()
+        };
+        let along = |gradient: Theta| gamma.map_or(Theta::zeros(), |g| -gradient.component_mul(g));
+        let parameters = self.config.parameters;
+        let change = match &mut self.searching {
+            Searching::None => Theta::zeros(),
+            Searching::Residual(gradient) => along(gradient.step(seen)),
+            // A closed gate takes no sample into the sum.
+            Searching::SumOfSquares(_) if gamma.is_none() => Theta::zeros(),
+            Searching::SumOfSquares(sum) => along(sum.step(parameters, &theta, y)),
+            Searching::Completed(completion) => {
+                let alpha_hat = estimate.alpha_hat;
+                let missing = completion.step(parameters, &theta, seen, alpha_hat, complete);
+                along(seen.final_form()) + missing
+            }
+        };
+        let Config {
+            bound,
+            theta: start,
+            ..
+        } = &self.config;
+        self.theta = Theta::from_fn(|i, _| {
+            start[i] + (theta[i] + change[i] - start[i]).clamp(-bound[i], bound[i])
+        });
+        self.tracking.advance(seen.e);
+        estimate
+    }
+
+    /// γ after its halvings.
+    fn gamma(&mut self) -> Theta {
+        let Gamma {
+            first,
+            halvings,
+            periods,
+        } = self.config.gamma;
+        let alpha_hat = self.tracking.alpha_hat();
+        let (done, since) = self.geared;
+        if !self.gate.locked() {
+            self.geared.1 = alpha_hat;
+        } else if done < halvings && (alpha_hat - since).abs() >= periods * TAU {
+            self.geared = (done + 1, alpha_hat);
+        }
+        first * 0.5f64.powi(self.geared.0 as i32)
+    }
+
+    /// Starts again from the arctangent where the loop has been astray for as long as lock takes.
+    fn watch(&mut self, seen: &Observation) {
+        let (Gate::Locked(Window { e, rho, samples })
+        | Gate::Travelled(Window { e, rho, samples })) = self.config.gate
         else {
             return;
         };
-        let gradient = search.gradient(y, &self.theta, filter, e);
-        let fresh = good && self.travel.fresh(filter.alpha_hat());
-        if !fresh {
-            return;
-        }
-        let gamma = calibration.gamma.after(self.travel.periods);
-        let nominal = self.set.nominal(1.0);
-        for (i, g) in gradient.iter().enumerate() {
-            let factor = calibration.equaliser.get(i).copied().unwrap_or(1.0);
-            let next = self.theta[i] - gamma * factor * g;
-            let bound = calibration.bound;
-            self.theta[i] = next.clamp(nominal[i] - bound, nominal[i] + bound);
+        let good = seen.e.abs() < e && seen.rho.abs() < rho;
+        self.astray = if good {
+            0
+        } else {
+            self.astray.saturating_add(1)
+        };
+        if let (true, Start::Arctangent { samples }) = (self.astray > samples, self.config.start) {
+            self.acquisition = Some(Acquisition::after(samples, &self.tracking));
+            self.astray = 0;
         }
     }
 }

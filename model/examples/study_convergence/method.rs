@@ -1,0 +1,204 @@
+//! What is compared: each takes samples and says its angle and its Θ.
+
+use nonius_model::bits::Bits;
+use nonius_model::chip::Chip;
+use nonius_model::design::Design;
+use nonius_model::physical::{self, Converter};
+use nonius_model::reference::baseline::{Baseline, OpenLoop};
+use nonius_model::reference::completed::CompletedConfig;
+use nonius_model::reference::extremes::PeriodExtremes;
+use nonius_model::reference::gate::{Gate, Window};
+use nonius_model::reference::gradient::Form;
+use nonius_model::reference::interpolator::{Gamma, Search};
+use nonius_model::reference::loops::{FilterType, LoopConfig, Method as LoopMethod};
+use nonius_model::reference::poles::Poles;
+use nonius_model::reference::start::Start;
+use nonius_model::reference::sum_of_squares::Smoothing;
+use nonius_model::reference::{Config, Parameters, Reference, Theta};
+use nonius_model::spec::Spec;
+
+use crate::scenario::SPEED;
+
+/// Sample time, seconds.
+const TS: f64 = 1e-6;
+
+/// One row of the table.
+pub(crate) enum Method {
+    OpenLoop(OpenLoop),
+    Paper(Parameters, Box<Reference>),
+    Chip(Box<OnChip>),
+}
+
+/// The bit-true chip of a design.
+pub(crate) struct OnChip {
+    chip: Chip<Bits>,
+    converter: Converter,
+    spec: Spec,
+}
+
+impl OnChip {
+    pub(crate) fn of(design: &Design) -> Self {
+        Self {
+            chip: Chip::bit_true(design),
+            converter: Converter::of(&design.spec),
+            spec: design.spec.clone(),
+        }
+    }
+}
+
+/// What a method says of a sample: α̂ in radians and Θ before it, for signals of amplitude 1.
+pub(crate) struct Said {
+    pub(crate) alpha_hat: f64,
+    pub(crate) parameters: Parameters,
+    pub(crate) theta: Theta,
+}
+
+impl Method {
+    /// Every method, with its name. The loop's ω0 is twice the signal frequency, so that the completion has something
+    /// to see; γ starts at 0.04 and halves three times.
+    pub(crate) fn all(design: &Design) -> Vec<(String, Self)> {
+        let four = Parameters::Four;
+        let nominal = Baseline::Fixed(four, four.nominal(1.0));
+        let extremes = Baseline::Extremes(PeriodExtremes::new(1.0));
+        let mut list = vec![
+            (
+                "arctangent".to_owned(),
+                Self::OpenLoop(OpenLoop::new(nominal, TS)),
+            ),
+            (
+                "extremes".to_owned(),
+                Self::OpenLoop(OpenLoop::new(extremes, TS)),
+            ),
+        ];
+        let mut add = |name: &str, set: Parameters, search, gate| {
+            let name = format!("{name} {}", set_name(set));
+            if let Ok(reference) = Reference::new(config(set, search, gate)) {
+                list.push((name, Self::Paper(set, Box::new(reference))));
+            }
+        };
+        let travelled = Gate::Travelled(WINDOW);
+        let squares = Search::SumOfSquares(Smoothing::Forgetting { lambda: 0.9 });
+        let batch = Search::SumOfSquares(Smoothing::Batch { samples: 64 });
+        for set in [Parameters::Four, Parameters::Five] {
+            add("sum of squares, lambda 0.9,", set, squares, travelled);
+            add("sum of squares, batch 64,", set, batch, travelled);
+        }
+        let five = Parameters::Five;
+        add(
+            "residual, as printed,",
+            five,
+            Search::Residual(Form::Final),
+            Gate::EverySample,
+        );
+        for set in Parameters::ALL {
+            add(
+                "residual, final form,",
+                set,
+                Search::Residual(Form::Final),
+                travelled,
+            );
+            add(
+                "residual, exact,",
+                set,
+                Search::Residual(Form::Exact),
+                travelled,
+            );
+            let completed = Search::Completed(CompletedConfig {
+                gamma_v: 0.02,
+                slowest: 0.02,
+            });
+            add("completed,", set, completed, travelled);
+        }
+        list.push((
+            "chip, bit-true, five".to_owned(),
+            Self::Chip(Box::new(OnChip::of(design))),
+        ));
+        list
+    }
+
+    /// Takes one sample; the amplitude of y is 1.
+    pub(crate) fn step(&mut self, y: [f64; 2]) -> Said {
+        match self {
+            Self::OpenLoop(open_loop) => {
+                let seen = open_loop.step(y[0], y[1]);
+                Said {
+                    alpha_hat: seen.alpha_hat,
+                    parameters: Parameters::Four,
+                    theta: seen.theta,
+                }
+            }
+            Self::Paper(parameters, reference) => {
+                let seen = reference.step(y[0], y[1]);
+                Said {
+                    alpha_hat: seen.alpha_hat,
+                    parameters: *parameters,
+                    theta: seen.theta,
+                }
+            }
+            Self::Chip(on_chip) => on_chip.step(y),
+        }
+    }
+}
+
+impl OnChip {
+    fn step(&mut self, y: [f64; 2]) -> Said {
+        let (middle, amplitude) = (self.spec.adc.middle, self.spec.sensor.amplitude);
+        let [one, two, three, four, five] = physical::theta(&self.spec, self.chip.theta());
+        // For signals of amplitude 1 about 0, from those in volts.
+        let mut theta = Theta::zeros();
+        theta[0] = one * amplitude;
+        theta[1] = two + one * middle;
+        theta[2] = three * amplitude;
+        theta[3] = four + (three + five) * middle;
+        theta[4] = five * amplitude;
+        let said = Said {
+            alpha_hat: self.chip.position() * std::f64::consts::TAU,
+            parameters: Parameters::Five,
+            theta,
+        };
+        let [cos, sin] = y.map(|y| self.converter.code(middle + amplitude * y));
+        self.chip.step_codes(cos, sin, false, true);
+        said
+    }
+}
+
+const WINDOW: Window = Window {
+    e: 0.5,
+    rho: 0.6,
+    samples: 100,
+};
+
+fn config(set: Parameters, search: Search, gate: Gate) -> Config {
+    let poles = Poles::new(2.0 * SPEED / TS, std::f64::consts::FRAC_1_SQRT_2, TS)
+        .expect("poles inside the unit circle");
+    let tracking = LoopConfig::new(LoopMethod::Three(FilterType::Two), &poles, TS)
+        .expect("the paper builds it");
+    // 4 MᵀMΘ ε is eight times Mᵀ n ρ for small ρ, and a forgetting factor of 0.9 multiplies by ten.
+    let scale = match search {
+        Search::SumOfSquares(Smoothing::Forgetting { .. }) => 1.0 / 80.0,
+        Search::SumOfSquares(Smoothing::Batch { .. }) => 1.0 / 8.0,
+        _ => 1.0,
+    };
+    Config {
+        search,
+        gate,
+        gamma: Gamma {
+            first: Theta::repeat(0.04 * scale),
+            halvings: 3,
+            periods: 20.0,
+        },
+        start: Start::Arctangent { samples: 32 },
+        ..Config::paper(set, tracking, 0.0)
+    }
+}
+
+pub(crate) fn set_name(set: Parameters) -> &'static str {
+    match set {
+        Parameters::Four => "four",
+        Parameters::Five => "five",
+        Parameters::Eight => "eight",
+        Parameters::Nine => "nine",
+        Parameters::ChebyshevEight => "eight (Chebyshev)",
+        Parameters::ChebyshevNine => "nine (Chebyshev)",
+    }
+}

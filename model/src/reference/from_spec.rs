@@ -1,0 +1,128 @@
+//! The reference for a `design.toml`: its physical numbers, nothing of the chip.
+
+use std::f64::consts::TAU;
+
+use super::gate::{Gate, Window};
+use super::gradient::Form;
+use super::interpolator::{Gamma, Search};
+use super::loops::LoopConfig;
+use super::poles::Poles;
+use super::start::Start;
+use super::{Config, Parameters, ReferenceError, Theta};
+use crate::spec::Spec;
+
+/// From the unit of the ADC's range to y: the middle becomes 0, the nominal amplitude 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Normalise {
+    /// Middle of the range.
+    pub middle: f64,
+    /// Nominal amplitude.
+    pub amplitude: f64,
+}
+
+impl Normalise {
+    /// As the design says.
+    #[must_use]
+    pub fn of(spec: &Spec) -> Self {
+        Self {
+            middle: spec.adc.middle,
+            amplitude: spec.sensor.amplitude,
+        }
+    }
+
+    /// y of a signal.
+    #[must_use]
+    pub fn y(&self, signal: f64) -> f64 {
+        (signal - self.middle) / self.amplitude
+    }
+
+    /// The five parameters of section 5.3 for y, as those for the signals themselves.
+    #[must_use]
+    pub fn theta_of_signals(&self, theta: [f64; 5]) -> [f64; 5] {
+        let [t1, t2, t3, t4, t5] = theta;
+        let [gain_c, gain_s, cross] = [t1, t3, t5].map(|t| t / self.amplitude);
+        [
+            gain_c,
+            t2 - gain_c * self.middle,
+            gain_s,
+            t4 - (gain_s + cross) * self.middle,
+            cross,
+        ]
+    }
+}
+
+/// The loop of a design.
+///
+/// # Errors
+/// Poles outside the unit circle, and what the paper says is impossible.
+pub fn tracking(spec: &Spec) -> Result<LoopConfig, ReferenceError> {
+    let t = &spec.tracking;
+    let ts = 1.0 / spec.adc.sample_rate_hz;
+    let poles = Poles::new(TAU * t.bandwidth_hz, t.damping, ts)?;
+    LoopConfig::named(t.method, t.filter_type, t.pole, &poles, ts)
+}
+
+/// The whole system for a design, for signals in the unit of [`Normalise`]: final form of the residual gradient, γ
+/// and its halvings as the design says, the modes equalised, an update per sector of travel and in lock only, started from the arctangent.
+///
+/// # Errors
+/// As [`tracking`]; a number of parameters other than 0, 4, 5, 8, 9.
+pub fn config(spec: &Spec) -> Result<Config, ReferenceError> {
+    let tracking = tracking(spec)?;
+    let k = &spec.calibration;
+    let parameters = match k.parameters {
+        4 => Parameters::Four,
+        0 | 5 => Parameters::Five,
+        8 => Parameters::ChebyshevEight,
+        9 => Parameters::ChebyshevNine,
+        _ => {
+            return Err(ReferenceError::Impossible(
+                "the parameter sets have 4, 5, 8 or 9 parameters",
+            ));
+        }
+    };
+    let s = &spec.sensor;
+    let worst = s.offset_max * 1.5
+        + s.amplitude_tolerance
+        + s.phase_error_max_deg.to_radians()
+        + 5.0 * s.noise_rms;
+    // The gradient's modes are 1/2 for offsets, 1/4 for gains, 1/8 for the phase: brought to one speed.
+    let mut equaliser = Theta::repeat(1.0);
+    let [gain_c, _, gain_s, _] = parameters.linear();
+    (equaliser[gain_c], equaliser[gain_s]) = (2.0, 2.0);
+    if parameters.count() % 2 == 1 {
+        equaliser[parameters.count() - 1] = 4.0;
+    }
+    // A loop settles within some multiples of 1/ω0.
+    let omega = TAU * spec.tracking.bandwidth_hz / spec.adc.sample_rate_hz;
+    let settled = (4.0 / omega).ceil().clamp(8.0, 1e6) as u32;
+    let window = Window {
+        e: (0.75 * worst).clamp(0.35, 0.6),
+        rho: (1.25 * worst).clamp(0.4, 0.9),
+        samples: settled,
+    };
+    Ok(Config {
+        parameters,
+        theta: parameters.nominal(1.0),
+        tracking,
+        search: if k.parameters == 0 {
+            Search::None
+        } else {
+            Search::Residual(Form::Final)
+        },
+        gamma: Gamma {
+            first: equaliser * 0.5f64.powi(k.gamma_first as i32),
+            halvings: k.gamma_last.saturating_sub(k.gamma_first),
+            periods: k.gear_periods.into(),
+        },
+        gate: if k.parameters == 0 {
+            Gate::Locked(window)
+        } else {
+            Gate::Travelled(window)
+        },
+        bound: Theta::repeat(1.0),
+        start: Start::Arctangent {
+            samples: settled.min(64),
+        },
+    })
+}

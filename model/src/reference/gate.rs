@@ -1,0 +1,102 @@
+//! When to calibrate: in lock only, and driven by travelled angle instead of time.
+//!
+//! The paper updates each sample and says that standstill biases it; without lock the update drives all gains to zero.
+
+use std::f64::consts::TAU;
+
+/// Sectors of a period.
+const SECTORS: i64 = 64;
+
+/// When an update is allowed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Gate {
+    /// Never: fixed parameters.
+    Closed,
+    /// Each sample, as printed in the paper.
+    EverySample,
+    /// Each sample in lock.
+    Locked(Window),
+    /// In lock, each of 64 sectors of the period once until a whole period has been travelled.
+    Travelled(Window),
+}
+
+/// What counts as lock.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Window {
+    /// Largest |e|, radians.
+    pub e: f64,
+    /// Largest |ρ|.
+    pub rho: f64,
+    /// So many samples within it, one after the other.
+    pub samples: u32,
+}
+
+/// State of a gate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GateState {
+    gate: Gate,
+    good: u32,
+    /// Sector number, counted from the unwrapped angle, where the map was cleared.
+    origin: Option<i64>,
+    /// One bit for each sector of the period that was used.
+    used: u64,
+}
+
+impl GateState {
+    /// Not locked, no sector used.
+    #[must_use]
+    pub fn new(gate: Gate) -> Self {
+        Self {
+            gate,
+            good: 0,
+            origin: None,
+            used: 0,
+        }
+    }
+
+    /// In lock, by the window of the gate; gates without a window are always locked.
+    #[must_use]
+    pub fn locked(&self) -> bool {
+        match self.gate {
+            Gate::Closed | Gate::EverySample => true,
+            Gate::Locked(window) | Gate::Travelled(window) => self.good >= window.samples,
+        }
+    }
+
+    /// Takes e, ρ and α̂ (radians, unwrapped) of a sample; true if it may move the parameters.
+    pub fn step(&mut self, e: f64, rho: f64, alpha_hat: f64) -> bool {
+        match self.gate {
+            Gate::Closed => false,
+            Gate::EverySample => true,
+            Gate::Locked(window) => self.within(window, e, rho),
+            Gate::Travelled(window) => {
+                let open = self.within(window, e, rho);
+                if !open {
+                    self.origin = None;
+                    return false;
+                }
+                self.fresh(alpha_hat)
+            }
+        }
+    }
+
+    fn within(&mut self, window: Window, e: f64, rho: f64) -> bool {
+        // NaN is not within.
+        let good = e.abs() < window.e && rho.abs() < window.rho;
+        self.good = if good { self.good.saturating_add(1) } else { 0 };
+        self.good >= window.samples
+    }
+
+    fn fresh(&mut self, alpha_hat: f64) -> bool {
+        let sector = (alpha_hat / TAU * SECTORS as f64).floor() as i64;
+        let cleared = self.origin.is_none_or(|o| (sector - o).abs() >= SECTORS);
+        if cleared {
+            self.origin = Some(sector);
+            self.used = 0;
+        }
+        let bit = 1u64 << sector.rem_euclid(SECTORS);
+        let fresh = self.used & bit == 0;
+        self.used |= bit;
+        fresh
+    }
+}

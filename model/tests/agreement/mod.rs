@@ -1,0 +1,197 @@
+//! Runs the chip and the reference side by side.
+
+mod worst_case;
+
+pub(crate) use worst_case::WorstCase;
+
+use std::f64::consts::TAU;
+
+use nonius_model::bits::Bits;
+use nonius_model::chip::Chip;
+use nonius_model::design::Design;
+use nonius_model::kernel::{Input, Method, State};
+use nonius_model::reference::gradient::Form;
+use nonius_model::reference::interpolator::Search;
+use nonius_model::reference::start::Start;
+use nonius_model::reference::{Config, Parameters, Reference, Theta, from_spec};
+use nonius_model::spec::Coding;
+
+use crate::support::{Encoder, wrapped};
+
+/// What both readings of the chip show of their registers and decisions.
+pub(crate) trait Reading {
+    fn step(&mut self, codes: [i64; 2], middle: i64, bits: u32) -> (bool, [f64; 2]);
+    fn position(&self) -> f64;
+    fn registers(&self) -> State<f64>;
+}
+
+impl Reading for Chip<Bits> {
+    fn step(&mut self, [cos, sin]: [i64; 2], middle: i64, _: u32) -> (bool, [f64; 2]) {
+        let p = self.step_codes(cos + middle, sin + middle, false, true);
+        (p.fresh, [p.e.to_f64(), p.rho.to_f64()])
+    }
+    fn position(&self) -> f64 {
+        Self::position(self)
+    }
+    fn registers(&self) -> State<f64> {
+        let s = &self.state;
+        State::build(
+            |name| s.value(name).unwrap().to_f64(),
+            |name| s.flag(name).unwrap(),
+        )
+    }
+}
+
+impl Reading for Chip<f64> {
+    fn step(&mut self, codes: [i64; 2], middle: i64, bits: u32) -> (bool, [f64; 2]) {
+        let [adc_cos, adc_sin] = codes.map(|code| (code + middle) as f64 / 2f64.powi(bits as i32));
+        let p = Self::step(
+            self,
+            &Input {
+                adc_cos,
+                adc_sin,
+                preset: false,
+                calibrate: true,
+            },
+        );
+        (p.fresh, [p.e, p.rho])
+    }
+    fn position(&self) -> f64 {
+        Self::position(self)
+    }
+    fn registers(&self) -> State<f64> {
+        self.state
+    }
+}
+
+/// The parameters that the chip applies.
+fn theta(design: &Design, registers: &State<f64>) -> Theta {
+    let mut theta = Theta::zeros();
+    theta[0] = design.constants.theta_1_nominal.ideal + registers.theta_1_deviation;
+    theta[1] = registers.theta_2_deviation;
+    theta[2] = design.constants.theta_3_nominal.ideal + registers.theta_3_deviation;
+    theta[3] = registers.theta_4_deviation;
+    theta[4] = registers.theta_5_deviation;
+    theta
+}
+
+/// The reference in the state that the chip is in.
+fn reference(design: &Design, registers: &State<f64>, position: f64) -> Reference {
+    let spec = &design.spec;
+    let tracking = from_spec::tracking(spec).unwrap();
+    let rate = match design.structure.method {
+        Method::One => wrapped(registers.alpha_hat - registers.alpha_hat_previous),
+        Method::Two | Method::Three => registers.rate,
+    };
+    let parameters = match spec.calibration.parameters {
+        4 => Parameters::Four,
+        _ => Parameters::Five,
+    };
+    Reference::new(Config {
+        theta: theta(design, registers),
+        search: match spec.calibration.parameters {
+            0 => Search::None,
+            _ => Search::Residual(Form::Final),
+        },
+        start: Start::At {
+            alpha_hat: position * TAU,
+            speed: rate * TAU / tracking.ts,
+            e_1: registers.error_previous,
+        },
+        ..Config::paper(parameters, tracking, 0.0)
+    })
+    .unwrap()
+}
+
+/// Largest differences between chip and reference; in turns for the angle.
+#[derive(Debug, Default)]
+pub(crate) struct Difference {
+    pub(crate) alpha_hat: f64,
+    pub(crate) alpha_hat_rms: f64,
+    pub(crate) speed: f64,
+    pub(crate) theta: f64,
+    pub(crate) e: f64,
+    pub(crate) rho: f64,
+    pub(crate) updates: u32,
+    pub(crate) gears: u32,
+    pub(crate) moved: f64,
+}
+
+/// Samples of a comparison.
+pub(crate) const SAMPLES: u32 = 60_000;
+
+/// Gains by 2, offsets by 1, phase by 4: what the chip equalises the modes with.
+pub(crate) const EQUALISER: [f64; 5] = [2.0, 1.0, 2.0, 1.0, 4.0];
+
+/// Runs both over `motion` (turns at sample k). The comparison begins where the chip has locked in its
+/// last gear: there the reference is put in the chip's state, once.
+pub(crate) fn compare(
+    design: &Design,
+    chip: &mut impl Reading,
+    motion: impl Fn(f64) -> f64,
+    equaliser: [f64; 5],
+) -> Difference {
+    let spec = &design.spec;
+    let encoder = Encoder::miscalibrated(spec);
+    let (half, middle) = {
+        let half = 1i64 << (spec.adc.bits - 1);
+        let binary = spec.adc.coding == Coding::OffsetBinary;
+        (half as f64, if binary { half } else { 0 })
+    };
+    // y has the nominal amplitude between ½ and 1.
+    let mut unit = 1.0;
+    while spec.sensor.amplitude / spec.adc.full_scale * unit < 0.5 {
+        unit *= 2.0;
+    }
+    let last_gear = f64::from(design.structure.loop_gears);
+    let mut paper: Option<Reference> = None;
+    let mut found = Difference::default();
+    let mut start = Theta::zeros();
+    let mut compared = 0u32;
+    for k in 0..SAMPLES {
+        let codes = encoder.codes(motion(f64::from(k)));
+        let before = chip.registers();
+        let (fresh, [e, rho]) = chip.step(codes, middle, spec.adc.bits);
+        let after = chip.registers();
+        let Some(paper) = &mut paper else {
+            if after.locked && after.loop_gear == last_gear {
+                start = theta(design, &after);
+                paper = Some(reference(design, &after, chip.position()));
+            }
+            continue;
+        };
+        assert!(after.locked, "lock lost at sample {k}");
+        let first = -f64::from(spec.calibration.gamma_first as i32) - before.gamma_gear;
+        let mut gamma = Theta::zeros();
+        for (i, equaliser) in equaliser.into_iter().enumerate() {
+            gamma[i] = equaliser * first.exp2();
+        }
+        let y = codes.map(|code| code as f64 / half * unit);
+        let fresh = fresh && spec.calibration.parameters > 0;
+        let seen = paper.step_with(y[0], y[1], fresh.then_some(&gamma), false);
+
+        let angle = wrapped(chip.position() - paper.tracking().alpha_hat() / TAU);
+        let ts = paper.tracking().config.ts;
+        let rate = match design.structure.method {
+            Method::One => wrapped(after.alpha_hat - after.alpha_hat_previous),
+            Method::Two | Method::Three => after.rate,
+        };
+        let largest = |x: &mut f64, y: f64| *x = x.max(y.abs());
+        largest(&mut found.alpha_hat, angle);
+        largest(&mut found.speed, rate - paper.tracking().speed() * ts / TAU);
+        largest(
+            &mut found.theta,
+            (theta(design, &after) - paper.theta()).amax(),
+        );
+        largest(&mut found.e, e - seen.e);
+        largest(&mut found.rho, rho - seen.rho);
+        found.alpha_hat_rms += angle * angle;
+        found.updates += u32::from(fresh);
+        found.gears = found.gears.max(after.gamma_gear as u32);
+        found.moved = (paper.theta() - start).amax();
+        compared += 1;
+    }
+    assert!(compared > SAMPLES / 2, "compared only {compared} samples");
+    found.alpha_hat_rms = (found.alpha_hat_rms / f64::from(compared)).sqrt();
+    found
+}

@@ -1,0 +1,194 @@
+//! The chip against the paper: same ADC codes, same physical design, two programs that share no formula.
+//!
+//! The chip makes decisions that the paper does not know (γ shifts gear, each sector of travel counts once, the modes
+//! are equalised). The reference is told them sample by sample; everything else it computes from the physical design.
+#![cfg_attr(test, allow(clippy::unwrap_used))]
+
+mod agreement;
+mod support;
+
+use std::f64::consts::TAU;
+
+use agreement::{Difference, EQUALISER, WorstCase, compare};
+use nonius_model::chip::Chip;
+use nonius_model::design::Design;
+use nonius_model::reference::gate::{Gate, GateState, Window};
+use nonius_model::spec::{Coding, Spec};
+use support::{Encoder, optical};
+
+/// Each structure of the chip that differs in an equation.
+fn structures() -> Vec<(String, Spec)> {
+    let mut list = Vec::new();
+    for (method, filter_type, pole) in [
+        (1, 2, None),
+        (1, 1, None),
+        (1, 1, Some(0.9)),
+        (2, 1, None),
+        (3, 2, None),
+        (3, 1, None),
+        (3, 1, Some(0.97)),
+    ] {
+        for parameters in [0, 4, 5] {
+            let mut spec = optical();
+            spec.tracking.method = method;
+            spec.tracking.filter_type = filter_type;
+            spec.tracking.pole = pole;
+            spec.calibration.parameters = parameters;
+            if filter_type == 1 {
+                // What lags at speed cannot be fast.
+                spec.sensor.speed_max_periods_per_s = 1.5e3;
+            }
+            let pole = pole.map_or(String::new(), |p| format!(" pole {p}"));
+            let name = format!("method {method} type {filter_type}{pole}, {parameters} parameters");
+            list.push((name, spec));
+        }
+    }
+    let mut binary = optical();
+    binary.adc.coding = Coding::OffsetBinary;
+    binary.adc.bits = 14;
+    binary.sensor.amplitude = 0.3;
+    list.push(("offset binary, 14 bits, amplitude 0.3".into(), binary));
+    list
+}
+
+/// A sweep with reversals up to the top speed.
+fn sweep(spec: &Spec) -> impl Fn(f64) -> f64 {
+    let top = 0.8 * spec.sensor.speed_max_periods_per_s / spec.adc.sample_rate_hz;
+    let slow = TAU / 30_000.0;
+    move |k| top / slow * (slow * k).sin() + 0.1
+}
+
+fn check(name: &str, found: &Difference, worst: &WorstCase) {
+    println!(
+        "{name}: alpha_hat {:.1e} (rms {:.1e}, bound {:.1e}) turns, e {:.1e} ({:.1e}), rho {:.1e} ({:.1e}), theta {:.1e} ({:.1e})",
+        found.alpha_hat,
+        found.alpha_hat_rms,
+        worst.alpha_hat,
+        found.e,
+        worst.e,
+        found.rho,
+        worst.rho,
+        found.theta,
+        worst.theta,
+    );
+    assert!(found.alpha_hat <= worst.alpha_hat, "{name}: {found:?}");
+    assert!(found.e <= worst.e, "{name}: {found:?}");
+    assert!(found.rho <= worst.rho, "{name}: {found:?}");
+    assert!(found.theta <= worst.theta, "{name}: {found:?}");
+}
+
+/// The comparison is one of a calibration that happens: hundreds of updates, every gear of γ, parameters that moved.
+fn calibrated(spec: &Spec, found: &Difference) {
+    if spec.calibration.parameters == 0 {
+        assert_eq!((found.updates, found.moved), (0, 0.0));
+    } else {
+        assert!(found.updates > 600 && found.moved > 0.05, "{found:?}");
+        assert_eq!(
+            found.gears,
+            spec.calibration.gamma_last - spec.calibration.gamma_first
+        );
+    }
+}
+
+/// The chip's equations are the paper's: with the finest sine table and coefficients the unrounded chip and the
+/// reference differ by the table's interpolation error and the coefficients' last bit, a few 10⁻¹⁰ of a period, in
+/// every method, type and parameter set, through reversals and all of the convergence.
+#[test]
+fn the_equations_agree() {
+    for (name, mut spec) in structures() {
+        spec.formats.signal_fraction = Some(24);
+        spec.formats.sine_rows_log2 = Some(13);
+        let design = Design::new(&spec).unwrap();
+        let found = compare(
+            &design,
+            &mut Chip::unrounded(&design),
+            sweep(&spec),
+            EQUALISER,
+        );
+        check(&name, &found, &WorstCase::of(&design, false));
+        calibrated(&spec, &found);
+    }
+}
+
+/// The bit-true chip with the word lengths that its budget chose differs from the paper by no more than these word
+/// lengths can do in the worst case.
+#[test]
+fn the_bits_agree_to_the_rounding() {
+    for (name, spec) in structures() {
+        let design = Design::new(&spec).unwrap();
+        let found = compare(
+            &design,
+            &mut Chip::bit_true(&design),
+            sweep(&spec),
+            EQUALISER,
+        );
+        check(&name, &found, &WorstCase::of(&design, true));
+        calibrated(&spec, &found);
+        // And on the average by less than the budget allows.
+        assert!(
+            found.alpha_hat_rms <= design.budget.allowed,
+            "{name}: {found:?}"
+        );
+    }
+}
+
+/// The comparison is sharp: a reference whose loop is 1 % wider, or whose γ is 1 % larger, misses the bounds by more than
+/// a hundredfold.
+#[test]
+fn a_small_difference_in_the_design_is_seen() {
+    let mut spec = optical();
+    spec.formats.signal_fraction = Some(24);
+    spec.formats.sine_rows_log2 = Some(13);
+    let design = Design::new(&spec).unwrap();
+    let worst = WorstCase::of(&design, false);
+    let mut wider = design.clone();
+    wider.spec.tracking.bandwidth_hz *= 1.01;
+    let found = compare(
+        &wider,
+        &mut Chip::unrounded(&design),
+        sweep(&spec),
+        EQUALISER,
+    );
+    assert!(found.alpha_hat > 100.0 * worst.alpha_hat, "{found:?}");
+    assert!(found.e > 100.0 * worst.e, "{found:?}");
+    let larger = EQUALISER.map(|x| 1.01 * x);
+    let found = compare(&design, &mut Chip::unrounded(&design), sweep(&spec), larger);
+    assert!(found.theta > 100.0 * worst.theta, "{found:?}");
+    assert!(found.rho > 100.0 * worst.rho, "{found:?}");
+}
+
+/// The chip's gate by travelled angle keeps an interval of sectors, the reference's a map of all 64. Where no sector is
+/// jumped over they are the same thing: equal decisions at every sample, through reversals on large and small arcs.
+#[test]
+fn the_travel_gates_decide_alike() {
+    let spec = optical();
+    let design = Design::new(&spec).unwrap();
+    let encoder = Encoder::ideal(&spec);
+    let mut chip = Chip::bit_true(&design);
+    let always = Window {
+        e: f64::INFINITY,
+        rho: f64::INFINITY,
+        samples: 0,
+    };
+    let mut gate = GateState::new(Gate::Travelled(always));
+    let (mut counted, mut fresh) = (0, 0);
+    for k in 0..80_000 {
+        let t = f64::from(k);
+        let turns = 3.0 * (t / 3000.0).sin() + 0.9 * (t / 411.0).sin() + 0.2 * (t / 67.0).sin();
+        let [cos, sin] = encoder.codes(turns);
+        let (was_locked, position) = (chip.state.locked, chip.position());
+        let probes = chip.step_codes(cos, sin, false, true);
+        if !was_locked {
+            // The chip's map begins where it was last not counting.
+            gate = GateState::new(Gate::Travelled(always));
+        }
+        let expected = gate.step(0.0, 0.0, position * TAU);
+        if was_locked {
+            assert_eq!(probes.fresh, expected, "sample {k}");
+            counted += 1;
+            fresh += u32::from(expected);
+        }
+    }
+    println!("{fresh} of {counted} samples were in a fresh sector");
+    assert!(counted > 75_000 && fresh > 1000);
+}
