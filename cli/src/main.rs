@@ -3,6 +3,7 @@
 mod build;
 mod calibrate;
 mod design_file;
+mod diagnose;
 mod new;
 mod paper;
 mod recording_args;
@@ -38,6 +39,8 @@ enum Command {
     Simulate(Box<simulate::Simulate>),
     /// Offsets, gains and phase of a recording, off line, with error bars.
     Calibrate(Box<calibrate::Calibrate>),
+    /// What the simulation of a recorded sensor gets wrong, the causes by name, and what they gain.
+    Diagnose(Box<diagnose::Diagnose>),
     /// Runs the chip in a folder in Icarus and in Verilator against the model.
     Verify {
         /// What `build` wrote.
@@ -51,6 +54,7 @@ fn main() -> ExitCode {
         Command::New(args) => new::run(&args).map(|()| true),
         Command::Simulate(args) => simulate::run(&args).map(|()| true),
         Command::Calibrate(args) => calibrate::run(&args).map(|()| true),
+        Command::Diagnose(args) => diagnose::run(&args),
         Command::Verify { dir } => verify(&dir),
     };
     match done {

@@ -86,6 +86,13 @@ pub(crate) fn run(args: &New) -> Result<()> {
     Ok(())
 }
 
+/// The text of a design fitted to a recording.
+pub(crate) fn fitted_text(name: &str, file: &Path, recording: &Recording) -> Result<String> {
+    let mut draft = fitted(name, file, recording, &Survey::of(recording))?;
+    settle(&mut draft)?;
+    Ok(draft.toml())
+}
+
 /// The finest accuracy that the rest of the draft allows.
 fn settle(draft: &mut Draft) -> Result<Design> {
     draft.accuracy = FINEST;

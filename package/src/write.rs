@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, thiserror::Error)]
 pub enum WriteError {
     /// Something else is there.
-    #[error("{} exists and was not written by nonius build; name another folder", .0.display())]
+    #[error("{} exists and was not written by this command; name another folder", .0.display())]
     NotOurs(PathBuf),
     /// The operating system refuses.
     #[error("cannot write {}: {error}", path.display())]
@@ -26,12 +26,24 @@ pub enum WriteError {
 /// # Errors
 /// A folder of somebody else, or what the operating system says.
 pub fn write(files: &[(String, Vec<u8>)], output: &Path) -> Result<(), WriteError> {
+    write_marked(files, output, "design.json")
+}
+
+/// The same for folders that are known by another file.
+///
+/// # Errors
+/// As for [`write`].
+pub fn write_marked(
+    files: &[(String, Vec<u8>)],
+    output: &Path,
+    mark: &str,
+) -> Result<(), WriteError> {
     let refuse = |path: &Path| {
         let path = path.to_owned();
         move |error| WriteError::Io { path, error }
     };
     let there = output.symlink_metadata().is_ok();
-    if there && !output.join("design.json").is_file() && !is_empty(output) {
+    if there && !output.join(mark).is_file() && !is_empty(output) {
         return Err(WriteError::NotOurs(output.to_owned()));
     }
     let parent = output

@@ -1,0 +1,161 @@
+//! `nonius diagnose`: what a recording's simulation gets wrong, why, and what naming it gains.
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result};
+use clap::Args;
+use nonius_diagnosis::{Diagnosis, Extended, Finding, Simulation, Unexplained, diagnose};
+use nonius_model::design::Design;
+use nonius_recording::Recording;
+use serde::Serialize;
+
+use crate::recording_args::RecordingArgs;
+
+/// What to diagnose.
+#[derive(Args)]
+pub(crate) struct Diagnose {
+    /// The recording (CSV).
+    recording: PathBuf,
+    /// Folder to write: findings.json, positions.csv, sensor.toml, design.toml, report.html.
+    #[arg(short)]
+    output: PathBuf,
+    /// The design that runs on this sensor; one is fitted if none is given.
+    #[arg(long, value_name = "DESIGN.toml")]
+    design: Option<PathBuf>,
+    /// Exit code 1 if something significant stays unexplained.
+    #[arg(long)]
+    strict: bool,
+    /// Prints findings.json too.
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    recording_args: RecordingArgs,
+}
+
+#[derive(Serialize)]
+struct Findings<'a> {
+    schema: &'static str,
+    recording: About,
+    simulation: &'a Simulation,
+    findings: &'a [Finding],
+    unexplained: &'a Unexplained,
+    extended: &'a Extended,
+}
+
+#[derive(Serialize)]
+struct About {
+    /// Name, then the hash of the content.
+    file: String,
+    samples: usize,
+    sample_rate_hz: f64,
+    periods_travelled: f64,
+    has_reference: bool,
+}
+
+pub(crate) fn run(args: &Diagnose) -> Result<bool> {
+    let recording = Recording::read(&args.recording, &args.recording_args.overrides())?;
+    let given = args.design.as_deref();
+    let design = match given {
+        Some(path) => {
+            let spec = crate::design_file::read(path)?;
+            Design::new(&spec).with_context(|| format!("{} cannot work", path.display()))?;
+            Some(std::fs::read_to_string(path)?)
+        }
+        None => None,
+    };
+    let found = diagnose(&recording)
+        .map_err(|error| anyhow::anyhow!("{}: {error}", args.recording.display()))?;
+    for note in &found.notes {
+        eprintln!("note: {note}");
+    }
+    let hash = hash(&args.recording)?;
+    let json = serde_json::to_string_pretty(&Findings {
+        schema: "nonius.findings/1",
+        recording: About {
+            file: format!("sha256:{hash}"),
+            samples: recording.samples(),
+            sample_rate_hz: recording.metadata.sample_rate_hz,
+            periods_travelled: found.periods_travelled,
+            has_reference: recording.reference_rad.is_some(),
+        },
+        simulation: &found.simulation,
+        findings: &found.findings,
+        unexplained: &found.unexplained,
+        extended: &found.extended,
+    })? + "\n";
+    let mut files: Vec<(String, Vec<u8>)> = vec![
+        ("findings.json".into(), json.clone().into_bytes()),
+        (
+            "positions.csv".into(),
+            positions(&recording, &found).into_bytes(),
+        ),
+        (
+            "sensor.toml".into(),
+            nonius_diagnosis::sensor_toml(&found, &recording).into_bytes(),
+        ),
+        (
+            "report.html".into(),
+            nonius_diagnosis::report(&found, &hash, env!("CARGO_PKG_VERSION"))?.into_bytes(),
+        ),
+    ];
+    let design = match design {
+        Some(text) => Some(text),
+        None => crate::new::fitted_text("fitted", &args.recording, &recording)
+            .map_err(|error| eprintln!("note: no design.toml: {error:#}"))
+            .ok(),
+    };
+    if let Some(text) = design {
+        files.push(("design.toml".into(), text.into_bytes()));
+    }
+    nonius_package::write_marked(&files, &args.output, "findings.json")?;
+    if args.json {
+        print!("{json}");
+    } else {
+        summary(&found, &args.output);
+    }
+    Ok(!(args.strict && found.unexplained.significant))
+}
+
+fn hash(path: &Path) -> Result<String> {
+    use sha2::Digest;
+    let digest = sha2::Sha256::digest(std::fs::read(path)?);
+    Ok(digest.iter().map(|byte| format!("{byte:02x}")).collect())
+}
+
+fn positions(recording: &Recording, found: &Diagnosis) -> String {
+    let mut out = String::from("time_s,position_periods\n");
+    for (time, position) in recording.time_s.iter().zip(&found.positions) {
+        let _ = writeln!(out, "{time:.9},{position:.12}");
+    }
+    out
+}
+
+fn summary(found: &Diagnosis, output: &Path) {
+    if found.findings.is_empty() {
+        println!("nothing but the five parameters and white noise was found");
+    }
+    for finding in &found.findings {
+        let with = match finding.confounded_with.first() {
+            Some(other) => format!(" (or {other})"),
+            None => String::new(),
+        };
+        println!("{}{with}: {}", finding.cause, finding.evidence);
+    }
+    println!("left: {}", found.unexplained.signature);
+    println!(
+        "residual on held-out data: {:.4e} -> {:.4e} of the amplitude",
+        found.simulation.held_out_residual_rms, found.extended.held_out_residual_rms
+    );
+    if let (Some(before), Some(after)) = (
+        found.simulation.position_error_rms_rad,
+        found.extended.position_error_rms_rad,
+    ) {
+        println!(
+            "angle error against the reference: {:.4} -> {:.4} degrees rms",
+            before.to_degrees(),
+            after.to_degrees()
+        );
+    }
+    println!("written: {}/", output.display());
+}

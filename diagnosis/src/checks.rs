@@ -1,0 +1,197 @@
+//! Digital checks on the codes and the time base, before anything is fitted.
+
+use nonius_recording::Recording;
+
+use crate::finding::{Finding, Parameter};
+
+/// What the checks found, and which samples do not count.
+pub(crate) struct Checked {
+    pub(crate) findings: Vec<Finding>,
+    /// 1 or 0 per sample.
+    pub(crate) weight: Vec<f64>,
+}
+
+const CHANNELS: [&str; 2] = ["cos", "sin"];
+
+pub(crate) fn check(recording: &Recording) -> Checked {
+    let n = recording.samples();
+    let mut checked = Checked {
+        findings: vec![],
+        weight: vec![1.0; n],
+    };
+    let codes: (Vec<i64>, Vec<i64>) = recording.codes().unzip();
+    let adc = recording.metadata.adc;
+    let described = adc.cos.source == nonius_recording::AdcSource::Described;
+    for (name, codes, bits) in [
+        (CHANNELS[0], &codes.0, adc.cos.bits),
+        (CHANNELS[1], &codes.1, adc.sin.bits),
+    ] {
+        if described {
+            checked.findings.extend(bits_and_steps(name, codes, bits));
+        }
+    }
+    glitches(recording, &mut checked);
+    time_base(recording, &mut checked);
+    checked
+}
+
+/// A bit that never changes while the codes sweep; steps of several codes.
+fn bits_and_steps(channel: &str, codes: &[i64], bits: u32) -> Option<Finding> {
+    let (low, high) = (codes.iter().min()?, codes.iter().max()?);
+    let span = high - low;
+    if span < 16 {
+        return None;
+    }
+    let mut distinct: Vec<i64> = codes.to_vec();
+    distinct.sort_unstable();
+    distinct.dedup();
+    let offset = 1i64 << (bits - 1);
+    let constant: Vec<u32> = (0..bits)
+        .filter(|bit| (2i64 << bit) <= span / 2)
+        .filter(|bit| {
+            let mut ones = distinct.iter().map(|c| (c + offset) >> bit & 1);
+            let first = ones.next();
+            ones.all(|b| Some(b) == first)
+        })
+        .collect();
+    let lowest: Vec<u32> = (0..bits).take_while(|b| constant.contains(b)).collect();
+    // All bits from the last one up are constant: the steps are coarse.
+    if lowest.len() > 1 || (lowest.len() == 1 && constant.len() == 1) {
+        let steps: std::collections::BTreeSet<i64> =
+            distinct.windows(2).map(|w| w[1] - w[0]).collect();
+        let step = 1i64 << lowest.len();
+        if steps.iter().all(|s| s % step == 0) {
+            return Some(Finding::digital(
+                if lowest.len() == 1 {
+                    "stuck_bit"
+                } else {
+                    "coarse_quantisation"
+                },
+                vec![if lowest.len() == 1 {
+                    Parameter::exact("bit", 0.0, "1")
+                } else {
+                    Parameter::exact("step_lsb", step as f64, "LSB")
+                }],
+                format!(
+                    "the {channel} channel moves over {span} codes in steps of {step} codes: its last {} bit(s) never change",
+                    lowest.len()
+                ),
+            ));
+        }
+    }
+    let stuck = constant.iter().find(|b| !lowest.contains(b))?;
+    Some(Finding::digital(
+        "stuck_bit",
+        vec![Parameter::exact("bit", f64::from(*stuck), "1")],
+        format!(
+            "bit {stuck} of the {channel} channel never changes while its codes sweep over {span} codes"
+        ),
+    ))
+}
+
+/// Isolated samples far from what their neighbours say.
+fn glitches(recording: &Recording, checked: &mut Checked) {
+    let n = recording.samples();
+    let mut found = vec![];
+    for values in [&recording.cos, &recording.sin] {
+        // Off the line through the neighbours on both sides.
+        let off: Vec<f64> = (0..n)
+            .map(|k| {
+                if k < 2 || k + 2 >= n {
+                    return 0.0;
+                }
+                let near = (-values[k - 2] + 4.0 * values[k - 1] + 4.0 * values[k + 1]
+                    - values[k + 2])
+                    / 6.0;
+                values[k] - near
+            })
+            .collect();
+        let mut sizes: Vec<f64> = off.iter().map(|o| o.abs()).collect();
+        sizes.sort_unstable_by(f64::total_cmp);
+        let typical = sizes[(n as f64 * 0.9) as usize].max(f64::MIN_POSITIVE);
+        let floor = recording.metadata.adc.cos.lsb;
+        let limit = (6.0 * typical).max(6.0 * floor);
+        for k in 2..n.saturating_sub(2) {
+            let own = off[k].abs();
+            let beside = off[k - 1].abs().max(off[k + 1].abs());
+            if own > limit && own > 1.2 * beside {
+                found.push((k, own));
+            }
+        }
+    }
+    found.sort_by_key(|f| f.0);
+    found.dedup_by_key(|f| f.0);
+    // Many of them are no isolated samples.
+    if found.is_empty() || found.len() > n / 50 {
+        return;
+    }
+    for (k, _) in &found {
+        for near in k.saturating_sub(1)..=(k + 1).min(n - 1) {
+            checked.weight[near] = 0.0;
+        }
+    }
+    let largest = found.iter().map(|f| f.1).fold(0.0, f64::max);
+    let share = found.len() as f64 / n as f64;
+    let error = (found.len() as f64).sqrt() / n as f64;
+    checked.findings.push(Finding::digital(
+        "glitches",
+        vec![
+            Parameter::measured("share", share, error, "1"),
+            Parameter::exact("largest", largest, "column"),
+        ],
+        format!("{} isolated samples lie far off the line through their neighbours, by up to {largest:.4}; the first is sample {}", found.len(), found[0].0),
+    ));
+}
+
+/// Samples missing from, or doubled in, the regular time base.
+fn time_base(recording: &Recording, checked: &mut Checked) {
+    let (time, rate) = (&recording.time_s, recording.metadata.sample_rate_hz);
+    let n = time.len();
+    let gaps: Vec<(usize, f64)> = (1..n)
+        .map(|k| (k, (time[k] - time[k - 1]) * rate))
+        .filter(|g| g.1 > 1.5)
+        .collect();
+    let lost: f64 = gaps.iter().map(|g| g.1.round() - 1.0).sum();
+    // More than a few gaps of odd lengths are a time base that is not regular.
+    let whole = gaps
+        .iter()
+        .filter(|g| (g.1 - g.1.round()).abs() < 0.2)
+        .count();
+    if !gaps.is_empty() && whole * 10 >= gaps.len() * 9 && gaps.len() <= n / 20 + 1 {
+        checked.findings.push(Finding::digital(
+            "dropped_samples",
+            vec![Parameter::exact("count", lost, "samples")],
+            format!("{lost} samples are missing in {} gaps of the time base; the first gap is before sample {}", gaps.len(), gaps[0].0),
+        ));
+    }
+    let same = |k: usize| {
+        recording.cos[k] == recording.cos[k - 1] && recording.sin[k] == recording.sin[k - 1]
+    };
+    let twins: Vec<usize> = (2..n.saturating_sub(1))
+        .filter(|&k| same(k) && !same(k - 1) && !same(k + 1))
+        .filter(|&k| {
+            // The scale moves by several codes around it.
+            let adc = recording.metadata.adc;
+            let step = |a: usize, b: usize| {
+                let dc = (recording.cos[a] - recording.cos[b]).abs() / adc.cos.lsb;
+                let ds = (recording.sin[a] - recording.sin[b]).abs() / adc.sin.lsb;
+                dc.max(ds)
+            };
+            step(k - 2, k - 1) > 8.0 && step(k, k + 1) > 8.0
+        })
+        .collect();
+    if twins.len() >= 2 && twins.len() < n / 10 {
+        for &k in &twins {
+            checked.weight[k] = 0.0;
+        }
+        checked.findings.push(Finding::digital(
+            "repeated_samples",
+            vec![Parameter::exact("count", twins.len() as f64, "samples")],
+            format!(
+                "{} samples repeat the one before while the scale moves; the first is sample {}",
+                twins.len(),
+                twins[0]
+            ),
+        ));
+    }
+}

@@ -1,0 +1,300 @@
+//! What a recording looks like after the five parameters: corrected pair, angle, speed, residuals.
+
+use std::f64::consts::TAU;
+
+use nonius_calibration::{Ellipse, Method, Options, calibrate};
+use nonius_recording::Recording;
+
+use crate::column::Shape;
+use crate::spline::Spline;
+
+/// Knot spacings that are tried, in samples.
+const FINEST: f64 = 12.0;
+
+/// The recording, corrected, with everything that shapes are made of. One value per sample.
+#[derive(Clone, Debug)]
+pub struct Context {
+    /// Time in seconds from the first sample.
+    pub time: Vec<f64>,
+    /// Samples per second.
+    pub rate: f64,
+    /// The ellipse of the raw signals.
+    pub ellipse: Ellipse,
+    /// Raw signals.
+    pub raw: [Vec<f64>; 2],
+    /// Corrected pair, of radius about one.
+    pub c: Vec<f64>,
+    /// See `c`.
+    pub s: Vec<f64>,
+    /// cos and sin of the angle of the pair.
+    pub cos: Vec<f64>,
+    /// See `cos`.
+    pub sin: Vec<f64>,
+    /// Angle of the pair in radians, continuous.
+    pub alpha: Vec<f64>,
+    /// Smooth speed in radians per second, signed.
+    pub speed: Vec<f64>,
+    /// Angle of the revolution in radians, where periods per revolution are known.
+    pub phi: Option<Vec<f64>>,
+    /// Temperature, centred and of unit spread.
+    pub temperature: Option<Vec<f64>>,
+    /// Angle less reference in radians, constant and sense removed.
+    pub against_reference: Option<Vec<f64>>,
+    /// 1 where a sample counts, 0 where it is left out.
+    pub weight: Vec<f64>,
+    /// ADC codes.
+    pub codes: [Vec<i64>; 2],
+    /// Bits of the ADC.
+    pub bits: u32,
+    /// Scale periods per revolution.
+    pub periods_per_revolution: Option<u32>,
+    /// The motion that is taken off the angle; none with a reference.
+    pub spline: Option<Spline>,
+}
+
+/// Why there is nothing to diagnose.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ContextError {
+    /// No ellipse can be fitted.
+    #[error(transparent)]
+    NoEllipse(#[from] nonius_calibration::Error),
+}
+
+/// Continuous angles in radians.
+pub(crate) fn unwrapped(mut angle: Vec<f64>) -> Vec<f64> {
+    for k in 1..angle.len() {
+        let jump = angle[k] - angle[k - 1];
+        angle[k] -= TAU * (jump / TAU).round();
+    }
+    angle
+}
+
+impl Context {
+    /// Looks at a recording; `weight` is 0 for samples that are known to be bad.
+    ///
+    /// # Errors
+    /// Where no ellipse can be fitted.
+    pub fn new(recording: &Recording, weight: Vec<f64>) -> Result<Self, ContextError> {
+        let kept = |values: &[f64]| -> Vec<f64> {
+            let pairs = values.iter().zip(&weight).filter(|(_, w)| **w > 0.0);
+            pairs.map(|(v, _)| *v).collect()
+        };
+        let fit = calibrate(
+            &kept(&recording.cos),
+            &kept(&recording.sin),
+            Method::Unbiased,
+            &Options::default(),
+        )?;
+        let first = recording.time_s.first().copied().unwrap_or_default();
+        let codes: (Vec<i64>, Vec<i64>) = recording.codes().unzip();
+        let temperature = recording
+            .temperature_c
+            .as_ref()
+            .and_then(|t| standardised(t));
+        let mut this = Self {
+            time: recording.time_s.iter().map(|t| t - first).collect(),
+            rate: recording.metadata.sample_rate_hz,
+            ellipse: fit.ellipse,
+            raw: [recording.cos.clone(), recording.sin.clone()],
+            c: vec![],
+            s: vec![],
+            cos: vec![],
+            sin: vec![],
+            alpha: vec![],
+            speed: vec![],
+            phi: None,
+            temperature,
+            against_reference: None,
+            weight,
+            codes: [codes.0, codes.1],
+            bits: recording.metadata.adc.cos.bits,
+            periods_per_revolution: recording.metadata.periods_per_revolution,
+            spline: None,
+        };
+        let pairs = recording.cos.iter().zip(&recording.sin);
+        let (c, s) = pairs.map(|(c, s)| this.ellipse.corrected(*c, *s)).unzip();
+        this.set_pair(c, s, recording.reference_rad.as_deref());
+        Ok(this)
+    }
+
+    /// Number of samples.
+    #[must_use]
+    pub fn samples(&self) -> usize {
+        self.time.len()
+    }
+
+    /// Takes another corrected pair, and follows its angle.
+    pub fn set_pair(&mut self, c: Vec<f64>, s: Vec<f64>, reference: Option<&[f64]>) {
+        let n = c.len();
+        let mut angle: Vec<f64> = c.iter().zip(&s).map(|(c, s)| s.atan2(*c)).collect();
+        // Bad samples take their neighbour's angle.
+        for k in 1..n {
+            if self.weight[k] == 0.0 {
+                angle[k] = angle[k - 1];
+            }
+        }
+        self.alpha = unwrapped(angle);
+        self.cos = self.alpha.iter().map(|a| a.cos()).collect();
+        self.sin = self.alpha.iter().map(|a| a.sin()).collect();
+        (self.c, self.s) = (c, s);
+        if self.spline.is_none() {
+            self.spline = Some(self.choose_spline());
+        }
+        if let Some(spline) = &self.spline {
+            let fit = spline.fit(&self.alpha, &self.weight);
+            let rate = self.rate;
+            self.speed = spline.derivative(&fit).iter().map(|v| v * rate).collect();
+        }
+        let per = self.periods_per_revolution.map(f64::from);
+        self.phi = per.map(|n| self.alpha.iter().map(|a| a / n).collect());
+        self.against_reference = reference.map(|r| {
+            let slope: f64 = self
+                .alpha
+                .iter()
+                .zip(r)
+                .map(|(a, r)| (a - self.alpha[0]) * (r - r_first(reference)))
+                .sum();
+            let sense = if slope < 0.0 { -1.0 } else { 1.0 };
+            let raw: Vec<f64> = self
+                .alpha
+                .iter()
+                .zip(r)
+                .map(|(a, r)| a - sense * r)
+                .collect();
+            // Whole periods apart are the same angle.
+            let first = raw[0];
+            let near: Vec<f64> = raw
+                .iter()
+                .map(|d| d - TAU * ((d - first) / TAU).round())
+                .collect();
+            let total: f64 = self.weight.iter().sum();
+            let mean = near
+                .iter()
+                .zip(&self.weight)
+                .map(|(d, w)| d * w)
+                .sum::<f64>()
+                / total.max(1.0);
+            near.iter().map(|d| d - mean).collect()
+        });
+    }
+
+    /// Radial residual.
+    #[must_use]
+    pub fn radial(&self) -> Vec<f64> {
+        let n = self.samples();
+        (0..n)
+            .map(|k| (self.c[k].hypot(self.s[k]) - 1.0) * self.weight[k])
+            .collect()
+    }
+
+    /// Tangential residual in radians: against the reference where there is one, else above the motion.
+    #[must_use]
+    pub fn tangential(&self) -> Vec<f64> {
+        match (&self.against_reference, &self.spline) {
+            (Some(d), _) => d.iter().zip(&self.weight).map(|(d, w)| d * w).collect(),
+            (None, Some(spline)) => spline.residual(&self.alpha, &self.weight),
+            (None, None) => vec![0.0; self.samples()],
+        }
+    }
+
+    /// What of a tangential change can be seen.
+    #[must_use]
+    pub fn seen(&self, change: &[f64]) -> Vec<f64> {
+        match (&self.against_reference, &self.spline) {
+            (Some(_), _) => {
+                let total: f64 = self.weight.iter().sum();
+                let mean = change
+                    .iter()
+                    .zip(&self.weight)
+                    .map(|(d, w)| d * w)
+                    .sum::<f64>();
+                let mean = mean / total.max(1.0);
+                change
+                    .iter()
+                    .zip(&self.weight)
+                    .map(|(d, w)| (d - mean) * w)
+                    .collect()
+            }
+            (None, Some(spline)) => spline.residual(change, &self.weight),
+            (None, None) => vec![0.0; self.samples()],
+        }
+    }
+
+    /// The five parameters as shapes.
+    #[must_use]
+    pub fn parameters(&self) -> Vec<Shape> {
+        let n = self.samples();
+        let (one, zero) = (vec![1.0; n], vec![0.0; n]);
+        let shape = |c: &[f64], s: &[f64]| Shape {
+            c: c.to_vec(),
+            s: s.to_vec(),
+        };
+        vec![
+            shape(&self.cos, &zero),
+            shape(&one, &zero),
+            shape(&zero, &self.sin),
+            shape(&zero, &one),
+            shape(&zero, &self.cos),
+        ]
+    }
+
+    /// The knot spacing whose spline explains the angle best for its number of coefficients, with what repeats with the
+    /// period taken off first.
+    fn choose_spline(&self) -> Spline {
+        let n = self.samples();
+        let mut spacing = (n as f64 / 2.0).max(FINEST);
+        let mut best: Option<(f64, Spline)> = None;
+        let effective: f64 = self.weight.iter().sum();
+        let cyclic: Vec<Vec<f64>> = (1..=4)
+            .flat_map(|order| {
+                let order = f64::from(order);
+                let wave = move |f: fn(f64) -> f64| {
+                    self.alpha
+                        .iter()
+                        .map(|a| f(order * a))
+                        .collect::<Vec<f64>>()
+                };
+                [wave(f64::cos), wave(f64::sin)]
+            })
+            .collect();
+        let mut worse = 0;
+        while spacing >= FINEST {
+            let spline = Spline::new(n, spacing, &self.weight);
+            let residual = spline.residual(&self.alpha, &self.weight);
+            let shapes: Vec<Vec<f64>> = cyclic
+                .iter()
+                .map(|w| spline.residual(w, &self.weight))
+                .collect();
+            let left = crate::lines::without_strongest(&crate::solve::without(&residual, &shapes));
+            let power: f64 = left.iter().map(|r| r * r).sum();
+            let count = spline.count() as f64;
+            let score = effective * (power / effective).max(1e-300).ln() + count * effective.ln();
+            if best.as_ref().is_none_or(|b| score < b.0) {
+                best = Some((score, spline));
+                worse = 0;
+            } else {
+                worse += 1;
+                if worse > 6 {
+                    break;
+                }
+            }
+            spacing /= 1.5;
+        }
+        best.map_or_else(|| Spline::new(n, n as f64, &self.weight), |b| b.1)
+    }
+}
+
+fn r_first(reference: Option<&[f64]>) -> f64 {
+    reference
+        .and_then(|r| r.first().copied())
+        .unwrap_or_default()
+}
+
+/// Centred, of unit spread; `None` if it does not change.
+fn standardised(values: &[f64]) -> Option<Vec<f64>> {
+    let n = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / n;
+    let spread = (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / n).sqrt();
+    let finite = spread.is_finite() && spread > 1e-9;
+    finite.then(|| values.iter().map(|v| (v - mean) / spread).collect())
+}

@@ -1,0 +1,37 @@
+//! Diagnosis: what the simulation of a sensor gets wrong, why, the model extended by it, and the gain measured.
+//!
+//! Each sample has two numbers and one unknown angle. What changes the radius is always seen; what changes the angle is
+//! seen above the motion, or whole against a reference. [`diagnose`] fits the five parameters, takes the motion off as a
+//! spline, and asks of every cause of the catalogue how much of the rest it explains. A name is given only to a shape
+//! that holds; what cannot be named is said to be unexplained.
+
+#![cfg_attr(test, allow(clippy::unwrap_used))]
+
+mod cause;
+mod causes;
+mod checks;
+mod column;
+mod context;
+mod diagnose;
+mod finding;
+mod generic;
+mod lines;
+mod model;
+mod noise;
+mod report;
+mod select;
+mod sensor;
+mod solve;
+mod spline;
+mod statistics;
+mod whiten;
+
+pub use context::{Context, ContextError};
+pub use diagnose::{Diagnosis, Extended, Simulation, Unexplained, diagnose};
+pub use finding::{Chip, Finding, Gain, Parameter};
+pub use report::report;
+pub use sensor::sensor_toml;
+
+fn causes_time(context: &Context, degree: usize) -> Vec<Vec<f64>> {
+    causes::polynomials(context, degree)
+}

@@ -1,0 +1,59 @@
+//! Lines in a spectrum.
+
+use std::f64::consts::TAU;
+
+use rustfft::FftPlanner;
+use rustfft::num_complex::Complex;
+
+/// Power spectrum of values, zero-padded to twice a power of two: frequency in cycles per sample is index / length.
+pub(crate) fn spectrum(values: &[f64]) -> (Vec<f64>, usize) {
+    let length = (values.len() * 2).next_power_of_two();
+    let mut buffer: Vec<Complex<f64>> = values.iter().map(|v| Complex::new(*v, 0.0)).collect();
+    buffer.resize(length, Complex::new(0.0, 0.0));
+    FftPlanner::new()
+        .plan_fft_forward(length)
+        .process(&mut buffer);
+    let power = buffer[..=length / 2].iter().map(|z| z.norm_sqr());
+    (power.collect(), length)
+}
+
+/// The same of complex values (a pair); frequencies below zero come second.
+pub(crate) fn pair_spectrum(a: &[f64], b: &[f64]) -> (Vec<f64>, usize) {
+    let ((x, length), (y, _)) = (spectrum(a), spectrum(b));
+    (x.iter().zip(&y).map(|(x, y)| x + y).collect(), length)
+}
+
+/// Frequency in cycles per sample of the highest peak between two frequencies.
+pub(crate) fn peak(power: &[f64], length: usize, low: f64, high: f64) -> Option<f64> {
+    let index = |f: f64| ((f * length as f64) as usize).min(power.len() - 1);
+    let (low, high) = (index(low).max(1), index(high));
+    let best = (low..=high).max_by(|a, b| power[*a].total_cmp(&power[*b]))?;
+    let at = |k: usize| power.get(k).copied().unwrap_or(0.0);
+    let (left, middle, right) = (at(best - 1), at(best), at(best + 1));
+    let bend = left - 2.0 * middle + right;
+    let shift = if bend < 0.0 {
+        0.5 * (left - right) / bend
+    } else {
+        0.0
+    };
+    Some((best as f64 + shift.clamp(-0.5, 0.5)) / length as f64)
+}
+
+/// cos and sin of a frequency in hertz at the given times.
+pub(crate) fn wave(time: &[f64], hertz: f64) -> [Vec<f64>; 2] {
+    let phase = |t: &f64| TAU * hertz * t;
+    [
+        time.iter().map(|t| phase(t).cos()).collect(),
+        time.iter().map(|t| phase(t).sin()).collect(),
+    ]
+}
+
+/// `values` without their strongest line.
+pub(crate) fn without_strongest(values: &[f64]) -> Vec<f64> {
+    let (power, length) = spectrum(values);
+    let Some(f) = peak(&power, length, 2.0 / values.len() as f64, 0.5) else {
+        return values.to_vec();
+    };
+    let time: Vec<f64> = (0..values.len()).map(|k| k as f64).collect();
+    crate::solve::without(values, &wave(&time, f))
+}

@@ -1,0 +1,33 @@
+//! Tail probabilities.
+
+use statrs::function::gamma::{checked_gamma_ur, ln_gamma};
+
+/// ln of the probability that χ² of `freedom` degrees exceeds `value`.
+pub(crate) fn log_tail(value: f64, freedom: usize) -> f64 {
+    if value <= 0.0 || freedom == 0 {
+        return 0.0;
+    }
+    let (a, x) = (freedom as f64 / 2.0, value / 2.0);
+    if x > a + 60.0 {
+        return -x + (a - 1.0) * x.ln() - ln_gamma(a);
+    }
+    checked_gamma_ur(a, x).map_or(0.0, |q| q.max(1e-300).ln())
+}
+
+/// A probability after so many trials.
+pub(crate) fn after_trials(log_p: f64, trials: f64) -> f64 {
+    (log_p + trials.max(1.0).ln()).min(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::log_tail;
+
+    #[test]
+    fn tails_agree_with_tables() {
+        assert!((log_tail(3.841_459, 1).exp() - 0.05).abs() < 1e-6);
+        assert!((log_tail(13.276_704, 4).exp() - 0.01).abs() < 1e-6);
+        let (near, far) = (log_tail(2.0 * 61.9, 4), log_tail(2.0 * 62.1, 4));
+        assert!((near - far - 0.2).abs() < 0.05, "{near} {far}");
+    }
+}
