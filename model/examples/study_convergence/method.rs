@@ -14,7 +14,7 @@ use nonius_model::reference::loops::{FilterType, LoopConfig, Method as LoopMetho
 use nonius_model::reference::poles::Poles;
 use nonius_model::reference::start::Start;
 use nonius_model::reference::sum_of_squares::Smoothing;
-use nonius_model::reference::{Config, Parameters, Reference, Theta};
+use nonius_model::reference::{Config, Parameters, Reference, Steps, Theta};
 use nonius_model::spec::Spec;
 
 use crate::scenario::SPEED;
@@ -183,7 +183,7 @@ fn config(set: Parameters, search: Search, gate: Gate) -> Config {
         search,
         gate,
         gamma: Gamma {
-            first: Theta::repeat(0.04 * scale),
+            first: Steps::identity() * (0.04 * scale),
             halvings: 3,
             periods: 20.0,
         },
