@@ -1,90 +1,57 @@
-//! `nonius build`: everything is written to a temporary folder beside the target, which then takes its name.
+//! `nonius build`: the whole package of a design.
 
-use std::fs;
 use std::path::Path;
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result};
 use nonius_model::design::Design;
-use nonius_model::spec::Spec;
-use nonius_testvectors::{stimulus, vectors};
+use nonius_package::{DesignJson, package, write};
 
+/// Samples of each named stimulus.
 const ROWS: usize = 2000;
 
 pub(crate) fn run(design: &Path, output: &Path) -> Result<()> {
-    let file = design.display().to_string();
-    let text = fs::read_to_string(design).with_context(|| format!("cannot read {file}"))?;
-    let spec = Spec::from_toml(&text, &file)?;
-    let design = Design::new(&spec).with_context(|| format!("{file} cannot work"))?;
-    if output.exists() && !output.join("design.json").is_file() {
-        bail!(
-            "{} exists and was not written by nonius; name another folder",
-            output.display()
+    let spec = crate::design_file::read(design)?;
+    let design = Design::new(&spec).with_context(|| format!("{} cannot work", design.display()))?;
+    let package = package(&design, ROWS)?;
+    write(&package.files, output)?;
+    summary(&package.json, output);
+    Ok(())
+}
+
+fn summary(j: &DesignJson, output: &Path) {
+    let rate = j.spec.adc.sample_rate_hz;
+    println!("{} (design {})", j.name, j.hash);
+    println!(
+        "  accuracy    {:.2e} periods rms predicted, {:.2e} simulated, {:.2e} asked",
+        j.budget.total, j.simulated.rms_periods, j.budget.asked
+    );
+    println!(
+        "  speed       {:.4} MS/s need a clock of {:.4} MHz: {} clocks per sample",
+        rate / 1e6,
+        j.latency.clock_hz_min / 1e6,
+        j.clocks_per_sample
+    );
+    println!(
+        "  hardware    {} multiplier{} for {} products, {} table bits",
+        j.multipliers,
+        if j.multipliers == 1 { "" } else { "s" },
+        j.products,
+        j.sine_table.bits
+    );
+    println!(
+        "  bandwidth   {:.4e} Hz at -3 dB, to {:.4e} periods/s",
+        j.tracking.bandwidth_3db_hz, j.tracking.speed_max_periods_per_s
+    );
+    if j.simulated.rms_periods > j.budget.asked {
+        println!(
+            "  note        the simulated accuracy misses what was asked for: calibration noise and loop noise add up; \
+             a smaller last gamma or a narrower loop would help"
         );
     }
-    let parent = output
-        .parent()
-        .filter(|p| !p.as_os_str().is_empty())
-        .unwrap_or(Path::new("."));
-    fs::create_dir_all(parent)?;
-    let scratch = tempfile::tempdir_in(parent)?;
-    let stimuli = stimulus::named(&design, ROWS);
-    let names: Vec<_> = stimuli
-        .iter()
-        .map(|s| (s.name.clone(), s.samples.len()))
-        .collect();
-    let hash = nonius_codegen::hash(&design);
-    let chip = nonius_codegen::generate(&design, &hash, &names)?;
-    let write = |path: &str, content: &str| -> Result<()> {
-        let path = scratch.path().join(path);
-        if let Some(folder) = path.parent() {
-            fs::create_dir_all(folder)?;
-        }
-        fs::write(&path, content).with_context(|| format!("cannot write {}", path.display()))
-    };
-    for (path, content) in &chip.files {
-        write(path, content)?;
-    }
-    for one in &stimuli {
-        write(
-            &format!("vectors/{}.vec", one.name),
-            &vectors::rows(&design, one, &chip.columns),
-        )?;
-    }
-    let (b, t, w) = (&design.budget, &design.tracking, &design.words);
-    let json = serde_json::json!({
-        "name": spec.name,
-        "hash": hash,
-        "clocks_per_sample": chip.clocks,
-        "products": design.graph.products(),
-        "loop": {"omega0_ts": t.omega, "pole_sum": t.pole_sum, "pole_product": t.pole_product, "a": t.a, "a_plus_b": t.ab,
-            "a_quantised": design.constants.loop_a.value(), "a_plus_b_quantised": design.constants.loop_ab.value()},
-        "words": {"signal_fraction": w.signal_fraction, "phase_bits": w.phase_bits, "sine_phase_bits": w.sine_phase_bits,
-            "sine_rows_log2": w.sine_rows_log2, "accumulator_fraction": w.accumulator_fraction},
-        "budget_periods_rms": {"adc": b.adc, "noise": b.noise, "allowed_arithmetic": b.allowed,
-            "arithmetic": b.arithmetic(), "total": b.total(),
-            "terms": b.terms.iter().map(|t| (t.source.to_owned(), t.rms_periods)).collect::<std::collections::BTreeMap<_, _>>()},
-        "sine_table": {"rows": design.structure.sine.rows(), "row_bits": design.structure.sine.row_width()},
-    });
-    write(
-        "design.json",
-        &(serde_json::to_string_pretty(&json)? + "\n"),
-    )?;
-    if output.exists() {
-        fs::remove_dir_all(output)?;
-    }
-    fs::rename(scratch.keep(), output)?;
+    let folder = output.display();
     println!(
-        "{}: {} clocks per sample, {} products, {} table bits",
-        spec.name,
-        chip.clocks,
-        design.graph.products(),
-        design.structure.sine.bits()
+        "  written     {folder}/: rtl, tb, vectors, waves, coefficients, design.json, report.html"
     );
-    println!(
-        "accuracy predicted {:.3e} periods rms (asked {:.3e})",
-        b.total(),
-        spec.accuracy.rms_periods
-    );
-    println!("next: nonius verify {}", output.display());
-    Ok(())
+    println!("next: nonius verify {folder}");
+    println!("      gtkwave {folder}/waves/sweep.gtkw");
 }

@@ -1,6 +1,7 @@
 //! The command `nonius`.
 
 mod build;
+mod calibrate;
 mod design_file;
 mod new;
 mod paper;
@@ -35,6 +36,8 @@ enum Command {
     },
     /// The bit-true chip, or the paper in floating point, over a recording.
     Simulate(Box<simulate::Simulate>),
+    /// Offsets, gains and phase of a recording, off line, with error bars.
+    Calibrate(Box<calibrate::Calibrate>),
     /// Runs the chip in a folder in Icarus and in Verilator against the model.
     Verify {
         /// What `build` wrote.
@@ -47,6 +50,7 @@ fn main() -> ExitCode {
         Command::Build { design, output } => build::run(&design, &output).map(|()| true),
         Command::New(args) => new::run(&args).map(|()| true),
         Command::Simulate(args) => simulate::run(&args).map(|()| true),
+        Command::Calibrate(args) => calibrate::run(&args).map(|()| true),
         Command::Verify { dir } => verify(&dir),
     };
     match done {

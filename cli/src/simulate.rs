@@ -1,5 +1,6 @@
 //! `nonius simulate`: the chip over a recording.
 
+use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
@@ -11,6 +12,8 @@ use nonius_model::design::Design;
 use nonius_model::physical::{Converter, theta};
 use nonius_model::spec::Spec;
 use nonius_recording::{Recording, Survey};
+use nonius_testvectors::stimulus::Sample;
+use nonius_testvectors::waves::Waves;
 
 use crate::recording_args::RecordingArgs;
 use crate::target::Target;
@@ -28,6 +31,9 @@ pub(crate) struct Simulate {
     /// File to write (CSV): time_s, position_periods, speed_periods_per_s, locked, theta_1, …
     #[arg(short)]
     output: PathBuf,
+    /// Also writes the waves of the bit-true chip (VCD), with the signal names of its Verilog.
+    #[arg(long, value_name = "FILE", conflicts_with = "reference")]
+    vcd: Option<PathBuf>,
     /// The paper in floating point instead of the bit-true chip.
     #[arg(long)]
     reference: bool,
@@ -50,10 +56,13 @@ struct Estimate {
 /// A bit-true chip, or the paper.
 trait Interpolator {
     fn estimate(&self) -> Estimate;
-    fn step(&mut self, cos: f64, sin: f64);
+    fn step(&mut self, cos: f64, sin: f64) -> Result<()>;
+    fn finish(self: Box<Self>) -> Result<()>;
 }
 
+/// The chip, and where its waves go.
 struct BitTrue<'a> {
+    waves: Option<(Waves<BufWriter<File>>, Target)>,
     design: &'a Design,
     chip: Chip<nonius_model::bits::Bits>,
     converter: Converter,
@@ -74,10 +83,29 @@ impl Interpolator for BitTrue<'_> {
         }
     }
 
-    fn step(&mut self, cos: f64, sin: f64) {
-        let code = |v| self.converter.code(v);
-        let probes = self.chip.step_codes(code(cos), code(sin), false, true);
+    fn step(&mut self, cos: f64, sin: f64) -> Result<()> {
+        let sample = Sample {
+            cos: self.converter.code(cos),
+            sin: self.converter.code(sin),
+            preset: false,
+            calibrate: true,
+        };
+        let probes = self
+            .chip
+            .step_codes(sample.cos, sample.sin, sample.preset, sample.calibrate);
         self.speed = probes.speed.to_f64();
+        if let Some((waves, _)) = &mut self.waves {
+            waves.sample(&sample, &probes, &self.chip)?;
+        }
+        Ok(())
+    }
+
+    fn finish(self: Box<Self>) -> Result<()> {
+        let Some((waves, target)) = self.waves else {
+            return Ok(());
+        };
+        waves.finish()?;
+        target.keep()
     }
 }
 
@@ -97,8 +125,13 @@ impl Interpolator for Paper {
         }
     }
 
-    fn step(&mut self, cos: f64, sin: f64) {
+    fn step(&mut self, cos: f64, sin: f64) -> Result<()> {
         self.paper.step(cos, sin);
+        Ok(())
+    }
+
+    fn finish(self: Box<Self>) -> Result<()> {
+        Ok(())
     }
 }
 
@@ -142,6 +175,11 @@ pub(crate) fn run(args: &Simulate) -> Result<()> {
             chip: Chip::bit_true(&design),
             converter: Converter::of(&spec),
             speed: 0.0,
+            waves: args
+                .vcd
+                .as_deref()
+                .map(|path| waves(&design, path))
+                .transpose()?,
         })
     };
     let target = Target::new(&args.output)?;
@@ -153,7 +191,17 @@ pub(crate) fn run(args: &Simulate) -> Result<()> {
         parameters,
     )
     .with_context(|| format!("cannot write {}", args.output.display()))?;
+    interpolator.finish()?;
     target.keep()
+}
+
+/// Waves of the chip into a file.
+fn waves(design: &Design, path: &Path) -> Result<(Waves<BufWriter<File>>, Target)> {
+    let target = Target::new(path)?;
+    let file = target.file().try_clone()?;
+    let chip = nonius_codegen::generate(design, &nonius_codegen::hash(design), &[])?;
+    let waves = Waves::new(BufWriter::new(file), design, &chip.columns, chip.clocks)?;
+    Ok((waves, target))
 }
 
 fn write(
@@ -193,7 +241,7 @@ fn write(
                 write!(out, ",{theta}")?;
             }
             writeln!(out)?;
-            interpolator.step(recording.cos[k], recording.sin[k]);
+            interpolator.step(recording.cos[k], recording.sin[k])?;
             if k & 0xfff == 0 {
                 bar.set_position(u64::from(round) * samples + k as u64);
             }

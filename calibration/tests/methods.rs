@@ -1,0 +1,171 @@
+//! Every method on signals whose parameters are known.
+
+use nonius_calibration::conic::closed_form;
+use nonius_calibration::gradient::{Set, minimise};
+use nonius_calibration::{Ellipse, Error, Method, Options, calibrate};
+
+const ALL: [Method; 7] = [
+    Method::Unbiased,
+    Method::Heydemann,
+    Method::Extremes,
+    Method::Sumsq4,
+    Method::Sumsq5,
+    Method::Poly8,
+    Method::Poly9,
+];
+
+fn signals(ellipse: &Ellipse, turns: f64, samples: usize) -> (Vec<f64>, Vec<f64>) {
+    let step = turns * std::f64::consts::TAU / samples as f64;
+    let points = (0..samples).map(|k| ellipse.point(0.1 + step * k as f64));
+    points.map(|p| (p.x, p.y)).unzip()
+}
+
+fn crooked(beta: f64) -> Ellipse {
+    Ellipse {
+        a_c: 1.2,
+        b_c: 0.15,
+        a_s: 0.9,
+        b_s: -0.1,
+        beta,
+    }
+}
+
+#[test]
+fn every_method_finds_what_it_can_see() {
+    for method in ALL {
+        let sees_phase = matches!(
+            method,
+            Method::Unbiased | Method::Heydemann | Method::Sumsq5 | Method::Poly9
+        );
+        let truth = crooked(if sees_phase { 0.08 } else { 0.0 });
+        let (cos, sin) = signals(&truth, 3.0, 3000);
+        let found = calibrate(&cos, &sin, method, &Options::default()).expect("an ellipse");
+        let tolerance = if method == Method::Extremes {
+            1e-5
+        } else {
+            1e-8
+        };
+        for (parameter, value) in found.parameters.iter().zip(truth.parameters().iter()) {
+            let miss = (parameter.value - value).abs();
+            assert!(
+                miss < tolerance,
+                "{method:?} {}: {} {value}",
+                parameter.name,
+                parameter.value
+            );
+        }
+        assert!(
+            found.residual_rms < tolerance,
+            "{method:?}: {}",
+            found.residual_rms
+        );
+        for p in &found.parameters {
+            assert!(p.value.is_finite(), "{method:?} {}", p.name);
+        }
+    }
+}
+
+/// Equations (5), for any ellipse: offsets so large that the origin lies outside, and one on the curve itself.
+#[test]
+fn closed_form_solves_equations_5() {
+    for (b_c, b_s, beta) in [
+        (0.1, -0.2, 0.1),
+        (3.0, -2.0, -0.4),
+        (1.2, 0.0, 0.0),
+        (0.0, 0.0, 1.2),
+    ] {
+        let e = Ellipse {
+            a_c: 1.2,
+            b_c,
+            a_s: 0.7,
+            b_s,
+            beta,
+        };
+        let (g_c, g_s, sin) = (1.0 / e.a_c, 1.0 / e.a_s, beta.sin());
+        let theta = [
+            g_c * g_c,
+            g_s * g_s,
+            2.0 * g_c * g_s * sin,
+            -2.0 * g_c * (g_c * b_c + g_s * b_s * sin),
+            -2.0 * g_s * (g_s * b_s + g_c * b_c * sin),
+            g_c * g_c * b_c * b_c + g_s * g_s * b_s * b_s + 2.0 * g_c * b_c * g_s * b_s * sin
+                - beta.cos().powi(2),
+        ];
+        for sign in [1.0, -1.0] {
+            let found = closed_form(theta.map(|t| t * sign)).expect("an ellipse");
+            let miss = (found.parameters() - e.parameters()).amax();
+            assert!(miss < 1e-12, "{found:?} {e:?}");
+        }
+    }
+}
+
+#[test]
+fn theta_and_physical_parameters_are_each_other() {
+    let e = crooked(0.3);
+    let back = Ellipse::of_theta(&e.theta());
+    assert!((back.parameters() - e.parameters()).amax() < 1e-14);
+}
+
+/// The eight cubic parameters leave one direction open, and the words say so.
+#[test]
+fn section_5_4_is_singular() {
+    let round = Ellipse {
+        a_c: 1.0,
+        b_c: 0.0,
+        a_s: 1.0,
+        b_s: 0.0,
+        beta: 0.0,
+    };
+    let (cos, sin) = signals(&round, 1.0, 720);
+    assert_eq!(minimise(Set::Eight, &cos, &sin, &round).blind, 1);
+    assert_eq!(minimise(Set::Five, &cos, &sin, &round).blind, 0);
+    let found = calibrate(&cos, &sin, Method::Poly8, &Options::default()).expect("an ellipse");
+    assert!(
+        found
+            .cannot_tell
+            .iter()
+            .any(|s| s.contains("changes no radius"))
+    );
+}
+
+#[test]
+fn short_arcs_are_named() {
+    let (cos, sin) = signals(&crooked(0.1), 0.4, 2000);
+    for method in [Method::Unbiased, Method::Heydemann] {
+        let found = calibrate(&cos, &sin, method, &Options::default()).expect("an ellipse");
+        assert!(
+            found.cannot_tell.iter().any(|s| s.contains("empty")),
+            "{:?}",
+            found.cannot_tell
+        );
+    }
+}
+
+#[test]
+fn what_is_no_pair_is_refused() {
+    let still = vec![0.5; 100];
+    let wave: Vec<f64> = (0..100).map(|k| (f64::from(k) * 0.1).sin()).collect();
+    let options = Options::default();
+    assert!(matches!(
+        calibrate(&still, &wave, Method::Unbiased, &options),
+        Err(Error::Standstill(_))
+    ));
+    assert!(matches!(
+        calibrate(&wave[..5], &wave[..5], Method::Unbiased, &options),
+        Err(Error::TooFew(5))
+    ));
+    assert!(matches!(
+        calibrate(&wave[..50], &wave, Method::Unbiased, &options),
+        Err(Error::Lengths(50, 100))
+    ));
+    let mut holed = wave.clone();
+    holed[7] = f64::NAN;
+    assert!(matches!(
+        calibrate(&holed, &wave, Method::Unbiased, &options),
+        Err(Error::NotFinite(7))
+    ));
+    for method in ALL {
+        // A straight line: both channels alike. Refused or told, never a panic.
+        let _ = calibrate(&wave, &wave, method, &options);
+    }
+}

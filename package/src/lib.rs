@@ -1,0 +1,92 @@
+//! Everything that `nonius build` writes, and writing it whole or not at all.
+
+mod curves;
+mod design_json;
+mod measure;
+mod report;
+mod write;
+
+pub use design_json::DesignJson;
+pub use measure::{Accuracy, SineError, accuracy, sine_error};
+pub use write::{WriteError, write};
+
+use nonius_model::chip::Chip;
+use nonius_model::design::Design;
+use nonius_testvectors::stimulus::{self, Stimulus};
+use nonius_testvectors::vectors;
+use nonius_testvectors::waves::{Waves, gtkw};
+
+/// The stimulus whose waves are written.
+const SHOWN: &str = "sweep";
+
+/// The files of a chip and what there is to say about it.
+pub struct Package {
+    /// Path below the output folder, content.
+    pub files: Vec<(String, Vec<u8>)>,
+    /// What `design.json` says.
+    pub json: DesignJson,
+}
+
+/// Why a package cannot be made: a defect, not a design.
+#[derive(Debug, thiserror::Error)]
+pub enum PackageError {
+    /// A template does not render.
+    #[error("a template does not render: {0}")]
+    Template(#[from] askama::Error),
+    /// JSON cannot be written.
+    #[error("JSON cannot be written: {0}")]
+    Json(#[from] serde_json::Error),
+    /// Waves cannot be written.
+    #[error("waves cannot be written: {0}")]
+    Waves(#[from] std::io::Error),
+}
+
+/// Makes the package of a design with `rows` samples of each named stimulus.
+///
+/// # Errors
+/// Only defects of the generator.
+pub fn package(design: &Design, rows: usize) -> Result<Package, PackageError> {
+    package_with(design, stimulus::named(design, rows))
+}
+
+/// The same with other stimuli.
+///
+/// # Errors
+/// Only defects of the generator.
+pub fn package_with(design: &Design, stimuli: Vec<Stimulus>) -> Result<Package, PackageError> {
+    let names: Vec<_> = stimuli
+        .iter()
+        .map(|s| (s.name.clone(), s.samples.len()))
+        .collect();
+    let hash = nonius_codegen::hash(design);
+    let chip = nonius_codegen::generate(design, &hash, &names)?;
+    let json = DesignJson::of(design, &hash, chip.clocks);
+    let mut files: Vec<(String, Vec<u8>)> = chip
+        .files
+        .into_iter()
+        .map(|(path, text)| (path, text.into_bytes()))
+        .collect();
+    for one in &stimuli {
+        let rows = vectors::rows(design, one, &chip.columns);
+        files.push((format!("vectors/{}.vec", one.name), rows.into_bytes()));
+    }
+    if let Some(shown) = stimuli.iter().find(|s| s.name == SHOWN).or(stimuli.first()) {
+        let name = &shown.name;
+        let mut bytes = vec![];
+        let mut waves = Waves::new(&mut bytes, design, &chip.columns, chip.clocks)?;
+        let mut model = Chip::bit_true(design);
+        for s in &shown.samples {
+            let probes = model.step_codes(s.cos, s.sin, s.preset, s.calibrate);
+            waves.sample(s, &probes, &model)?;
+        }
+        waves.finish()?;
+        let save = gtkw(&format!("{name}.vcd"), design, &chip.columns, chip.clocks);
+        files.push((format!("waves/{name}.vcd"), bytes));
+        files.push((format!("waves/{name}.gtkw"), save.into_bytes()));
+    }
+    let text = serde_json::to_string_pretty(&json)? + "\n";
+    files.push(("design.json".into(), text.into_bytes()));
+    let page = report::page(design, &json, &files)?;
+    files.push(("report.html".into(), page.into_bytes()));
+    Ok(Package { files, json })
+}

@@ -1,0 +1,245 @@
+//! `report.html`: the data sheet.
+
+use std::fmt::Write;
+
+use askama::Template;
+use nonius_model::design::Design;
+
+use crate::curves;
+use crate::design_json::DesignJson;
+
+#[derive(Template)]
+#[template(path = "report.html")]
+struct Page<'a> {
+    j: &'a DesignJson,
+    facts: Vec<(&'static str, String, String)>,
+    bode: String,
+    bars: Vec<Bar>,
+    files: Vec<(String, String)>,
+}
+
+struct Bar {
+    source: String,
+    value: String,
+    /// Share of the widest bar, per cent.
+    width: String,
+    class: &'static str,
+}
+
+/// A number with three digits and a prefix.
+fn engineering(value: f64, unit: &str) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return format!("{value} {unit}");
+    }
+    let steps = (value.abs().log10() / 3.0).floor().clamp(-5.0, 4.0) as i32;
+    let prefix = ["f", "p", "n", "µ", "m", "", "k", "M", "G", "T"][(steps + 5) as usize];
+    let scaled = value / 1000f64.powi(steps);
+    let digits = (2 - scaled.abs().log10().floor() as i32).clamp(0, 3) as usize;
+    format!("{scaled:.digits$} {prefix}{unit}")
+}
+
+fn facts(design: &Design, j: &DesignJson) -> Vec<(&'static str, String, String)> {
+    let (spec, t) = (&design.spec, &j.tracking);
+    let per_period = |periods: f64| match spec.sensor.scale_period_m {
+        Some(length) => format!(
+            "{periods:.2e} periods, {}",
+            engineering(periods * length, "m")
+        ),
+        None => format!("{periods:.2e} periods"),
+    };
+    let phase = &design.structure.formats.alpha;
+    vec![
+        (
+            "Accuracy predicted",
+            per_period(j.budget.total),
+            format!("rms, slow, calibrated; asked {:.2e}", j.budget.asked),
+        ),
+        (
+            "Accuracy simulated",
+            per_period(j.simulated.rms_periods),
+            format!("bit-true, rms; largest {:.2e}", j.simulated.largest_periods),
+        ),
+        (
+            "Resolution",
+            format!("2^-{} of a period", phase.fraction),
+            per_period(phase.lsb()),
+        ),
+        (
+            "Sample rate",
+            engineering(spec.adc.sample_rate_hz, "Hz"),
+            format!(
+                "{} clocks per sample: clock of {} or more",
+                j.clocks_per_sample,
+                engineering(j.latency.clock_hz_min, "Hz")
+            ),
+        ),
+        (
+            "Latency",
+            format!("{} clocks", j.latency.clocks),
+            format!(
+                "{} at that clock; the position is the estimate for the next sample",
+                engineering(j.latency.seconds_at_that_clock, "s")
+            ),
+        ),
+        (
+            "Bandwidth, −3 dB",
+            engineering(t.bandwidth_3db_hz, "Hz"),
+            format!(
+                "noise bandwidth {}, peak {:.2}",
+                engineering(t.noise_bandwidth_hz, "Hz"),
+                t.peak
+            ),
+        ),
+        (
+            "Largest speed",
+            format!("{} periods/s", engineering(t.speed_max_periods_per_s, "")),
+            format!("lag there {:.2e} periods", t.lag_at_top_speed_periods),
+        ),
+        (
+            "Acceleration error",
+            format!("{:.2e} periods per period/s²", t.acceleration_error_s2),
+            match spec.tracking.filter_type {
+                2 => "constant acceleration, type 2".into(),
+                _ => "type 1".into(),
+            },
+        ),
+        (
+            "Multipliers",
+            format!("{} for {} products", j.multipliers, j.products),
+            format!(
+                "sine table {} bits, largest error {:.2e} turns",
+                j.sine_table.bits, j.sine_table.error.largest_angle_turns
+            ),
+        ),
+        (
+            "Calibration",
+            match spec.calibration.parameters {
+                0 => "off".into(),
+                n => format!("{n} parameters on line"),
+            },
+            format!(
+                "corrects amplitudes ±{:.0} %, offsets {:.0} %, phase {:.1}°",
+                spec.sensor.amplitude_tolerance * 100.0,
+                spec.sensor.offset_max * 100.0,
+                spec.sensor.phase_error_max_deg
+            ),
+        ),
+    ]
+}
+
+/// The closed loop's magnitude in dB over frequency, logarithmic.
+fn bode(design: &Design) -> String {
+    let rate = design.spec.adc.sample_rate_hz;
+    let (left, right, top, bottom) = (52.0, 624.0, 12.0, 232.0);
+    let (low, high) = ((design.tracking.omega / 60.0).log10(), 0.5f64.log10());
+    let x = |f: f64| left + (f.log10() - low) / (high - low) * (right - left);
+    let y = |db: f64| top + (6.0 - db.clamp(-42.0, 6.0)) / 48.0 * (bottom - top);
+    let mut svg = String::from(
+        r#"<svg viewBox="0 0 640 270" role="img" aria-label="Magnitude of the closed loop over frequency">"#,
+    );
+    for db in [0.0, -10.0, -20.0, -30.0, -40.0] {
+        let at = y(db);
+        let _ = write!(
+            svg,
+            r#"<line class="grid" x1="{left}" x2="{right}" y1="{at:.1}" y2="{at:.1}"/><text x="{}" y="{:.1}" text-anchor="end">{db:.0} dB</text>"#,
+            left - 6.0,
+            at + 4.0
+        );
+    }
+    let decades = ((low + rate.log10()).ceil() as i32)..=((high + rate.log10()).floor() as i32);
+    for decade in decades {
+        let at = x(10f64.powi(decade) / rate);
+        let _ = write!(
+            svg,
+            r#"<line class="grid" x1="{at:.1}" x2="{at:.1}" y1="{top}" y2="{bottom}"/><text x="{at:.1}" y="{}" text-anchor="middle">{}</text>"#,
+            bottom + 18.0,
+            engineering(10f64.powi(decade), "Hz")
+        );
+    }
+    let points: Vec<String> = (0..=240)
+        .map(|i| {
+            let f = 10f64.powf(low + (high - low) * f64::from(i) / 240.0);
+            let db = 20.0 * curves::magnitude(&design.tracking, f).log10();
+            format!("{:.1},{:.1}", x(f), y(db))
+        })
+        .collect();
+    let _ = write!(
+        svg,
+        r#"<polyline class="curve" points="{}"/>"#,
+        points.join(" ")
+    );
+    let at = x(curves::bandwidth(&design.tracking).max(10f64.powf(low)));
+    let _ = write!(
+        svg,
+        r#"<line class="mark" x1="{at:.1}" x2="{at:.1}" y1="{top}" y2="{bottom}"/><text x="{:.1}" y="{}">−3 dB: {}</text></svg>"#,
+        at + 6.0,
+        top + 14.0,
+        engineering(curves::bandwidth(&design.tracking) * rate, "Hz")
+    );
+    svg
+}
+
+fn bars(j: &DesignJson) -> Vec<Bar> {
+    let mut list = vec![
+        (
+            "sensor noise through the loop".to_owned(),
+            j.budget.noise,
+            "given",
+        ),
+        ("ADC".to_owned(), j.budget.adc, "given"),
+    ];
+    list.extend(
+        j.budget
+            .terms
+            .iter()
+            .map(|t| (t.source.to_owned(), t.rms_periods, "own")),
+    );
+    let largest = list.iter().fold(f64::MIN_POSITIVE, |m, b| m.max(b.1));
+    list.into_iter()
+        .map(|(source, value, class)| Bar {
+            source,
+            value: format!("{value:.2e}"),
+            width: format!("{:.2}", value / largest * 100.0),
+            class,
+        })
+        .collect()
+}
+
+fn files(files: &[(String, Vec<u8>)]) -> Vec<(String, String)> {
+    let what = |path: &str| match path.rsplit('.').next().unwrap_or_default() {
+        "sdc" => "timing constraints",
+        "v" if path.starts_with("rtl") => "the chip, Verilog-2005",
+        "v" if path.starts_with("tb") => "self-checking testbench",
+        "v" => "how to instantiate it",
+        "vec" => "stimulus and every expected value, hexadecimal",
+        "vcd" => "waves of the bit-true model",
+        "gtkw" => "opens the waves in GTKWave",
+        "mem" | "hex" => "table for $readmemh",
+        "coe" => "table for Vivado's memory generator",
+        "mif" => "table for Quartus",
+        "vh" => "for `include",
+        "json" if path == "design.json" => "every derived number",
+        "json" => "for programs",
+        _ => "",
+    };
+    files
+        .iter()
+        .map(|(path, _)| (path.clone(), what(path).to_owned()))
+        .collect()
+}
+
+/// The page.
+pub(crate) fn page(
+    design: &Design,
+    j: &DesignJson,
+    written: &[(String, Vec<u8>)],
+) -> Result<String, askama::Error> {
+    Page {
+        j,
+        facts: facts(design, j),
+        bode: bode(design),
+        bars: bars(j),
+        files: files(written),
+    }
+    .render()
+}
