@@ -9,7 +9,7 @@ use nonius_model::reference::gate::Gate;
 use nonius_model::reference::gradient::Form;
 use nonius_model::reference::interpolator::{Gamma, Search};
 use nonius_model::reference::start::Start;
-use nonius_model::reference::{Config, Parameters, Reference, Theta};
+use nonius_model::reference::{Config, Parameters, Reference, Steps};
 use reference_support::{Noise, TS, miscalibration, order, type_2, wrapped};
 
 const COMPLETED: Search = Search::Completed(CompletedConfig {
@@ -40,7 +40,7 @@ fn config(set: Parameters, search: Search, bandwidth: f64) -> Config {
     Config {
         search,
         gamma: Gamma {
-            first: Theta::repeat(0.02),
+            first: Steps::identity() * 0.02,
             halvings: 3,
             periods: 100.0,
         },
@@ -158,7 +158,7 @@ fn nine_parameters_correct_a_wholly_miscalibrated_sensor() {
             settings.theta = set.nominal(amplitude);
             // The gains act on y.
             for gain in [0, 4] {
-                settings.gamma.first[gain] /= amplitude * amplitude;
+                settings.gamma.first[(gain, gain)] /= amplitude * amplitude;
             }
             let mut reference = Reference::new(settings).unwrap();
             let mut noise = Noise::new(5, 0.001 * amplitude);

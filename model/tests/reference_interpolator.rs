@@ -6,13 +6,11 @@ mod support;
 
 use std::f64::consts::TAU;
 
-use nonius_model::reference::baseline::{Baseline, OpenLoop};
-use nonius_model::reference::extremes::PeriodExtremes;
 use nonius_model::reference::gate::{Gate, Window};
 use nonius_model::reference::gradient::Form;
 use nonius_model::reference::interpolator::{Gamma, Search};
 use nonius_model::reference::start::Start;
-use nonius_model::reference::sum_of_squares::{Smoothing, search};
+use nonius_model::reference::sum_of_squares::{Smoothing, SumOfSquares, gradient, search};
 use nonius_model::reference::{Config, Parameters, Reference, Sensor, Theta, from_spec, heydemann};
 use reference_support::{MISCALIBRATED, Noise, TS, miscalibration, type_2, wrapped};
 
@@ -308,44 +306,6 @@ fn parameters_stay_within_their_bounds() {
     }
 }
 
-/// The baselines: the open-loop arctangent keeps the whole miscalibration; extremes leave the phase error and noise.
-#[test]
-fn the_baselines_leave_what_they_must() {
-    let record = record(|a| MISCALIBRATED.signals(a), 20_000);
-    let five = Parameters::Five;
-    let plain = Baseline::Fixed(five, five.nominal(1.0));
-    let extremes = Baseline::Extremes(PeriodExtremes::new(1.0));
-    let calibrated = Baseline::Fixed(five, five.from_five(MISCALIBRATED.theta()));
-    let [plain, extremes, calibrated] = [plain, extremes, calibrated].map(|baseline| {
-        let mut open_loop = OpenLoop::new(baseline, TS);
-        let mut square = 0.0;
-        for (k, y) in record.iter().enumerate() {
-            let seen = open_loop.step(y[0], y[1]);
-            if k >= 10_000 {
-                square += (seen.alpha_hat - SPEED * k as f64).powi(2) / 10_000.0;
-                // Speed as a difference of two noisy angles, miscalibrated at worst by a quarter.
-                assert!(
-                    (seen.speed * TS / SPEED - 1.0).abs() < 0.5,
-                    "{}",
-                    seen.speed
-                );
-            }
-        }
-        square.sqrt()
-    });
-    println!(
-        "rms angle error, mrad: arctangent {:.1}, extremes {:.1}, calibrated {:.2}",
-        1e3 * plain,
-        1e3 * extremes,
-        1e3 * calibrated
-    );
-    assert!(plain > 0.1, "{plain}");
-    // β/2 sin 2α and β/2 of constant shift remain: β/2 √(1 + ½).
-    let left = MISCALIBRATED.beta / 2.0 * 1.5f64.sqrt();
-    assert!((extremes / left - 1.0).abs() < 0.1, "{extremes} {left}");
-    assert!((calibrated - 1e-3).abs() < 1e-4, "{calibrated}");
-}
-
 /// The reference of a shipped design runs on its signals: it locks, calibrates, and follows to the noise.
 #[test]
 fn a_design_makes_a_reference() {
@@ -381,4 +341,48 @@ fn a_design_makes_a_reference() {
     gamma.gamma = Gamma::constant(0.1);
     gamma.search = forgetting(1.0);
     assert!(Reference::new(gamma).is_err());
+}
+
+/// The batch form updates once in so many samples, by the sum of their gradients; the form with λ at each, by what is
+/// left of all before.
+#[test]
+fn the_batch_form_updates_once_per_batch() {
+    let (set, theta) = (Parameters::Five, Parameters::Five.nominal(1.0));
+    let mut whole = SumOfSquares::new(Smoothing::Batch { samples: 7 });
+    let mut smooth = SumOfSquares::new(Smoothing::Forgetting { lambda: 0.5 });
+    let (mut sum, mut faded) = (Theta::zeros(), Theta::zeros());
+    for k in 1..=21 {
+        let y = MISCALIBRATED.signals(0.3 * f64::from(k));
+        let one = gradient(set, &theta, y);
+        sum += one;
+        faded = one + faded * 0.5;
+        assert_eq!(smooth.step(set, &theta, y), faded);
+        let step = whole.step(set, &theta, y);
+        if k % 7 == 0 {
+            assert_eq!(step, sum, "sample {k}");
+            sum = Theta::zeros();
+        } else {
+            assert_eq!(step, Theta::zeros(), "sample {k}");
+        }
+    }
+}
+
+/// Θ for y, carried back to the signals' own unit, corrects the signals as it corrected y, whatever the ADC's middle.
+#[test]
+fn theta_of_the_signals_corrects_them() {
+    let normalise = from_spec::Normalise {
+        middle: 2.5,
+        amplitude: 0.7,
+    };
+    let set = Parameters::Five;
+    let of_y = MISCALIBRATED.theta();
+    let of_signals = set.from_five(normalise.theta_of_signals(of_y));
+    for k in 0..20 {
+        let y = MISCALIBRATED.signals(f64::from(k));
+        let signals = y.map(|y| 2.5 + 0.7 * y);
+        assert!((normalise.y(signals[0]) - y[0]).abs() < 1e-14);
+        let expected = set.corrected(&set.from_five(of_y), y);
+        let found = set.corrected(&of_signals, signals);
+        assert!((found[0] - expected[0]).abs() < 1e-12 && (found[1] - expected[1]).abs() < 1e-12);
+    }
 }

@@ -12,12 +12,13 @@ use nonius_model::reference::gradient::Form;
 use nonius_model::reference::interpolator::{Gamma, Search};
 use nonius_model::reference::loops::{FilterType, LoopConfig, Method as LoopMethod};
 use nonius_model::reference::poles::Poles;
+use nonius_model::reference::recursive::StartConfig;
 use nonius_model::reference::start::Start;
 use nonius_model::reference::sum_of_squares::Smoothing;
-use nonius_model::reference::{Config, Parameters, Reference, Theta};
+use nonius_model::reference::{Config, Parameters, Reference, Steps, Theta};
 use nonius_model::spec::Spec;
 
-use crate::scenario::SPEED;
+use super::scenario::SPEED;
 
 /// Sample time, seconds.
 const TS: f64 = 1e-6;
@@ -109,6 +110,24 @@ impl Method {
             });
             add("completed,", set, completed, travelled);
         }
+        for (name, search, gamma) in [
+            (
+                "residual, equalised, five",
+                Search::Residual(Form::Final),
+                0.03,
+            ),
+            ("least-squares start, five", Search::Started(STARTED), 0.01),
+        ] {
+            let mut config = config(five, search, travelled);
+            config.gamma = Gamma {
+                first: equalised(gamma),
+                halvings: 3,
+                periods: 20.0,
+            };
+            if let Ok(reference) = Reference::new(config) {
+                list.push((name.into(), Self::Paper(five, Box::new(reference))));
+            }
+        }
         list.push((
             "chip, bit-true, five".to_owned(),
             Self::Chip(Box::new(OnChip::of(design))),
@@ -168,7 +187,31 @@ const WINDOW: Window = Window {
     samples: 100,
 };
 
-fn config(set: Parameters, search: Search, gate: Gate) -> Config {
+const STARTED: StartConfig = StartConfig {
+    periods: 2.0,
+    lambda: 0.95,
+    spread: 1.0,
+};
+
+/// Gains by [3 −1; −1 3], offsets by 2, phase by 8: the modes of the gradient at one speed.
+fn equalised(gamma: f64) -> Steps {
+    let mut steps = Steps::zeros();
+    for (row, column, factor) in [
+        (0, 0, 3.0),
+        (2, 2, 3.0),
+        (0, 2, -1.0),
+        (2, 0, -1.0),
+        (1, 1, 2.0),
+        (3, 3, 2.0),
+        (4, 4, 8.0),
+    ] {
+        steps[(row, column)] = factor * gamma;
+    }
+    steps
+}
+
+/// The paper's system in a loop of twice the signal frequency.
+pub(crate) fn config(set: Parameters, search: Search, gate: Gate) -> Config {
     let poles = Poles::new(2.0 * SPEED / TS, std::f64::consts::FRAC_1_SQRT_2, TS)
         .expect("poles inside the unit circle");
     let tracking = LoopConfig::new(LoopMethod::Three(FilterType::Two), &poles, TS)
@@ -183,7 +226,7 @@ fn config(set: Parameters, search: Search, gate: Gate) -> Config {
         search,
         gate,
         gamma: Gamma {
-            first: Theta::repeat(0.04 * scale),
+            first: Steps::identity() * (0.04 * scale),
             halvings: 3,
             periods: 20.0,
         },

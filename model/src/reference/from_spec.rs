@@ -8,7 +8,7 @@ use super::interpolator::{Gamma, Search};
 use super::loops::LoopConfig;
 use super::poles::Poles;
 use super::start::Start;
-use super::{Config, Parameters, ReferenceError, Theta};
+use super::{Config, Parameters, ReferenceError, Steps, Theta};
 use crate::spec::Spec;
 
 /// From the unit of the ADC's range to y: the middle becomes 0, the nominal amplitude 1.
@@ -111,7 +111,7 @@ pub fn config(spec: &Spec) -> Result<Config, ReferenceError> {
             Search::Residual(Form::Final)
         },
         gamma: Gamma {
-            first: equaliser * 0.5f64.powi(k.gamma_first as i32),
+            first: Steps::from_diagonal(&equaliser) * 0.5f64.powi(k.gamma_first as i32),
             halvings: k.gamma_last.saturating_sub(k.gamma_first),
             periods: k.gear_periods.into(),
         },

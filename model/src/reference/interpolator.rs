@@ -5,10 +5,13 @@
 
 use std::f64::consts::TAU;
 
+use nalgebra::SMatrix;
+
 use super::completed::{CompletedConfig, Completion};
 use super::gate::{Gate, GateState, Window};
 use super::gradient::{Form, Observation, ResidualGradient};
 use super::loops::{Loop, LoopConfig};
+use super::recursive::{LeastSquaresStart, StartConfig};
 use super::start::{Acquisition, Start};
 use super::sum_of_squares::{Smoothing, SumOfSquares};
 use super::{Parameters, ReferenceError, Theta, require};
@@ -24,13 +27,19 @@ pub enum Search {
     SumOfSquares(Smoothing),
     /// Final form, and one scalar sensitivity for what it cannot see.
     Completed(CompletedConfig),
+    /// Final form, after a start by recursive least squares.
+    Started(StartConfig),
 }
 
-/// γ, one for each parameter, and how it shrinks. The paper has one γ that stays.
+/// The step δΘ = −Γ ∇: γ times the unit matrix in the paper; a diagonal gives each parameter its own γ, a full matrix
+/// equalises the speeds of the gradient's modes.
+pub type Steps = SMatrix<f64, 9, 9>;
+
+/// γ and how it shrinks. The paper has one γ that stays.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gamma {
     /// The first.
-    pub first: Theta,
+    pub first: Steps,
     /// How often it is halved.
     pub halvings: u32,
     /// After so many periods of net travel in one direction, each time.
@@ -42,7 +51,7 @@ impl Gamma {
     #[must_use]
     pub fn constant(gamma: f64) -> Self {
         Self {
-            first: Theta::repeat(gamma),
+            first: Steps::identity() * gamma,
             halvings: 0,
             periods: f64::INFINITY,
         }
@@ -123,16 +132,17 @@ impl Estimate {
 }
 
 /// State of the search.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 enum Searching {
     None,
     Residual(ResidualGradient),
     SumOfSquares(SumOfSquares),
     Completed(Completion),
+    Started(Box<LeastSquaresStart>),
 }
 
 /// The reference: configuration and state.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Reference {
     config: Config,
     theta: Theta,
@@ -153,8 +163,11 @@ impl Reference {
     /// A search that this parameter set cannot have, or a step that cannot converge.
     pub fn new(config: Config) -> Result<Self, ReferenceError> {
         for &gamma in config.gamma.first.iter() {
-            let reason = "a step is positive and finite";
-            require(gamma >= 0.0 && gamma.is_finite(), "gamma", gamma, reason)?;
+            require(gamma.is_finite(), "gamma", gamma, "a step is finite")?;
+        }
+        for &gamma in config.gamma.first.diagonal().iter() {
+            let reason = "a step against the gradient is not negative";
+            require(gamma >= 0.0, "gamma", gamma, reason)?;
         }
         let filter = config.tracking.filter;
         let searching = match config.search {
@@ -170,6 +183,7 @@ impl Reference {
             Search::Completed(completed) => {
                 Searching::Completed(Completion::new(completed, config.parameters, filter)?)
             }
+            Search::Started(start) => Searching::Started(Box::new(LeastSquaresStart::new(start)?)),
         };
         let (tracking, acquisition) = config.start.begin(config.tracking)?;
         Ok(Self {
@@ -214,7 +228,7 @@ impl Reference {
         &mut self,
         y_c: f64,
         y_s: f64,
-        gamma: Option<&Theta>,
+        gamma: Option<&Steps>,
         complete: bool,
     ) -> Estimate {
         let seen = self.observe([y_c, y_s]);
@@ -265,7 +279,7 @@ impl Reference {
         &mut self,
         y: [f64; 2],
         seen: &Observation,
-        gamma: Option<&Theta>,
+        gamma: Option<&Steps>,
         complete: bool,
     ) -> Estimate {
         let theta = self.theta;
@@ -275,7 +289,7 @@ impl Reference {
             updated: gamma.is_some(),
             ..self.expected()
         };
-        let along = |gradient: Theta| gamma.map_or(Theta::zeros(), |g| -gradient.component_mul(g));
+        let along = |gradient: Theta| gamma.map_or(Theta::zeros(), |g| -g * gradient);
         let parameters = self.config.parameters;
         let change = match &mut self.searching {
             Searching::None => Theta::zeros(),
@@ -288,6 +302,10 @@ impl Reference {
                 let missing = completion.step(parameters, &theta, seen, alpha_hat, complete);
                 along(seen.final_form()) + missing
             }
+            Searching::Started(_) if gamma.is_none() => Theta::zeros(),
+            Searching::Started(start) => start
+                .step(seen, estimate.alpha_hat)
+                .unwrap_or_else(|| along(seen.final_form())),
         };
         let Config {
             bound,
@@ -302,7 +320,7 @@ impl Reference {
     }
 
     /// γ after its halvings.
-    fn gamma(&mut self) -> Theta {
+    fn gamma(&mut self) -> Steps {
         let Gamma {
             first,
             halvings,

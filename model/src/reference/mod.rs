@@ -14,6 +14,7 @@
 //! | 5.2 and 5.3, sum of squares | [`sum_of_squares`] |
 //! | 5.5, (8) to (11) and the final form | [`gradient`] |
 //! | what the paper lacks: the direction that no radius shows | [`completed`] |
+//! | a start within two periods | [`recursive`] |
 //! | when to calibrate, how to start | [`gate`], [`start`] |
 //! | all of it together | [`interpolator`] |
 //!
@@ -31,12 +32,13 @@ pub mod heydemann;
 pub mod interpolator;
 pub mod loops;
 pub mod poles;
+pub mod recursive;
 pub mod sensor;
 pub mod start;
 pub mod sum_of_squares;
 
 pub use correction::{Jacobian, Parameters, Theta};
-pub use interpolator::{Config, Estimate, Reference};
+pub use interpolator::{Config, Estimate, Reference, Steps};
 pub use sensor::Sensor;
 
 use thiserror::Error;

@@ -13,7 +13,7 @@ use nonius_model::kernel::{Input, Method, State};
 use nonius_model::reference::gradient::Form;
 use nonius_model::reference::interpolator::Search;
 use nonius_model::reference::start::Start;
-use nonius_model::reference::{Config, Parameters, Reference, Theta, from_spec};
+use nonius_model::reference::{Config, Parameters, Reference, Steps, Theta, from_spec};
 use nonius_model::spec::Coding;
 
 use crate::support::{Encoder, wrapped};
@@ -162,9 +162,9 @@ pub(crate) fn compare(
         };
         assert!(after.locked, "lock lost at sample {k}");
         let first = -f64::from(spec.calibration.gamma_first as i32) - before.gamma_gear;
-        let mut gamma = Theta::zeros();
+        let mut gamma = Steps::zeros();
         for (i, equaliser) in equaliser.into_iter().enumerate() {
-            gamma[i] = equaliser * first.exp2();
+            gamma[(i, i)] = equaliser * first.exp2();
         }
         let y = codes.map(|code| code as f64 / half * unit);
         let fresh = fresh && spec.calibration.parameters > 0;
