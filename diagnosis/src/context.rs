@@ -8,8 +8,11 @@ use nonius_recording::Recording;
 use crate::column::Shape;
 use crate::spline::Spline;
 
-/// Knot spacings that are tried, in samples.
-const FINEST: f64 = 12.0;
+/// Finest knot spacing, in samples.
+const FINEST: f64 = 6.0;
+/// Knots stand so much closer than the likelihood asks for: what the motion leaves behind must be far below the noise,
+/// not just not worth another knot.
+const CLOSER: f64 = 2.0;
 
 /// The recording, corrected, with everything that shapes are made of. One value per sample.
 #[derive(Clone, Debug)]
@@ -280,7 +283,10 @@ impl Context {
             }
             spacing /= 1.5;
         }
-        best.map_or_else(|| Spline::new(n, n as f64, &self.weight), |b| b.1)
+        best.map_or_else(
+            || Spline::new(n, n as f64, &self.weight),
+            |b| Spline::new(n, (b.1.spacing() / CLOSER).max(FINEST), &self.weight),
+        )
     }
 }
 

@@ -79,6 +79,12 @@ impl Spline {
         }
     }
 
+    /// Samples between knots.
+    #[must_use]
+    pub fn spacing(&self) -> f64 {
+        self.spacing
+    }
+
     /// Number of coefficients.
     #[must_use]
     pub fn count(&self) -> usize {
