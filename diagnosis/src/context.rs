@@ -29,12 +29,15 @@ pub struct Context {
     pub c: Vec<f64>,
     /// See `c`.
     pub s: Vec<f64>,
-    /// cos and sin of the angle of the pair.
+    /// cos and sin of the smooth angle. Shapes are made of these: made of the measured angle they would hold its noise,
+    /// and find it in the data.
     pub cos: Vec<f64>,
     /// See `cos`.
     pub sin: Vec<f64>,
-    /// Angle of the pair in radians, continuous.
+    /// Smooth angle in radians, continuous.
     pub alpha: Vec<f64>,
+    /// Angle of the pair in radians, continuous.
+    pub measured: Vec<f64>,
     /// Smooth speed in radians per second, signed.
     pub speed: Vec<f64>,
     /// Angle of the revolution in radians, where periods per revolution are known.
@@ -104,6 +107,7 @@ impl Context {
             cos: vec![],
             sin: vec![],
             alpha: vec![],
+            measured: vec![],
             speed: vec![],
             phi: None,
             temperature,
@@ -136,30 +140,31 @@ impl Context {
                 angle[k] = angle[k - 1];
             }
         }
-        self.alpha = unwrapped(angle);
-        self.cos = self.alpha.iter().map(|a| a.cos()).collect();
-        self.sin = self.alpha.iter().map(|a| a.sin()).collect();
+        self.measured = unwrapped(angle);
         (self.c, self.s) = (c, s);
         if self.spline.is_none() {
             self.spline = Some(self.choose_spline());
         }
         if let Some(spline) = &self.spline {
-            let fit = spline.fit(&self.alpha, &self.weight);
+            let fit = spline.fit(&self.measured, &self.weight);
             let rate = self.rate;
+            self.alpha = spline.values(&fit);
+            self.cos = self.alpha.iter().map(|a| a.cos()).collect();
+            self.sin = self.alpha.iter().map(|a| a.sin()).collect();
             self.speed = spline.derivative(&fit).iter().map(|v| v * rate).collect();
         }
         let per = self.periods_per_revolution.map(f64::from);
         self.phi = per.map(|n| self.alpha.iter().map(|a| a / n).collect());
         self.against_reference = reference.map(|r| {
             let slope: f64 = self
-                .alpha
+                .measured
                 .iter()
                 .zip(r)
-                .map(|(a, r)| (a - self.alpha[0]) * (r - r_first(reference)))
+                .map(|(a, r)| (a - self.measured[0]) * (r - r_first(reference)))
                 .sum();
             let sense = if slope < 0.0 { -1.0 } else { 1.0 };
             let raw: Vec<f64> = self
-                .alpha
+                .measured
                 .iter()
                 .zip(r)
                 .map(|(a, r)| a - sense * r)
@@ -195,7 +200,7 @@ impl Context {
     pub fn tangential(&self) -> Vec<f64> {
         match (&self.against_reference, &self.spline) {
             (Some(d), _) => d.iter().zip(&self.weight).map(|(d, w)| d * w).collect(),
-            (None, Some(spline)) => spline.residual(&self.alpha, &self.weight),
+            (None, Some(spline)) => spline.residual(&self.measured, &self.weight),
             (None, None) => vec![0.0; self.samples()],
         }
     }
@@ -252,7 +257,7 @@ impl Context {
             .flat_map(|order| {
                 let order = f64::from(order);
                 let wave = move |f: fn(f64) -> f64| {
-                    self.alpha
+                    self.measured
                         .iter()
                         .map(|a| f(order * a))
                         .collect::<Vec<f64>>()
@@ -263,7 +268,7 @@ impl Context {
         let mut worse = 0;
         while spacing >= FINEST {
             let spline = Spline::new(n, spacing, &self.weight);
-            let residual = spline.residual(&self.alpha, &self.weight);
+            let residual = spline.residual(&self.measured, &self.weight);
             let shapes: Vec<Vec<f64>> = cyclic
                 .iter()
                 .map(|w| spline.residual(w, &self.weight))

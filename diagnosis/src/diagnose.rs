@@ -176,7 +176,7 @@ pub fn diagnose(recording: &Recording) -> Result<Diagnosis, ContextError> {
     let positions = (0..whole)
         .map(|k| {
             let off = change.get(k).copied().unwrap_or(0.0);
-            (context.alpha[k] - off) / std::f64::consts::TAU
+            (context.measured[k] - off) / std::f64::consts::TAU
         })
         .collect();
     let periods_travelled = travelled(&context);

@@ -61,7 +61,18 @@ impl<'a> System<'a> {
         let left = crate::solve::without(&this.data.plain, &columns);
         for block in 0..blocks {
             let part = flattened(&left[block * n..(block + 1) * n]);
-            this.whiteners[block] = Whitener::of(&part);
+            let gone = match (&context.spline, block) {
+                (_, 0) => 0.0,
+                (_, 1) if context.against_reference.is_some() => 0.0,
+                (Some(spline), _) => 0.7 / spline.spacing(),
+                (None, _) => 0.0,
+            };
+            this.whiteners[block] = Whitener::of(&part, gone);
+        }
+        // A reference without noise says nothing about how well a spline follows real motion.
+        let least = 0.05 * this.whiteners[0].sigma;
+        for whitener in &mut this.whiteners {
+            whitener.sigma = whitener.sigma.max(least);
         }
         this.data.white = this.whitened(&this.data.plain);
         this

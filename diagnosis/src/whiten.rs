@@ -12,14 +12,27 @@ pub(crate) struct Whitener {
 }
 
 impl Whitener {
-    /// From a residual, by the autocorrelation method (Levinson and Durbin).
+    /// From a residual whose frequencies below `gone` (cycles per sample) were taken off with the motion: there the noise
+    /// is taken to be what it is just above, for a hole in the spectrum must not be amplified. Autocorrelation method
+    /// (Levinson and Durbin).
     #[must_use]
-    pub(crate) fn of(residual: &[f64]) -> Self {
+    pub(crate) fn of(residual: &[f64], gone: f64) -> Self {
         let n = residual.len();
+        let (mut power, length) = crate::lines::spectrum(residual);
+        let index = |f: f64| ((f * length as f64).ceil() as usize).min(power.len() - 1);
+        let (first, last) = (index(gone), index((2.0 * gone).min(0.5)));
+        if first > 0 && last > first {
+            let level = power[first..last].iter().sum::<f64>() / (last - first) as f64;
+            power[..first].iter_mut().for_each(|p| *p = level);
+        }
+        // Back to the autocorrelation: the spectrum is even.
         let correlation: Vec<f64> = (0..=ORDER)
             .map(|lag| {
-                let pairs = residual.iter().zip(&residual[lag.min(n)..]);
-                pairs.map(|(a, b)| a * b).sum::<f64>() / n as f64
+                let wave =
+                    |k: usize| (std::f64::consts::TAU * (k * lag) as f64 / length as f64).cos();
+                let ends = power[0] + power[power.len() - 1] * wave(power.len() - 1);
+                let inner: f64 = (1..power.len() - 1).map(|k| 2.0 * power[k] * wave(k)).sum();
+                (ends + inner) / length as f64 / n as f64
             })
             .collect();
         if correlation[0].is_nan() || correlation[0] <= 0.0 {
