@@ -31,6 +31,13 @@ pub(crate) struct Estimate<'a> {
     pub error: &'a [f64],
 }
 
+/// Makes shapes of amounts.
+pub(crate) type Refine = Box<dyn Fn(&Context, &[f64]) -> Vec<Shape>>;
+/// Makes parameters of an estimate.
+pub(crate) type Reads = Box<dyn Fn(&Estimate) -> Vec<Parameter>>;
+/// Makes a sentence of parameters.
+pub(crate) type Says = Box<dyn Fn(&[Parameter]) -> String>;
+
 /// A cause with one choice of its discrete parameters.
 pub(crate) struct Candidate {
     /// Name of the contract.
@@ -47,10 +54,12 @@ pub(crate) struct Candidate {
     pub positive: bool,
     /// What the chip can do.
     pub chip: Chip,
+    /// The shapes where the first estimate says the cause is, if they change with its size.
+    pub refine: Option<Refine>,
     /// Parameters from the estimate.
-    pub parameters: Box<dyn Fn(&Estimate) -> Vec<Parameter>>,
+    pub parameters: Reads,
     /// The middle of the sentence: what was seen, from the parameters.
-    pub evidence: Box<dyn Fn(&[Parameter]) -> String>,
+    pub evidence: Says,
 }
 
 /// A change of the raw channels, in fractions of their amplitudes, as a change of the corrected pair.
@@ -92,10 +101,7 @@ pub(crate) fn derivatives(context: &Context) -> [Vec<f64>; 2] {
 }
 
 /// One parameter per shape, with the same unit.
-pub(crate) fn each(
-    names: &'static [&'static str],
-    unit: &'static str,
-) -> Box<dyn Fn(&Estimate) -> Vec<Parameter>> {
+pub(crate) fn each(names: &'static [&'static str], unit: &'static str) -> Reads {
     Box::new(move |e| {
         let list = names.iter().zip(e.x).zip(e.error);
         list.map(|((name, x), error)| Parameter::measured(name, *x, *error, unit))

@@ -9,6 +9,8 @@ pub(crate) struct Checked {
     pub(crate) findings: Vec<Finding>,
     /// 1 or 0 per sample.
     pub(crate) weight: Vec<f64>,
+    /// Samples that are missing before a sample of the recording: index, how many.
+    pub(crate) gaps: Vec<(usize, usize)>,
 }
 
 const CHANNELS: [&str; 2] = ["cos", "sin"];
@@ -18,6 +20,7 @@ pub(crate) fn check(recording: &Recording) -> Checked {
     let mut checked = Checked {
         findings: vec![],
         weight: vec![1.0; n],
+        gaps: vec![],
     };
     let codes: (Vec<i64>, Vec<i64>) = recording.codes().unzip();
     let adc = recording.metadata.adc;
@@ -145,6 +148,15 @@ fn glitches(recording: &Recording, checked: &mut Checked) {
     ));
 }
 
+/// The smallest step between two values of a channel, at least a code.
+fn step(values: &[f64], lsb: f64) -> f64 {
+    let mut sorted = values.to_vec();
+    sorted.sort_unstable_by(f64::total_cmp);
+    let steps = sorted.windows(2).map(|w| w[1] - w[0]);
+    let smallest = steps.filter(|s| *s > 0.5 * lsb).fold(f64::MAX, f64::min);
+    if smallest < f64::MAX { smallest } else { lsb }
+}
+
 /// Noise of a channel, rms, from its third differences: motion hardly shows in them.
 fn noise(values: &[f64]) -> f64 {
     let mut sizes: Vec<f64> = values
@@ -170,6 +182,14 @@ fn time_base(recording: &Recording, checked: &mut Checked) {
         .iter()
         .filter(|g| (g.1 - g.1.round()).abs() < 0.2)
         .count();
+    let regular = whole * 10 >= gaps.len() * 9 && gaps.len() <= n / 20 + 1;
+    // A long pause is no loss of samples that anything could bridge.
+    if regular && lost < n as f64 / 10.0 {
+        checked.gaps = gaps
+            .iter()
+            .map(|g| (g.0, g.1.round() as usize - 1))
+            .collect();
+    }
     if !gaps.is_empty() && whole * 10 >= gaps.len() * 9 && gaps.len() <= n / 20 + 1 {
         checked.findings.push(Finding::digital(
             "dropped_samples",
@@ -182,8 +202,8 @@ fn time_base(recording: &Recording, checked: &mut Checked) {
     };
     let adc = recording.metadata.adc;
     let least = [
-        (8.0 * adc.cos.lsb).max(8.0 * noise(&recording.cos)),
-        (8.0 * adc.sin.lsb).max(8.0 * noise(&recording.sin)),
+        (8.0 * step(&recording.cos, adc.cos.lsb)).max(8.0 * noise(&recording.cos)),
+        (8.0 * step(&recording.sin, adc.sin.lsb)).max(8.0 * noise(&recording.sin)),
     ];
     let twins: Vec<usize> = (2..n.saturating_sub(1))
         .filter(|&k| same(k) && !same(k - 1) && !same(k + 1))

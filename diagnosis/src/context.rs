@@ -246,6 +246,36 @@ impl Context {
         ]
     }
 
+    /// `values` without their strongest line in time and, where the revolution is known, in its angle: real vibration and
+    /// cogging are no reason for more knots.
+    fn without_lines(&self, values: &[f64], spline: &Spline) -> Vec<f64> {
+        let left = crate::lines::without_strongest(values);
+        let Some(per) = self.periods_per_revolution else {
+            return left;
+        };
+        let waves = |order: u32| -> Vec<Vec<f64>> {
+            let order = f64::from(order) / f64::from(per);
+            let wave = |f: fn(f64) -> f64| -> Vec<f64> {
+                self.measured.iter().map(|a| f(order * a)).collect()
+            };
+            vec![wave(f64::cos), wave(f64::sin)]
+        };
+        let power = |order: &u32| -> f64 {
+            let dot = |w: &[f64]| w.iter().zip(&left).map(|(a, b)| a * b).sum::<f64>();
+            waves(*order).iter().map(|w| dot(w).powi(2)).sum()
+        };
+        let best = (1..=64u32)
+            .filter(|o| o % per != 0)
+            .map(|o| (power(&o), o))
+            .max_by(|a, b| a.0.total_cmp(&b.0));
+        let Some((_, order)) = best else { return left };
+        let seen: Vec<Vec<f64>> = waves(order)
+            .iter()
+            .map(|w| spline.residual(w, &self.weight))
+            .collect();
+        crate::solve::without(&left, &seen)
+    }
+
     /// The knot spacing whose spline explains the angle best for its number of coefficients, with what repeats with the
     /// period taken off first.
     fn choose_spline(&self) -> Spline {
@@ -273,7 +303,7 @@ impl Context {
                 .iter()
                 .map(|w| spline.residual(w, &self.weight))
                 .collect();
-            let left = crate::lines::without_strongest(&crate::solve::without(&residual, &shapes));
+            let left = self.without_lines(&crate::solve::without(&residual, &shapes), &spline);
             let power: f64 = left.iter().map(|r| r * r).sum();
             let count = spline.count() as f64;
             let score = effective * (power / effective).max(1e-300).ln() + count * effective.ln();

@@ -9,6 +9,7 @@ use crate::finding::{Finding, Parameter};
 use crate::generic;
 use crate::model::{System, above_motion};
 use crate::noise;
+use crate::repair::repair;
 use crate::select::select;
 
 /// Most samples that are searched for causes; positions are made of all.
@@ -87,7 +88,9 @@ pub struct Diagnosis {
 /// Where the signals draw no ellipse.
 pub fn diagnose(recording: &Recording) -> Result<Diagnosis, ContextError> {
     let checked = checks::check(recording);
-    let mut context = Context::new(recording, checked.weight)?;
+    let repaired = repair(recording, &checked.weight, &checked.gaps);
+    let recording = &repaired.recording;
+    let mut context = Context::new(recording, repaired.weight.clone())?;
     let mut notes = recording.notes.clone();
     let whole = context.samples();
     if whole > MOST {
@@ -106,7 +109,12 @@ pub fn diagnose(recording: &Recording) -> Result<Diagnosis, ContextError> {
     let mut findings = checked.findings;
     let named = selection.findings(&system);
     let left = selection.fit.left(&system);
-    let noisy = noise::findings(&first, &system.residual(&left));
+    // Only what is noise can be noise of a kind.
+    let noisy = if selection.unnamed.is_empty() {
+        noise::findings(&first, &system.residual(&left))
+    } else {
+        vec![]
+    };
     let (held_before, held_after) = (
         selection.base.held_out(&system),
         selection.fit.held_out(&system),
@@ -174,6 +182,7 @@ pub fn diagnose(recording: &Recording) -> Result<Diagnosis, ContextError> {
         }
     }
     let positions = (0..whole)
+        .filter(|k| repaired.original[*k])
         .map(|k| {
             let off = change.get(k).copied().unwrap_or(0.0);
             (context.measured[k] - off) / std::f64::consts::TAU

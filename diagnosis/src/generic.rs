@@ -27,7 +27,8 @@ fn waves(angle: &[f64], order: f64) -> [Vec<f64>; 2] {
 pub(crate) fn basis(context: &Context, domain: Domain) -> Vec<Shape> {
     let mut list = vec![];
     match domain {
-        Domain::Angle => {
+        // What depends on the code depends on the angle too.
+        Domain::Angle | Domain::Code => {
             for order in 1..=ORDERS {
                 for wave in waves(&context.alpha, order.into()) {
                     list.extend(both(context, &wave));

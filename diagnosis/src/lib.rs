@@ -18,6 +18,7 @@ mod generic;
 mod lines;
 mod model;
 mod noise;
+mod repair;
 mod report;
 mod select;
 mod sensor;

@@ -9,7 +9,7 @@ use crate::model::{Column, Fit, System};
 use crate::statistics::{after_trials, log_tail};
 
 /// Global probability below which a cause is shown.
-const SHOWN: f64 = 1e-3;
+const SHOWN: f64 = 3e-4;
 /// Kinds of cause that are tried.
 const KINDS: f64 = 22.0;
 /// A cause must hold this share of what a generic basis of its domain explains.
@@ -17,7 +17,7 @@ const HOLDS: f64 = 0.75;
 /// Most causes of one recording.
 const MOST: usize = 8;
 /// A cause that adds less than this probability says nothing new.
-const NOTHING_NEW: f64 = 0.01;
+const NOTHING_NEW: f64 = 1e-3;
 
 /// A cause that was accepted, and where its columns are.
 pub(crate) struct Accepted {
@@ -86,18 +86,19 @@ pub(crate) fn select(context: &Context, system: &System) -> Selection {
     let mut accepted: Vec<Accepted> = vec![];
     let mut unnamed: Vec<Unnamed> = vec![];
     let mut closed: Vec<Domain> = vec![];
+    let mut refused: Vec<&'static str> = vec![];
     while accepted.len() + unnamed.len() < MOST {
         let residual = system.residual(&fit.left(system));
         let mut scored: Vec<Scored> = causes::all(context, &residual)
             .into_iter()
-            .filter(|c| !closed.contains(&c.domain))
+            .filter(|c| !closed.contains(&c.domain) && !refused.contains(&c.name))
             .filter_map(|c| score(system, &fit, c))
             .collect();
         scored.sort_by(|a, b| a.log_p.total_cmp(&b.log_p));
         if scored.is_empty() || scored[0].log_p > SHOWN.ln() {
             break;
         }
-        let best = scored.remove(0);
+        let best = refined(context, system, &fit, scored.remove(0));
         let rivals = rivals(system, &fit, &best, &scored);
         let held = holds(context, system, &fit, &best);
         if rivals.len() > 1 || held < HOLDS {
@@ -127,7 +128,13 @@ pub(crate) fn select(context: &Context, system: &System) -> Selection {
             continue;
         }
         let first = fit.columns.len();
-        fit = fit.extended(system, best.columns);
+        let extended = fit.extended(system, best.columns);
+        // What does not hold on data that was not fitted is no cause.
+        if extended.held_out(system) > fit.held_out(system) * 1.01 {
+            refused.push(best.candidate.name);
+            continue;
+        }
+        fit = extended;
         accepted.push(Accepted {
             candidate: best.candidate,
             first,
@@ -143,6 +150,30 @@ pub(crate) fn select(context: &Context, system: &System) -> Selection {
         accepted,
         unnamed,
     }
+}
+
+/// The same cause with the shapes of its own size.
+fn refined(context: &Context, system: &System, fit: &Fit, mut best: Scored) -> Scored {
+    for _ in 0..3 {
+        let Some(refine) = &best.candidate.refine else {
+            break;
+        };
+        let solution = fit.with(system, &best.columns);
+        let own = &solution.x[fit.columns.len()..];
+        if own.iter().any(|x| !x.is_finite() || *x <= 0.0) {
+            break;
+        }
+        best.candidate.shapes = refine(context, own);
+        let shapes = best.candidate.shapes.iter();
+        best.columns = shapes
+            .map(|s| system.column(s, best.candidate.motion))
+            .collect();
+        let solution = fit.with(system, &best.columns);
+        best.gain = 0.5 * (solution.explained - fit.solution.explained);
+        let log_p = log_tail(2.0 * best.gain, best.freedom);
+        best.log_p = after_trials(log_p, best.candidate.trials * KINDS);
+    }
+    best
 }
 
 /// Causes of other names to which the best adds nothing, and that need no more parameters.

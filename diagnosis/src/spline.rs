@@ -41,19 +41,19 @@ impl Spline {
         let spacing = samples as f64 / pieces as f64;
         let count = pieces + 3;
         let mut normal = vec![[0.0; 4]; count];
-        for k in 0..samples {
+        for (k, weight) in weight.iter().enumerate().take(samples) {
             let (first, w) = Self::at(spacing, pieces, k);
             let b = weights(w);
             for i in 0..4 {
                 for j in 0..=i {
                     // Row first+i, column first+j: stored by distance from the diagonal.
-                    normal[first + i][i - j] += weight[k] * b[i] * b[j];
+                    normal[first + i][i - j] += weight * b[i] * b[j];
                 }
             }
         }
         let scale = samples as f64 / count as f64;
         for row in &mut normal {
-            row[0] += 1e-9 * scale.max(1e-3);
+            row[0] += 1e-13 * scale.max(1e-3);
         }
         // Cholesky in the band.
         for i in 0..count {

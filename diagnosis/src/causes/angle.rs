@@ -21,6 +21,7 @@ pub(crate) fn candidates(context: &Context) -> Vec<Candidate> {
         trials: 2.0,
         shapes,
         motion: false,
+        refine: None,
         positive: false,
         chip: Chip::CannotCorrect,
         parameters: each(&["k_cos", "k_sin"], "amplitude"),
@@ -56,6 +57,7 @@ pub(crate) fn candidates(context: &Context) -> Vec<Candidate> {
             trials: 6.0,
             shapes,
             motion: false,
+            refine: None,
             positive: false,
             chip: Chip::CannotCorrect,
             parameters: Box::new(move |e| {
@@ -112,6 +114,7 @@ pub(crate) fn candidates(context: &Context) -> Vec<Candidate> {
                 trials: 4.0 * THRESHOLDS.len() as f64,
                 shapes,
                 motion: false,
+                refine: None,
                 positive: true,
                 chip: Chip::CannotCorrect,
                 parameters: Box::new(move |e| {

@@ -12,10 +12,24 @@ pub(crate) fn candidates(context: &Context) -> Vec<Candidate> {
         high.copied().unwrap_or(0) - low.copied().unwrap_or(0)
     };
     let reach = span(0).min(span(1));
+    // The last bits of coarse codes never move.
+    let coarse = (0..2)
+        .map(|which| {
+            let all = context.codes[which]
+                .iter()
+                .fold(0, |bits, c| bits | (c - context.codes[which][0]));
+            1i64 << all.trailing_zeros().min(40)
+        })
+        .max()
+        .unwrap_or(1);
+    // Coarse steps with little noise are errors of the code themselves.
+    if coarse > 1 {
+        return vec![];
+    }
     let mut list = vec![];
     // The highest bit is the step in the middle of the range.
     for bit in (0..context.bits.min(40)).rev().take(8) {
-        if (1i64 << bit) * 2 > reach * 2 || (1i64 << bit) < 4 {
+        if (1i64 << bit) > reach || (1i64 << bit) < 8 {
             continue;
         }
         let weight = |which: usize| -> Vec<f64> {
@@ -32,6 +46,7 @@ pub(crate) fn candidates(context: &Context) -> Vec<Candidate> {
             trials: 8.0,
             shapes,
             motion: false,
+            refine: None,
             positive: false,
             chip: Chip::CannotCorrect,
             parameters: Box::new(move |e| {

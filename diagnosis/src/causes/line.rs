@@ -43,6 +43,7 @@ pub(crate) fn candidates(context: &Context, residual: &Residual) -> Vec<Candidat
                 trials,
                 shapes,
                 motion: false,
+                refine: None,
                 positive: false,
                 chip: Chip::CannotCorrect,
                 parameters: Box::new(move |e| {
@@ -75,6 +76,7 @@ pub(crate) fn candidates(context: &Context, residual: &Residual) -> Vec<Candidat
             trials,
             shapes: shapes.into(),
             motion: false,
+            refine: None,
             positive: false,
             chip: Chip::CannotCorrect,
             parameters: Box::new(move |e| {
@@ -105,6 +107,7 @@ pub(crate) fn candidates(context: &Context, residual: &Residual) -> Vec<Candidat
             trials,
             shapes: shapes.into(),
             motion: true,
+            refine: None,
             positive: false,
             chip: Chip::NotASensorError,
             parameters: Box::new(move |e| {

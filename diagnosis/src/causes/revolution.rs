@@ -43,6 +43,7 @@ pub(crate) fn candidates(context: &Context, residual: &Residual) -> Vec<Candidat
             trials: 3.0,
             shapes: shapes.into(),
             motion: false,
+            refine: None,
             positive: false,
             chip: Chip::CannotCorrect,
             parameters: harmonic(order, "depth", "1"),
@@ -58,6 +59,7 @@ pub(crate) fn candidates(context: &Context, residual: &Residual) -> Vec<Candidat
                 trials: 12.0,
                 shapes: shapes.into(),
                 motion: false,
+                refine: None,
                 positive: false,
                 chip: Chip::CannotCorrect,
                 parameters: harmonic(order, "amplitude", "rad"),
@@ -92,6 +94,7 @@ pub(crate) fn candidates(context: &Context, residual: &Residual) -> Vec<Candidat
             trials: f64::from(ORDERS),
             shapes: shapes.into(),
             motion: true,
+            refine: None,
             positive: false,
             chip: Chip::NotASensorError,
             parameters: harmonic(order, "amplitude", "rad"),
@@ -101,11 +104,7 @@ pub(crate) fn candidates(context: &Context, residual: &Residual) -> Vec<Candidat
     list
 }
 
-fn harmonic(
-    order: u32,
-    name: &'static str,
-    unit: &'static str,
-) -> Box<dyn Fn(&crate::cause::Estimate) -> Vec<Parameter>> {
+fn harmonic(order: u32, name: &'static str, unit: &'static str) -> crate::cause::Reads {
     Box::new(move |e| {
         let (a, d, p, ep) = polar(e.x, e.error);
         vec![
@@ -149,6 +148,7 @@ fn contamination(context: &Context, phi: &[f64], residual: &Residual) -> Vec<Can
                 trials: PLACES as f64 * 5.0,
                 shapes: vec![Shape::radial(&dip, &context.cos, &context.sin)],
                 motion: false,
+                refine: None,
                 positive: true,
                 chip: Chip::CannotCorrect,
                 parameters: Box::new(move |e| {

@@ -59,6 +59,7 @@ pub(crate) fn candidates(context: &Context) -> Vec<Candidate> {
         trials: 1.0,
         shapes: vec![shape],
         motion: false,
+        refine: None,
         positive,
         chip,
         parameters: each(parameter, unit),
@@ -100,7 +101,7 @@ pub(crate) fn candidates(context: &Context) -> Vec<Candidate> {
         ));
         let top = v.iter().fold(f64::MIN_POSITIVE, |m, v| m.max(v.abs()));
         for which in [0, 1] {
-            for reach in [0.03, 0.1, 0.25, 0.5, 1.0] {
+            for reach in [0.003, 0.02, 0.1, 0.4, 1.0] {
                 let tau = reach / top;
                 let name: [&'static [&'static str]; 2] = [&["tau_cos_s"], &["tau_sin_s"]];
                 let mut candidate = one(
@@ -118,6 +119,9 @@ pub(crate) fn candidates(context: &Context) -> Vec<Candidate> {
                     },
                 );
                 candidate.trials = 10.0;
+                candidate.refine = Some(Box::new(move |context, x| {
+                    vec![channel(context, which, low_pass(context, which, x[0]))]
+                }));
                 list.push(candidate);
             }
         }
@@ -192,6 +196,7 @@ fn ac_coupling(context: &Context) -> Vec<Candidate> {
             trials: corners,
             shapes: vec![raw(context, slow(0), slow(1))],
             motion: false,
+            refine: None,
             positive: true,
             chip: Chip::CannotCorrect,
             parameters: Box::new(move |e| {

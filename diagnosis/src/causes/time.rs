@@ -30,11 +30,17 @@ pub(crate) fn polynomials(context: &Context, degree: usize) -> Vec<Vec<f64>> {
 
 pub(crate) fn candidates(context: &Context) -> Vec<Candidate> {
     let u = normalised(context);
-    let mut drivers: Vec<(&'static str, Vec<Vec<f64>>)> = vec![
-        ("time", polynomials(context, 1)),
-        ("time", polynomials(context, 3)),
-        ("time", polynomials(context, 6)),
-    ];
+    // Over a period or two, time and angle are one, and a polynomial of time is any shape of the angle.
+    let way: f64 = context.speed.iter().map(|v| v.abs()).sum();
+    let periods = way / context.rate / std::f64::consts::TAU;
+    let mut drivers: Vec<(&'static str, Vec<Vec<f64>>)> = [1, 3, 6]
+        .into_iter()
+        .filter(|degree| periods >= 3.0 * *degree as f64)
+        .map(|degree| ("time", polynomials(context, degree)))
+        .collect();
+    if drivers.is_empty() {
+        return vec![];
+    }
     if let Some(temperature) = &context.temperature {
         drivers.push(("temperature", vec![temperature.clone()]));
     }
@@ -60,6 +66,7 @@ pub(crate) fn candidates(context: &Context) -> Vec<Candidate> {
                 trials,
                 shapes: all,
                 motion: false,
+                refine: None,
                 positive: false,
                 chip: Chip::Corrects,
                 parameters: Box::new(move |e| {
