@@ -50,7 +50,7 @@ pub(crate) struct Candidate {
     pub shapes: Vec<Shape>,
     /// The shapes are real motion: they do not come from the sensor.
     pub motion: bool,
-    /// The first shape's amount cannot be negative.
+    /// The amounts cannot be negative.
     pub positive: bool,
     /// What the chip can do.
     pub chip: Chip,

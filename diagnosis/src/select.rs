@@ -64,7 +64,13 @@ fn score(system: &System, fit: &Fit, candidate: Candidate) -> Option<Scored> {
         return None;
     }
     let own = &solution.x[fit.columns.len()..];
-    if candidate.positive && own[0] <= 0.0 {
+    let first = fit.columns.len();
+    let below_zero = |(i, x): (usize, &f64)| {
+        let error = solution.covariance[(first + i, first + i)].sqrt();
+        *x < -4.0 * error
+    };
+    let most = own.iter().copied().fold(f64::MIN, f64::max);
+    if candidate.positive && (most <= 0.0 || own.iter().enumerate().any(below_zero)) {
         return None;
     }
     let log_p = after_trials(log_tail(2.0 * gain, freedom), candidate.trials * KINDS);
@@ -100,7 +106,7 @@ pub(crate) fn select(context: &Context, system: &System) -> Selection {
         }
         let best = refined(context, system, &fit, scored.remove(0));
         let rivals = rivals(system, &fit, &best, &scored);
-        let held = holds(context, system, &fit, &best);
+        let held = holds(context, system, &fit, &best, &scored);
         if rivals.len() > 1 || held < HOLDS {
             let nearest = best.candidate.name.replace('_', " ");
             let why = if held < HOLDS {
@@ -199,21 +205,38 @@ fn rivals(system: &System, fit: &Fit, best: &Scored, others: &[Scored]) -> Vec<S
     names
 }
 
-/// Share of what a generic basis of the domain explains, of that basis' significant part.
-fn holds(context: &Context, system: &System, fit: &Fit, best: &Scored) -> f64 {
+/// Share of what a generic basis of the domain explains that named shapes hold: the best one, and others of the catalogue
+/// that stand beside it.
+fn holds(context: &Context, system: &System, fit: &Fit, best: &Scored, others: &[Scored]) -> f64 {
     let shapes = generic::basis(context, best.candidate.domain);
     if shapes.is_empty() {
         return 1.0;
     }
     let columns: Vec<Column> = shapes.iter().map(|s| system.column(s, false)).collect();
-    let with_best = fit.extended(system, best.columns.clone());
-    let more = with_best.with(system, &columns);
-    let beyond = 0.5 * (more.explained - with_best.solution.explained);
-    let freedom = more.rank.saturating_sub(with_best.solution.rank);
+    let mut named = fit.extended(system, best.columns.clone());
+    for _ in 0..3 {
+        let beside = others
+            .iter()
+            .filter(|o| o.candidate.domain == best.candidate.domain)
+            .filter_map(|o| {
+                let solution = named.with(system, &o.columns);
+                let gain = 0.5 * (solution.explained - named.solution.explained);
+                let freedom = solution.rank.saturating_sub(named.solution.rank);
+                let log_p = after_trials(log_tail(2.0 * gain, freedom), o.candidate.trials * KINDS);
+                (freedom > 0 && log_p < SHOWN.ln()).then_some((log_p, o))
+            })
+            .min_by(|a, b| a.0.total_cmp(&b.0));
+        let Some((_, other)) = beside else { break };
+        named = named.extended(system, other.columns.clone());
+    }
+    let more = named.with(system, &columns);
+    let beyond = 0.5 * (more.explained - named.solution.explained);
+    let freedom = more.rank.saturating_sub(named.solution.rank);
     // What as many free numbers explain of noise alone does not count against it.
     let spread = (2.0 * freedom as f64).sqrt();
     let beyond = (beyond - freedom as f64 / 2.0 - 2.0 * spread).max(0.0);
-    best.gain / (best.gain + beyond)
+    let held = 0.5 * (named.solution.explained - fit.solution.explained);
+    held / (held + beyond)
 }
 
 /// Domains in which something significant is left that no cause was found for.

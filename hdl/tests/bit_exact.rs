@@ -2,7 +2,7 @@
 
 mod chip;
 
-use chip::{optical, write};
+use chip::{optical, shipped, write};
 use nonius_hdl::ChipDir;
 use nonius_hdl::verify::{Options, verify};
 use nonius_model::spec::{All, Coding, Multipliers, Spec};
@@ -91,6 +91,8 @@ fn every_variant_in_icarus() {
 }
 
 #[test]
-fn shipped_design_in_icarus_and_verilator() {
-    agrees(&optical(), 2000, &Options::default());
+fn shipped_designs_in_icarus_and_verilator() {
+    for name in ["optical", "magnetic", "interferometer"] {
+        agrees(&shipped(name), 2000, &Options::default());
+    }
 }

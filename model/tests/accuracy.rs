@@ -5,15 +5,21 @@ mod support;
 use nonius_model::chip::Chip;
 use nonius_model::design::Design;
 use nonius_model::kernel::Input;
-use support::{Encoder, optical, wrapped};
+use nonius_model::spec::{Coding, Spec};
+use support::{Encoder, shipped, wrapped};
 
 /// After convergence, on a slow sweep with the same codes, the bit-true chip differs from the unrounded one by at
 /// most a tenth of what quantising the input changes in the unrounded one.
 #[test]
 fn arithmetic_adds_at_most_a_tenth_of_the_adc() {
-    let spec = optical();
-    let design = Design::new(&spec).expect("a shipped design");
-    let encoder = Encoder::miscalibrated(&spec);
+    for name in ["optical", "magnetic", "interferometer"] {
+        measure(&shipped(name));
+    }
+}
+
+fn measure(spec: &Spec) {
+    let design = Design::new(spec).expect("a shipped design");
+    let encoder = Encoder::miscalibrated(spec);
     let half = f64::from(1 << (spec.adc.bits - 1));
     let mut bits = Chip::bit_true(&design);
     let mut real = Chip::unrounded(&design);
@@ -43,10 +49,16 @@ fn arithmetic_adds_at_most_a_tenth_of_the_adc() {
             preset: false,
             calibrate,
         };
-        bits.step_codes(cos, sin, false, calibrate);
-        real.step(&input(cos as f64 / half / 2.0, sin as f64 / half / 2.0));
+        let middle = match spec.adc.coding {
+            Coding::OffsetBinary => half,
+            Coding::TwosComplement => 0.0,
+        };
+        let code = |c: i64| c + middle as i64;
+        let part = |v: f64| (v + middle) / half / 2.0;
+        bits.step_codes(code(cos), code(sin), false, calibrate);
+        real.step(&input(part(cos as f64), part(sin as f64)));
         let [v_cos, v_sin] = encoder.volts(at);
-        analogue.step(&input(v_cos / 2.0, v_sin / 2.0));
+        analogue.step(&input(part(v_cos * half), part(v_sin * half)));
         if k >= converge + 5000 {
             let difference = wrapped(bits.position() - real.position());
             arithmetic += difference * difference;
@@ -56,9 +68,13 @@ fn arithmetic_adds_at_most_a_tenth_of_the_adc() {
     }
     let n = f64::from(sweep - 5000);
     let (arithmetic, adc) = ((arithmetic / n).sqrt(), (adc / n).sqrt());
-    println!("arithmetic {arithmetic:.3e}, largest {largest:.3e}, ADC {adc:.3e} periods rms");
+    println!(
+        "{}: arithmetic {arithmetic:.3e}, largest {largest:.3e}, ADC {adc:.3e} periods rms",
+        spec.name
+    );
     assert!(
         arithmetic <= 0.1 * adc,
-        "arithmetic {arithmetic:e}, ADC {adc:e} periods rms"
+        "{}: arithmetic {arithmetic:e}, ADC {adc:e} periods rms",
+        spec.name
     );
 }

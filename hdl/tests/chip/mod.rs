@@ -1,18 +1,23 @@
 //! Chips of the shipped design and its variants, written to a folder.
 
+#![allow(dead_code, reason = "each test binary uses its own part")]
+
 use std::fs;
 use std::path::Path;
 
 use nonius_model::design::Design;
 use nonius_model::spec::Spec;
 
-/// The shipped optical design.
+/// A shipped design.
+pub(crate) fn shipped(name: &str) -> Spec {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../designs/{name}.toml"));
+    let text = fs::read_to_string(path).expect("a shipped design");
+    Spec::from_toml(&text, name).expect("a shipped design")
+}
+
+/// The optical one.
 pub(crate) fn optical() -> Spec {
-    let text = fs::read_to_string(concat!(
-        env!("CARGO_MANIFEST_DIR"),
-        "/../designs/optical.toml"
-    ));
-    Spec::from_toml(&text.expect("designs/optical.toml"), "optical.toml").expect("a shipped design")
+    shipped("optical")
 }
 
 /// Writes what `nonius build` writes; `rows` samples of every stimulus.

@@ -3,10 +3,14 @@
 
 use nonius_model::spec::Spec;
 
+pub(crate) fn shipped(name: &str) -> Spec {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../designs");
+    let text = std::fs::read_to_string(format!("{folder}/{name}.toml")).expect("a shipped design");
+    Spec::from_toml(&text, name).expect("a shipped design")
+}
+
 pub(crate) fn optical() -> Spec {
-    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../designs/optical.toml");
-    let text = std::fs::read_to_string(file).expect("designs/optical.toml");
-    Spec::from_toml(&text, "optical.toml").expect("a shipped design")
+    shipped("optical")
 }
 
 /// Equation (4), as fractions of the ADC's range, and the ADC.
