@@ -2,7 +2,7 @@
 
 mod chip;
 
-use chip::{optical, write};
+use chip::{optical, shipped, write};
 use nonius_hdl::ChipDir;
 use nonius_hdl::verify::{Options, verify};
 use nonius_model::spec::{All, Coding, Multipliers, Spec};
@@ -67,7 +67,8 @@ fn variants() -> Vec<Spec> {
 /// Nobody's linter has anything to say, without waivers: Verilator -Wall, Icarus -Wall, Yosys check.
 #[test]
 fn every_variant_is_clean() {
-    for spec in variants() {
+    let others = ["magnetic", "interferometer"].map(shipped);
+    for spec in variants().into_iter().chain(others) {
         let dir = tempfile::tempdir().expect("scratch folder");
         write(&spec, 2, dir.path());
         let chip = ChipDir::open(dir.path()).expect("a chip");
@@ -91,6 +92,12 @@ fn every_variant_in_icarus() {
 }
 
 #[test]
-fn shipped_design_in_icarus_and_verilator() {
-    agrees(&optical(), 2000, &Options::default());
+fn shipped_designs_in_icarus_and_verilator() {
+    for (name, rows) in [
+        ("optical", 2000),
+        ("magnetic", 400),
+        ("interferometer", 400),
+    ] {
+        agrees(&shipped(name), rows, &Options::default());
+    }
 }

@@ -8,11 +8,14 @@ use nonius_model::spec::Spec;
 
 /// The shipped optical design.
 pub(crate) fn optical() -> Spec {
-    let text = fs::read_to_string(concat!(
-        env!("CARGO_MANIFEST_DIR"),
-        "/../designs/optical.toml"
-    ));
-    Spec::from_toml(&text.expect("designs/optical.toml"), "optical.toml").expect("a shipped design")
+    shipped("optical")
+}
+
+/// A design of `designs/` by its name.
+pub(crate) fn shipped(name: &str) -> Spec {
+    let file = format!("{}/../designs/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+    let text = fs::read_to_string(&file).unwrap_or_else(|error| panic!("{name}.toml: {error}"));
+    Spec::from_toml(&text, &format!("{name}.toml")).expect("a shipped design")
 }
 
 /// Writes what `nonius build` writes; `rows` samples of every stimulus.
