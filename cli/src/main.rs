@@ -9,6 +9,7 @@ mod paper;
 mod recording_args;
 mod simulate;
 mod target;
+mod verify;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -42,10 +43,7 @@ enum Command {
     /// What the simulation of a recorded sensor gets wrong, the causes by name, and what they gain.
     Diagnose(Box<diagnose::Diagnose>),
     /// Runs the chip in a folder in Icarus and in Verilator against the model.
-    Verify {
-        /// What `build` wrote.
-        dir: PathBuf,
-    },
+    Verify(verify::Verify),
 }
 
 fn main() -> ExitCode {
@@ -55,7 +53,7 @@ fn main() -> ExitCode {
         Command::Simulate(args) => simulate::run(&args).map(|()| true),
         Command::Calibrate(args) => calibrate::run(&args).map(|()| true),
         Command::Diagnose(args) => diagnose::run(&args),
-        Command::Verify { dir } => verify(&dir),
+        Command::Verify(args) => verify::run(&args),
     };
     match done {
         Ok(true) => ExitCode::SUCCESS,
@@ -65,29 +63,4 @@ fn main() -> ExitCode {
             ExitCode::from(2)
         }
     }
-}
-
-fn verify(dir: &std::path::Path) -> anyhow::Result<bool> {
-    let report = nonius_hdl::verify::verify(
-        dir,
-        &nonius_hdl::verify::Options::default(),
-        &nonius_hdl::progress::silent,
-    )?;
-    for run in &report.runs {
-        println!("{}: {}", run.tool, if run.passed { "PASS" } else { "FAIL" });
-        for stimulus in &run.stimuli {
-            println!(
-                "  {} {}",
-                if stimulus.passed { "PASS" } else { "FAIL" },
-                stimulus.name
-            );
-        }
-        if let Some(failure) = &run.failure {
-            println!("  {failure}");
-        }
-    }
-    for disagreement in &report.disagreements {
-        println!("{disagreement}");
-    }
-    Ok(report.passed)
 }

@@ -67,7 +67,8 @@ fn variants() -> Vec<Spec> {
 /// Nobody's linter has anything to say, without waivers: Verilator -Wall, Icarus -Wall, Yosys check.
 #[test]
 fn every_variant_is_clean() {
-    for spec in variants() {
+    let others = ["magnetic", "interferometer"].map(shipped);
+    for spec in variants().into_iter().chain(others) {
         let dir = tempfile::tempdir().expect("scratch folder");
         write(&spec, 2, dir.path());
         let chip = ChipDir::open(dir.path()).expect("a chip");

@@ -1,0 +1,129 @@
+//! `nonius verify`: the chip in a folder in other people's simulators, against the model.
+
+use std::path::PathBuf;
+use std::sync::Mutex;
+use std::time::Duration;
+
+use anyhow::Result;
+use clap::{Args, ValueEnum};
+use indicatif::ProgressBar;
+use nonius_hdl::progress::Event;
+use nonius_hdl::tools::Tool;
+use nonius_hdl::verify::{Options, Report};
+
+/// Arguments of `nonius verify`.
+#[derive(Args)]
+pub(crate) struct Verify {
+    /// What `build` wrote.
+    dir: PathBuf,
+    /// Which simulators to run.
+    #[arg(long, value_enum, default_value_t = Simulator::Both)]
+    simulator: Simulator,
+    /// Print the result as JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Simulator {
+    /// Icarus Verilog and Verilator, and each against the other.
+    Both,
+    /// Icarus Verilog.
+    Icarus,
+    /// Verilator.
+    Verilator,
+}
+
+/// Whether everything held.
+pub(crate) fn run(args: &Verify) -> Result<bool> {
+    let options = Options {
+        icarus: args.simulator != Simulator::Verilator,
+        verilator: args.simulator != Simulator::Icarus,
+        ..Options::default()
+    };
+    let report = {
+        let shown = Shown::new();
+        nonius_hdl::verify::verify(&args.dir, &options, &|event| shown.follow(event))?
+    };
+    if args.json {
+        println!("{}", serde_json::to_string_pretty(&report)?);
+    } else {
+        print(&report);
+    }
+    Ok(report.passed)
+}
+
+fn print(report: &Report) {
+    for run in &report.runs {
+        println!("{} {}: {}", run.tool, run.version, verdict(run.passed));
+        for stimulus in &run.stimuli {
+            println!("  {} {}", verdict(stimulus.passed), stimulus.name);
+            if !stimulus.passed {
+                println!("       {}", stimulus.detail);
+            }
+        }
+        if let Some(failure) = &run.failure {
+            println!("  {failure}");
+        }
+        for warning in &run.warnings {
+            println!("  warning: {warning}");
+        }
+    }
+    for disagreement in &report.disagreements {
+        println!("{disagreement}");
+    }
+}
+
+fn verdict(passed: bool) -> &'static str {
+    if passed { "PASS" } else { "FAIL" }
+}
+
+/// What the tools are doing, in one line; on a terminal only.
+struct Shown {
+    line: ProgressBar,
+    doing: Mutex<Vec<(Tool, &'static str)>>,
+}
+
+impl Shown {
+    fn new() -> Self {
+        let line = ProgressBar::new_spinner();
+        line.enable_steady_tick(Duration::from_millis(100));
+        Self {
+            line,
+            doing: Mutex::default(),
+        }
+    }
+
+    fn follow(&self, event: Event) {
+        let (tool, what) = match event {
+            Event::Building(tool) => (tool, Some("compiles")),
+            Event::Simulating(tool) => (tool, Some("simulates")),
+            Event::Finished(tool) => (tool, None),
+            Event::Synthesising | Event::Placing { .. } => return,
+        };
+        let Ok(mut doing) = self.doing.lock() else {
+            return;
+        };
+        // Icarus is two programs, one of which takes over from the other.
+        let family = |tool| {
+            if tool == Tool::Vvp {
+                Tool::Iverilog
+            } else {
+                tool
+            }
+        };
+        doing.retain(|(known, _)| family(*known) != family(tool));
+        doing.extend(what.map(|what| (tool, what)));
+        let text: Vec<_> = doing
+            .iter()
+            .map(|(tool, what)| format!("{tool} {what}"))
+            .collect();
+        self.line.set_message(text.join(", "));
+    }
+}
+
+impl Drop for Shown {
+    fn drop(&mut self) {
+        self.line.finish_and_clear();
+    }
+}
