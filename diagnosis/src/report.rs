@@ -36,11 +36,13 @@ struct Section<'a> {
 /// # Errors
 /// Only a defect of the template.
 pub fn report(found: &Diagnosis, hash: &str, version: &str) -> Result<String, askama::Error> {
-    let named: Vec<String> = found
-        .findings
-        .iter()
-        .map(|f| f.cause.replace('_', " "))
-        .collect();
+    let mut named: Vec<String> = vec![];
+    for finding in &found.findings {
+        let name = finding.cause.replace('_', " ");
+        if !named.contains(&name) {
+            named.push(name);
+        }
+    }
     let headline = match named.as_slice() {
         [] => "Nothing but the five parameters and white noise".to_owned(),
         [one] => format!("Found: {one}"),

@@ -24,8 +24,6 @@ pub(crate) struct Accepted {
     pub(crate) candidate: Candidate,
     first: usize,
     confounded: Vec<String>,
-    log_p: f64,
-    gain: f64,
 }
 
 /// What cannot be named.
@@ -145,8 +143,6 @@ pub(crate) fn select(context: &Context, system: &System) -> Selection {
             candidate: best.candidate,
             first,
             confounded: rivals,
-            log_p: best.log_p,
-            gain: best.gain,
         });
     }
     unnamed.extend(leftover(context, system, &fit, &closed));
@@ -306,16 +302,21 @@ impl Selection {
                 .map(|(_, c)| c.clone())
                 .collect();
             let without = Fit::new(system, without);
-            let p_value = accepted.log_p.exp();
+            // What the others explain as well in the end is no finding of its own.
+            let gain = 0.5 * (self.fit.solution.explained - without.solution.explained);
+            let freedom = self.fit.solution.rank.saturating_sub(without.solution.rank);
+            let trials = accepted.candidate.trials * KINDS;
+            let log_p = after_trials(log_tail(2.0 * gain, freedom), trials);
+            if freedom == 0 || log_p > SHOWN.ln() {
+                continue;
+            }
+            let p_value = log_p.exp();
             let seen = (accepted.candidate.evidence)(&parameters);
             list.push(Finding {
                 cause: accepted.candidate.name.into(),
                 confounded_with: accepted.confounded.clone(),
                 p_value,
-                evidence: format!(
-                    "{seen}; it raises the log-likelihood by {:.1}",
-                    accepted.gain
-                ),
+                evidence: format!("{seen}; it raises the log-likelihood by {gain:.1}"),
                 parameters,
                 gain: Gain {
                     held_out_residual_rms_before: without.held_out(system),
@@ -324,7 +325,7 @@ impl Selection {
                     position_error_rms_after_rad: self.fit.position_error(system),
                 },
                 chip: accepted.candidate.chip,
-                weight: accepted.gain - i as f64 * 1e-9,
+                weight: gain - i as f64 * 1e-9,
             });
         }
         list.sort_by(|a, b| b.weight.total_cmp(&a.weight));
