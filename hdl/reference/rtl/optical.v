@@ -1,0 +1,773 @@
+// optical: sin/cos interpolation chip that calibrates itself: linear optical encoder, 20 um, 12-bit ADC at 1 MS/s
+//
+// A digital loop follows the angle alpha of a sin/cos sensor: the corrected pair is turned back by the estimate
+// alpha_hat, what is left is the phase error e, and the loop filter turns e into the next step of the estimate. The
+// radial residual rho shows what the correction still misses and moves its parameters theta.
+// After S. Balemi, "Automatic calibration of sinusoidal encoder signals", IFAC 2005; equation numbers are the paper's.
+//
+// Design 330a69fa3b46: 16 products on 1 multiplier, 19 clocks per sample.
+//
+// Formats: sW.F is a two's complement number of W bits, F of them behind the point; uW.F has no sign and is kept here
+// with a zero in front, so that every number is signed. Angles are in turns of a scale period.
+//
+// A value x is computed in one step on the wire x, or on x_now where the register x keeps it for later steps and for
+// the testbench. All registers of the chip change together at the end of the last step: a sample is one transaction,
+// and samples never overlap. Outputs are those of the last sample from `valid` until the next `sample_valid`.
+//
+// step | in the multiplier            | computed from it
+// -----+------------------------------+------------------------------------------------------------------------
+//    0 | -                            | sine_phase upper_half odd_quadrant quarter_phase quarter_phase_mirrored
+//      |                              | sin_address sin_inside cos_address cos_inside theta_1 theta_3 theta_5
+//      |                              | last_gear periods_modulo_4 sector sector_relative sector_ahead
+//      |                              | sector_behind
+//    1 | loop_ab * error_previous     | sin_value sin_slope y_c y_s counting whole_period travel_clear
+//    2 | theta_1 * y_c                | cos_value cos_slope drift
+//    3 | cos_slope * cos_inside       | c_exact c
+//    4 | theta_3 * y_s                | cos_magnitude cos_hat
+//    5 | sin_slope * sin_inside       |
+//    6 | theta_5 * y_c                | sin_magnitude sin_hat
+//    7 | c * cos_hat                  | s_exact s
+//    8 | s * sin_hat                  |
+//    9 | s * cos_hat                  | rho_exact rho flip
+//   10 | c * sin_hat                  | alpha_hat_turned
+//   11 | cos_hat * rho                | e_exact e_seen e
+//   12 | sin_hat * rho                | in_window e_change fresh rho_c residual_large period_tick gamma_restart
+//      |                              | gamma_shift gear_periods_again
+//   13 | loop_a * e_change            | level_moved level_full level_empty narrower rho_s gradient_2 step_2
+//   14 | y_c * rho_c                  | kick gradient_4 step_4
+//   15 | y_s * rho_s                  | speed gradient_1 step_1
+//   16 | y_c * rho_s                  | alpha_hat_sum carry gradient_3 step_3
+//   17 | -                            | gradient_5 step_5
+//   18 | -                            |
+//
+// Coefficients, by name in the comments below:
+//     loop_a             0.014132976531982422    Loop coefficient a, turns per radian.
+//     loop_ab            0.0006010159850120544   Loop coefficients a + b, turns per radian.
+//     theta_1_nominal    1.25                    Nominal θ1.
+//     theta_3_nominal    1.25                    Nominal θ3.
+//     quarter_turn       0.24999618530273438     A quarter turn, less one bit of the sine phase.
+//     half_bit           0.0000019073486328125   Half a bit of the sine phase: what was cut off, on average.
+//     half_segment       0.001953125             Half a sine table segment.
+//     lock_error         0.375                   Largest |e| in lock, radians.
+//     lock_residual      0.5625                  Largest |ρ| in lock.
+//     weak_signal        0.25                    Corrected signals below this are lost.
+//     restart_residual   0.25                    |ρ| above this restarts the γ gears.
+//     direction_rate     0.0000152587890625      Rate below which the direction does not change, turns per sample.
+//     lock_down          -8                      What a bad sample adds to the lock level.
+//     lock_full          63                      The full lock level.
+//     lock_restart       31                      Lock level after a change of loop gear.
+//     loop_gear_last     3                       Last loop gear.
+//     gamma_gear_last    6                       Last γ gear.
+//     gear_periods_last  1                       Periods of travel per γ gear, less one.
+//     unit_radius        0.9999923706054688      The radius 1, less half a bit of the residual.
+//     zero               0                       0.
+//     one                1                       1.
+//     half               0.5                     ½.
+//     quarter            0.25                    ¼.
+//     minus_weak_signal  -0.25
+//     minus_lock_error   -0.375
+//     minus_lock_residual -0.5625
+//     minus_one          -1
+//     minus_direction_rate -0.0000152587890625
+//     minus_restart_residual -0.25
+
+`default_nettype none
+`timescale 1ns / 1ps
+
+module optical (
+    input  wire clk, // every register changes at the rising edge
+    input  wire rst_n, // asynchronous reset, active low
+    input  wire sample_valid, // one clock per sample, 19 clocks apart or more; the inputs below are valid
+    input  wire [11:0] adc_cos, // code of the cosine channel, two's complement
+    input  wire [11:0] adc_sin, // code of the sine channel, two's complement
+    input  wire preset, // this sample's period becomes number 0; clears lock_lost
+    input  wire calibrate, // this sample may move the parameters
+    output wire [58:0] position, // periods, s59.27: whole periods and alpha_hat for the next sample
+    output reg signed [17:0] theta_1, // θ1 as multiplied. s18.16
+    output reg signed [24:0] theta_2, // θ2. s25.26
+    output reg signed [17:0] theta_3, // θ3 as multiplied. s18.16
+    output reg signed [24:0] theta_4, // θ4. s25.26
+    output reg signed [17:0] theta_5, // θ5 as multiplied. s18.19
+    output reg signed [25:0] speed, // Position increment of this sample, turns: the speed. s26.27
+    output reg locked, // The loop follows.
+    output reg lock_lost, // The lock was lost since the last zero preset or reset.
+    output reg signal_lost, // Both corrected signals are too small.
+    output reg direction, // The scale runs backwards.
+    output reg valid // one clock per sample: the outputs are those of the sample
+);
+
+    // Registers of the chip. All are zero after reset.
+    reg signed [27:0] alpha_hat; // α̂, the phase estimate: turns in [0, 1).
+    reg signed [31:0] count; // Whole periods; the unit is the counter's whole range.
+    reg signed [25:0] rate; // Phase increment per sample, turns.
+    reg signed [17:0] error_previous; // e one sample ago, radians.
+    reg signed [25:0] theta_1_deviation; // θ1 less its nominal value.
+    reg signed [24:0] theta_2_deviation; // θ2.
+    reg signed [25:0] theta_3_deviation; // θ3 less its nominal value.
+    reg signed [24:0] theta_4_deviation; // θ4.
+    reg signed [24:0] theta_5_deviation; // θ5.
+    reg signed [6:0] lock_level; // Confidence of the lock detector.
+    reg signed [2:0] loop_gear; // Loop gear: 0 widest, the last is the designed bandwidth.
+    reg signed [3:0] gamma_gear; // γ gear: 0 largest.
+    reg signed [1:0] gear_periods; // Whole periods travelled in this γ gear.
+    reg signed [7:0] travel_origin; // Position, modulo 4 periods, where the map of sectors was last cleared.
+    reg signed [7:0] travel_low; // Lowest sector seen since, relative to the origin.
+    reg signed [7:0] travel_high; // Highest sector seen since, relative to the origin.
+    reg disturbed; // The residual was large in this period of travel.
+
+    // The sample's inputs, held
+    reg signed [11:0] adc_cos_held; // ADC code of the cosine channel, as a fraction of the ADC's range.
+    reg signed [11:0] adc_sin_held; // ADC code of the sine channel, as a fraction of the ADC's range.
+    reg preset_held; // Zero preset: this sample's period becomes number 0 and the lock-lost flag is cleared.
+    reg calibrate_held; // Calibration may update the parameters.
+
+    // Values that later steps or the testbench read
+    reg upper_half;
+    reg signed [10:0] sin_inside;
+    reg signed [19:0] sin_value;
+    reg signed [14:0] sin_slope;
+    reg signed [16:0] cos_address;
+    reg signed [10:0] cos_inside;
+    reg signed [19:0] cos_value;
+    reg signed [17:0] sin_hat;
+    reg cos_hat_condition;
+    reg signed [17:0] cos_hat;
+    reg signed [28:0] s_exact_sum;
+    reg signed [17:0] c;
+    reg signed [17:0] s;
+    reg signal_lost_next_condition_8;
+    reg signal_lost_next_condition_7;
+    reg signal_lost_next_condition_5;
+    reg signal_lost_next_condition_4;
+    reg signal_lost_next_condition_3;
+    reg signal_lost_next;
+    reg signed [34:0] rho_exact_difference;
+    reg signed [17:0] rho;
+    reg signed [34:0] s_times_cos_hat;
+    reg signed [17:0] e;
+    reg in_window_condition_3;
+    reg in_window_condition;
+    reg in_window;
+    reg flip_condition;
+    reg signed [7:0] level_moved_sum;
+    reg level_empty;
+    reg last_gear_condition;
+    reg last_gear;
+    reg signed [2:0] loop_gear_next_bits;
+    reg locked_next;
+    reg signed [6:0] lock_level_next;
+    reg signed [2:0] loop_gear_next;
+    reg signed [25:0] kick;
+    reg signed [25:0] drift;
+    reg signed [26:0] speed_sum_2;
+    reg signed [1:0] alpha_hat_turned_chosen;
+    reg signed [28:0] alpha_hat_turned;
+    reg signed [27:0] alpha_hat_next;
+    reg signed [31:0] count_next;
+    reg direction_next_condition_2;
+    reg value_condition_4;
+    reg direction_next;
+    reg counting;
+    reg signed [7:0] sector;
+    reg whole_period_condition;
+    reg whole_period;
+    reg travel_clear;
+    reg fresh_condition_3;
+    reg fresh_condition_2;
+    reg signed [7:0] travel_low_next_chosen;
+    reg signed [7:0] travel_high_next_chosen;
+    reg fresh;
+    reg signed [17:0] rho_c;
+    reg signed [17:0] rho_s;
+    reg signed [26:0] step_5;
+    reg signed [25:0] step_1;
+    reg signed [25:0] theta_1_deviation_next;
+    reg signed [23:0] step_2;
+    reg signed [24:0] theta_2_deviation_next;
+    reg signed [25:0] step_3;
+    reg signed [25:0] theta_3_deviation_next;
+    reg signed [23:0] step_4;
+    reg signed [24:0] theta_4_deviation_next;
+    reg residual_large_condition;
+    reg residual_large;
+    reg gamma_restart;
+    reg value_condition_2;
+    reg gamma_shift_condition_2;
+    reg gamma_shift;
+    reg signed [1:0] gear_periods_next_chosen_2;
+    reg gear_periods_again;
+    reg signed [3:0] gamma_gear_next;
+    reg signed [1:0] gear_periods_next;
+    reg disturbed_next_condition;
+    reg disturbed_next;
+    reg lock_lost_next_condition_3;
+    reg lock_lost_next_condition;
+    reg lock_lost_next;
+
+    // Operands and products
+    reg signed [17:0] operand_a_0;
+    reg signed [17:0] operand_b_0;
+    reg signed [35:0] product_0;
+
+    // Step counter: a sample starts in step 0 and takes 19 steps
+    reg [4:0] step;
+    wire start = (step == 5'd0) & sample_valid;
+    wire last = step == 5'd18;
+
+    always @(posedge clk or negedge rst_n)
+        if (!rst_n) begin
+            step <= 5'd0;
+            valid <= 1'b0;
+        end else begin
+            valid <= last;
+            if (last)
+                step <= 5'd0;
+            else if (start | (step != 5'd0))
+                step <= step + 5'd1;
+        end
+
+    always @(posedge clk)
+        if (start) begin
+            adc_cos_held <= adc_cos;
+            adc_sin_held <= adc_sin;
+            preset_held <= preset;
+            calibrate_held <= calibrate;
+        end
+
+    // Table sine_table: 64 rows of 33 bits, a row is there one step after its address
+    reg [32:0] sine_table [0:63];
+    initial $readmemh("coefficients/sine_table.mem", sine_table);
+    reg [5:0] sine_table_address;
+    reg [32:0] sine_table_row;
+
+    always @*
+        case (step)
+            5'd0: sine_table_address = sin_address[15:10];
+            default: sine_table_address = cos_address[15:10];
+        endcase
+
+    always @(posedge clk)
+        sine_table_row <= sine_table[sine_table_address];
+
+    // Sine and cosine of the estimate
+    //   sin(x) = value[x] + slope[x] (x - centre), quarter wave, folded by quadrant
+    //   (paper section 3, for the phase detector)
+    wire signed [18:0] sine_phase = alpha_hat[27:9]; // u18.18, step 0
+    wire upper_half_now = ~($signed(sine_phase[18:17]) < 2'sd1); // step 0
+    wire signed [17:0] odd_quadrant_bits = {1'b0, sine_phase[16:0]}; // u17.18, step 0
+    wire odd_quadrant = ~($signed(odd_quadrant_bits[17:16]) < 2'sd1); // step 0
+    wire signed [16:0] quarter_phase = {1'b0, sine_phase[15:0]}; // u16.18, step 0
+    wire signed [16:0] quarter_phase_mirrored = {1'b0, ~quarter_phase[15:0]}; // s17.18, step 0
+    wire signed [16:0] sin_address = odd_quadrant ? quarter_phase_mirrored : quarter_phase; // s17.18, step 0
+    wire signed [10:0] sin_inside_bits = {1'b0, sin_address[9:0]}; // u10.18, step 0
+    wire signed [11:0] sin_inside_sum = {sin_inside_bits, 1'h1}; // s12.19, step 0
+    wire signed [10:0] sin_inside_now = sin_inside_sum[10:0] - 11'sh400; // s11.19, step 0
+    wire signed [19:0] sin_value_now = {1'b0, sine_table_row[32:14]}; // u19.18, step 1
+    wire signed [14:0] sin_slope_now = {1'b0, sine_table_row[13:0]}; // u14.11, step 1
+    wire signed [24:0] sin_slope_times_sin_inside = product_0[24:0]; // s25.30, step 6
+    wire signed [31:0] sin_magnitude_sum = {{7{sin_slope_times_sin_inside[24]}}, sin_slope_times_sin_inside} + {sin_value, 12'b0}; // s32.30, step 6
+    wire signed [17:0] sin_magnitude = sin_magnitude_sum[31:14]; // s18.16, step 6
+    wire signed [16:0] cos_address_now = odd_quadrant ? quarter_phase : quarter_phase_mirrored; // s17.18, step 0
+    wire signed [10:0] cos_inside_bits = {1'b0, cos_address_now[9:0]}; // u10.18, step 0
+    wire signed [11:0] cos_inside_sum = {cos_inside_bits, 1'h1}; // s12.19, step 0
+    wire signed [10:0] cos_inside_now = cos_inside_sum[10:0] - 11'sh400; // s11.19, step 0
+    wire signed [19:0] cos_value_now = {1'b0, sine_table_row[32:14]}; // u19.18, step 2
+    wire signed [14:0] cos_slope = {1'b0, sine_table_row[13:0]}; // u14.11, step 2
+    wire signed [24:0] cos_slope_times_cos_inside = product_0[24:0]; // s25.30, step 4
+    wire signed [31:0] cos_magnitude_sum = {{7{cos_slope_times_cos_inside[24]}}, cos_slope_times_cos_inside} + {cos_value, 12'b0}; // s32.30, step 4
+    wire signed [17:0] cos_magnitude = cos_magnitude_sum[31:14]; // s18.16, step 4
+    wire signed [17:0] sin_hat_negated = -sin_magnitude; // s18.16, step 6
+    wire signed [17:0] sin_hat_now = upper_half ? sin_hat_negated : sin_magnitude; // s18.16, step 6
+    wire cos_hat_condition_now = upper_half_now ^ odd_quadrant; // step 0
+    wire signed [17:0] cos_hat_negated = -cos_magnitude; // s18.16, step 4
+    wire signed [17:0] cos_hat_now = cos_hat_condition ? cos_hat_negated : cos_magnitude; // s18.16, step 4
+
+    // ADC codes
+    //   y = code, as a fraction of the range that the nominal amplitude needs
+    //   (equation (4): y_c = a_c cos(alpha) + b_c, y_s = a_s sin(alpha - beta) + b_s)
+    wire signed [11:0] y_c = adc_cos_held; // s12.11, step 1
+    wire signed [11:0] y_s = adc_sin_held; // s12.11, step 1
+
+    // Parameters as multiplied
+    //   theta = nominal + deviation, rounded to the width of the signals
+    //   (paper section 5.3)
+    wire signed [27:0] theta_1_rounded = 28'sh5000200 + {{2{theta_1_deviation[25]}}, theta_1_deviation};
+    wire signed [17:0] theta_1_now = theta_1_rounded[27:10]; // s18.16, step 0
+    wire signed [27:0] theta_3_rounded = 28'sh5000200 + {{2{theta_3_deviation[25]}}, theta_3_deviation};
+    wire signed [17:0] theta_3_now = theta_3_rounded[27:10]; // s18.16, step 0
+    wire signed [18:0] theta_5_rounded = {theta_5_deviation[24], theta_5_deviation[24:7]} + {18'b0, theta_5_deviation[6]};
+    wire signed [17:0] theta_5_now = ((&theta_5_rounded[18:17]) | ~(|theta_5_rounded[18:17])) ? theta_5_rounded[17:0] : {theta_5_rounded[18], {17{~theta_5_rounded[18]}}}; // s18.19, step 0
+
+    // Correction
+    //   c = theta_1 y_c + theta_2,  s = theta_3 y_s + theta_4 + theta_5 y_c
+    //   (paper section 5.3)
+    wire signed [28:0] theta_1_times_y_c = product_0[28:0]; // s29.27, step 3
+    wire signed [28:0] c_exact = theta_1_times_y_c + {{3{theta_2_deviation[24]}}, theta_2_deviation, 1'b0}; // s29.27, step 3
+    wire signed [28:0] theta_3_times_y_s = product_0[28:0]; // s29.27, step 5
+    wire signed [28:0] s_exact_sum_now = theta_3_times_y_s + {{3{theta_4_deviation[24]}}, theta_4_deviation, 1'b0}; // s29.27, step 5
+    wire signed [29:0] theta_5_times_y_c = product_0[29:0]; // s30.30, step 7
+    wire signed [32:0] s_exact = {s_exact_sum[28], s_exact_sum, 3'b0} + {{3{theta_5_times_y_c[29]}}, theta_5_times_y_c}; // s33.30, step 7
+    wire signed [17:0] c_rounded = c_exact[28:11] + {17'b0, c_exact[10]};
+    wire signed [17:0] c_now = c_rounded; // s18.16, step 3
+    wire signed [18:0] s_rounded = s_exact[32:14] + {18'b0, s_exact[13]};
+    wire signed [17:0] s_now = ((&s_rounded[18:17]) | ~(|s_rounded[18:17])) ? s_rounded[17:0] : {s_rounded[18], {17{~s_rounded[18]}}}; // s18.16, step 7
+
+    // Loss of signal
+    //   |c| and |s| both below the threshold
+    wire signal_lost_next_condition_8_now = $signed(c_now[17:14]) < 4'sd1; // step 3
+    wire signal_lost_next_condition_7_now = $signed(c_now[17:14]) < 4'shf; // step 3
+    wire signal_lost_next_condition_5_now = signal_lost_next_condition_8 & ~signal_lost_next_condition_7; // step 4
+    wire signal_lost_next_condition_4_now = $signed(s_now[17:14]) < 4'sd1; // step 7
+    wire signal_lost_next_condition_3_now = $signed(s_now[17:14]) < 4'shf; // step 7
+    wire signal_lost_next_now = signal_lost_next_condition_5 & (signal_lost_next_condition_4 & ~signal_lost_next_condition_3); // step 8
+
+    // Radial residual
+    //   rho = c cos(alpha_hat) + s sin(alpha_hat) - 1, the half bit of rounding in the 1
+    //   (paper section 5.5.1, n^T r)
+    wire signed [34:0] c_times_cos_hat = product_0[34:0]; // s35.32, step 8
+    wire signed [34:0] rho_exact_difference_now = c_times_cos_hat - 35'shffff8000; // s35.32, step 8
+    wire signed [34:0] s_times_sin_hat = product_0[34:0]; // s35.32, step 9
+    wire signed [35:0] rho_exact = {rho_exact_difference[34], rho_exact_difference} + {s_times_sin_hat[34], s_times_sin_hat}; // s36.32, step 9
+    wire signed [17:0] rho_now = ((&rho_exact[35:33]) | ~(|rho_exact[35:33])) ? rho_exact[33:16] : {rho_exact[35], {17{~rho_exact[35]}}}; // s18.16, step 9
+
+    // Phase detector
+    //   e = s cos(alpha_hat) - c sin(alpha_hat)
+    //   (paper section 3)
+    wire signed [34:0] s_times_cos_hat_now = product_0[34:0]; // s35.32, step 10
+    wire signed [34:0] c_times_sin_hat = product_0[34:0]; // s35.32, step 11
+    wire signed [35:0] e_exact = {s_times_cos_hat[34], s_times_cos_hat} - {c_times_sin_hat[34], c_times_sin_hat}; // s36.32, step 11
+    wire signed [19:0] e_seen_rounded = e_exact[35:16] + {19'b0, e_exact[15]};
+    wire signed [17:0] e_seen = ((&e_seen_rounded[19:17]) | ~(|e_seen_rounded[19:17])) ? e_seen_rounded[17:0] : {e_seen_rounded[19], {17{~e_seen_rounded[19]}}}; // s18.16, step 11
+    wire signed [17:0] e_now = signal_lost_next ? 18'sd0 : e_seen; // s18.16, step 11
+
+    // Lock window
+    //   |e| and |rho| below their limits, signal present
+    //   (calibration needs lock: the update would otherwise drive the gains to zero)
+    wire in_window_condition_3_now = ($signed(rho_now[17:12]) < 6'sd9) & ~($signed(rho_now[17:12]) < 6'sh37); // step 9
+    wire in_window_condition_now = ~signal_lost_next_now; // step 8
+    wire in_window_now = ((($signed(e[17:13]) < 5'sd3) & ~($signed(e[17:13]) < 5'sh1d)) & in_window_condition_3) & in_window_condition; // step 12
+    wire flip_condition_now = ~(locked | signal_lost_next_now); // step 8
+    wire flip = ($signed(rho_now[17:16]) < 2'sh3) & flip_condition; // step 9
+
+    // Lock level and loop gear
+    //   level' = level + 1 if good, else level - 8; full: narrower loop, empty: widest loop
+    wire signed [3:0] level_moved_chosen = in_window_now ? 4'sd1 : 4'sh8; // s4.0, step 12
+    wire signed [7:0] level_moved_sum_now = {lock_level[6], lock_level} + {{4{level_moved_chosen[3]}}, level_moved_chosen}; // s8.0, step 12
+    wire signed [6:0] level_moved = level_moved_sum[7] ? 7'sd0 : (level_moved_sum[6] ? {1'b0, {6{1'b1}}} : {1'b0, level_moved_sum[5:0]}); // u6.0, step 13
+    wire level_full = ~(level_moved < 7'sh3f); // step 13
+    wire level_empty_now = level_moved < 7'sd1; // step 13
+    wire last_gear_condition_now = loop_gear < 3'sd3; // step 0
+    wire last_gear_now = ~last_gear_condition_now; // step 0
+    wire narrower = level_full & last_gear_condition; // step 13
+    wire signed [1:0] loop_gear_next_chosen_2 = narrower ? 2'sd1 : 2'sd0; // s2.0, step 13
+    wire signed [3:0] loop_gear_next_sum = {loop_gear[2], loop_gear} + {{2{loop_gear_next_chosen_2[1]}}, loop_gear_next_chosen_2}; // s4.0, step 13
+    wire signed [2:0] loop_gear_next_bits_now = {1'b0, loop_gear_next_sum[1:0]}; // u2.0, step 13
+    wire signed [2:0] loop_gear_next_chosen = level_empty ? 3'sd0 : loop_gear_next_bits; // s3.0, step 14
+    wire signed [6:0] lock_level_next_chosen = narrower ? 7'sh1f : level_moved; // s7.0, step 13
+    wire locked_next_now = (locked | (level_full & last_gear)) & ~level_empty_now; // step 13
+    wire signed [6:0] lock_level_next_now = lock_level_next_chosen; // u6.0, step 13
+    wire signed [2:0] loop_gear_next_now = loop_gear_next_chosen; // u2.0, step 14
+
+    // Loop filter
+    //   rate' = p rate + a (e - e_1) + (a + b) e_1, wider by powers of two in acquisition
+    //   (paper equations (2) and (9), sections 4.1 to 4.3)
+    wire signed [18:0] e_change_difference = {e[17], e} - {error_previous[17], error_previous}; // s19.16, step 12
+    wire signed [17:0] e_change = ((&e_change_difference[18:17]) | ~(|e_change_difference[18:17])) ? e_change_difference[17:0] : {e_change_difference[18], {17{~e_change_difference[18]}}}; // s18.16, step 12
+    wire signed [34:0] loop_a_times_e_change = product_0[34:0]; // s35.39, step 14
+    wire signed [34:0] kick_scaled = loop_a_times_e_change; // s35.36, step 14
+    wire signed [26:0] kick_unshifted = kick_scaled[34:8];
+    wire signed [26:0] kick_shifted = kick_unshifted >>> loop_gear[1:0];
+    wire signed [25:0] kick_rounded = kick_shifted[26:1] + {25'b0, kick_shifted[0]};
+    wire signed [25:0] kick_now = kick_rounded; // s26.27, step 14
+    wire signed [34:0] loop_ab_times_error_previous = product_0[34:0]; // s35.43, step 2
+    wire signed [34:0] drift_scaled = loop_ab_times_error_previous; // s35.37, step 2
+    wire signed [25:0] drift_unshifted = drift_scaled[34:9];
+    wire signed [25:0] drift_shifted = drift_unshifted >>> {loop_gear[1:0], 1'b0};
+    wire signed [24:0] drift_rounded = drift_shifted[25:1] + {24'b0, drift_shifted[0]};
+    wire signed [25:0] drift_now = {drift_rounded[24], drift_rounded}; // s26.27, step 2
+    wire signed [26:0] speed_sum_2_now = {rate[25], rate} + {drift[25], drift}; // s27.27, step 3
+    wire signed [27:0] speed_sum = {speed_sum_2[26], speed_sum_2} + {{2{kick[25]}}, kick}; // s28.27, step 15
+    wire signed [25:0] speed_now = ((&speed_sum[27:25]) | ~(|speed_sum[27:25])) ? speed_sum[25:0] : {speed_sum[27], {25{~speed_sum[27]}}}; // s26.27, step 15
+
+    // Position
+    //   alpha_hat' = alpha_hat + rate' (mod 1), count' = count + carry
+    //   (paper equation (9))
+    wire signed [1:0] alpha_hat_turned_chosen_now = flip ? 2'sd1 : 2'sd0; // s2.1, step 9
+    wire signed [28:0] alpha_hat_turned_now = {alpha_hat[27], alpha_hat} + {alpha_hat_turned_chosen[1], alpha_hat_turned_chosen, 26'b0}; // s29.27, step 10
+    wire signed [28:0] alpha_hat_sum = alpha_hat_turned + {{3{speed[25]}}, speed}; // s29.27, step 16
+    wire signed [27:0] alpha_hat_next_now = {1'b0, alpha_hat_sum[26:0]}; // u27.27, step 16
+    wire signed [2:0] carry = {alpha_hat_sum[28], alpha_hat_sum[28:27]}; // s3.0, step 16
+    wire signed [31:0] count_next_chosen = preset_held ? 32'sd0 : count; // s32.32, step 16
+    wire signed [1:0] count_next_scaled = carry[1:0]; // s2.32, step 16
+    wire signed [32:0] count_next_sum = {count_next_chosen[31], count_next_chosen} + {{31{count_next_scaled[1]}}, count_next_scaled}; // s33.32, step 16
+    wire signed [31:0] count_next_now = count_next_sum[31:0]; // s32.32, step 16
+
+    // Direction
+    //   sign of the rate, with a dead band
+    wire direction_next_condition_2_now = $signed(speed_now[25:11]) < 15'sh7fff; // step 15
+    wire value_condition_4_now = $signed(speed_now[25:11]) < 15'sd1; // step 15
+    wire direction_next_now = direction_next_condition_2 | (direction & value_condition_4); // step 16
+    wire counting_now = locked & calibrate_held; // step 1
+
+    // Travel
+    //   a sector of the period is fresh until it was used once since the last whole period
+    //   (paper section 5.5: static measurements may bias the estimates)
+    wire signed [1:0] periods_modulo_4_bits = count[1:0]; // s2.32, step 0
+    wire signed [1:0] periods_modulo_4 = periods_modulo_4_bits; // s2.0, step 0
+    wire signed [6:0] sector_bits = alpha_hat[27:21]; // u6.6, step 0
+    wire signed [7:0] sector_now = {periods_modulo_4, 6'b0} + {sector_bits[6], sector_bits}; // s8.6, step 0
+    wire signed [8:0] sector_relative_difference = {sector_now[7], sector_now} - {travel_origin[7], travel_origin}; // s9.6, step 0
+    wire signed [7:0] sector_relative = sector_relative_difference[7:0]; // s8.6, step 0
+    wire whole_period_condition_now = ~($signed(sector_relative[7:6]) < 2'sd1) | ~(8'shc0 < sector_relative); // step 0
+    wire whole_period_now = whole_period_condition & counting_now; // step 1
+    wire signed [8:0] sector_ahead_sum = {travel_low[7], travel_low} + 9'sh40; // s9.6, step 0
+    wire sector_ahead = (travel_high < sector_relative) & ($signed({sector_relative[7], sector_relative}) < sector_ahead_sum); // step 0
+    wire signed [8:0] sector_behind_difference = {travel_high[7], travel_high} - 9'sh40; // s9.6, step 0
+    wire sector_behind = (sector_relative < travel_low) & (sector_behind_difference < $signed({sector_relative[7], sector_relative})); // step 0
+    wire travel_clear_now = whole_period_now | ~counting_now; // step 1
+    wire fresh_condition_3_now = sector_ahead | sector_behind; // step 0
+    wire fresh_condition_2_now = fresh_condition_3 | travel_clear_now; // step 1
+    wire signed [7:0] travel_origin_next = travel_clear ? sector : travel_origin; // s8.6, step 18
+    wire signed [7:0] travel_low_next_chosen_now = sector_behind ? sector_relative : travel_low; // s8.6, step 0
+    wire signed [7:0] travel_low_next = travel_clear ? 8'sd0 : travel_low_next_chosen; // s8.6, step 18
+    wire signed [7:0] travel_high_next_chosen_now = sector_ahead ? sector_relative : travel_high; // s8.6, step 0
+    wire signed [7:0] travel_high_next = travel_clear ? 8'sd0 : travel_high_next_chosen; // s8.6, step 18
+    wire fresh_now = (counting & in_window_now) & fresh_condition_2; // step 12
+
+    // Gradient along the radius
+    //   rho_c = cos(alpha_hat) rho,  rho_s = sin(alpha_hat) rho
+    //   (paper section 5.5.1: r + (sin, -cos) e = n (n^T r))
+    wire signed [34:0] cos_hat_times_rho = product_0[34:0]; // s35.32, step 12
+    wire signed [18:0] rho_c_rounded = cos_hat_times_rho[34:16] + {18'b0, cos_hat_times_rho[15]};
+    wire signed [17:0] rho_c_now = ((&rho_c_rounded[18:17]) | ~(|rho_c_rounded[18:17])) ? rho_c_rounded[17:0] : {rho_c_rounded[18], {17{~rho_c_rounded[18]}}}; // s18.16, step 12
+    wire signed [34:0] sin_hat_times_rho = product_0[34:0]; // s35.32, step 13
+    wire signed [18:0] rho_s_rounded = sin_hat_times_rho[34:16] + {18'b0, sin_hat_times_rho[15]};
+    wire signed [17:0] rho_s_now = ((&rho_s_rounded[18:17]) | ~(|rho_s_rounded[18:17])) ? rho_s_rounded[17:0] : {rho_s_rounded[18], {17{~rho_s_rounded[18]}}}; // s18.16, step 13
+
+    // Parameter update
+    //   theta -= gamma (2 y_c rho_c, rho_c, 2 y_s rho_s, rho_s, 4 y_c rho_s)
+    //   (paper section 5.5.1, M of equation (7))
+    wire signed [29:0] y_c_times_rho_s = product_0[29:0]; // s30.27, step 17
+    wire signed [29:0] gradient_5 = y_c_times_rho_s; // s30.29, step 17
+    wire signed [26:0] step_5_geared = shifted_1; // s27.26, step 17
+    wire signed [26:0] step_5_now = fresh ? step_5_geared : 27'sd0; // s27.26, step 17
+    wire signed [26:0] theta_5_deviation_next_difference = {{2{theta_5_deviation[24]}}, theta_5_deviation} - step_5; // s27.26, step 18
+    wire signed [24:0] theta_5_deviation_next = ((&theta_5_deviation_next_difference[26:24]) | ~(|theta_5_deviation_next_difference[26:24])) ? theta_5_deviation_next_difference[24:0] : {theta_5_deviation_next_difference[26], {24{~theta_5_deviation_next_difference[26]}}}; // s25.26, step 18
+    wire signed [29:0] y_c_times_rho_c = product_0[29:0]; // s30.27, step 15
+    wire signed [29:0] gradient_1 = y_c_times_rho_c; // s30.30, step 15
+    wire signed [26:0] step_1_geared = shifted_1; // s27.26, step 15
+    wire signed [25:0] step_1_now = fresh ? step_1_geared[25:0] : 26'sd0; // s26.26, step 15
+    wire signed [26:0] theta_1_deviation_next_difference = {theta_1_deviation[25], theta_1_deviation} - {step_1[25], step_1}; // s27.26, step 16
+    wire signed [25:0] theta_1_deviation_next_now = ((&theta_1_deviation_next_difference[26:25]) | ~(|theta_1_deviation_next_difference[26:25])) ? theta_1_deviation_next_difference[25:0] : {theta_1_deviation_next_difference[26], {25{~theta_1_deviation_next_difference[26]}}}; // s26.26, step 16
+    wire signed [17:0] gradient_2 = rho_c; // s18.20, step 13
+    wire signed [26:0] step_2_geared = shifted_1; // s27.26, step 13
+    wire signed [23:0] step_2_now = fresh ? step_2_geared[23:0] : 24'sd0; // s24.26, step 13
+    wire signed [25:0] theta_2_deviation_next_difference = {theta_2_deviation[24], theta_2_deviation} - {{2{step_2[23]}}, step_2}; // s26.26, step 14
+    wire signed [24:0] theta_2_deviation_next_now = ((&theta_2_deviation_next_difference[25:24]) | ~(|theta_2_deviation_next_difference[25:24])) ? theta_2_deviation_next_difference[24:0] : {theta_2_deviation_next_difference[25], {24{~theta_2_deviation_next_difference[25]}}}; // s25.26, step 14
+    wire signed [29:0] y_s_times_rho_s = product_0[29:0]; // s30.27, step 16
+    wire signed [29:0] gradient_3 = y_s_times_rho_s; // s30.30, step 16
+    wire signed [26:0] step_3_geared = shifted_1; // s27.26, step 16
+    wire signed [25:0] step_3_now = fresh ? step_3_geared[25:0] : 26'sd0; // s26.26, step 16
+    wire signed [26:0] theta_3_deviation_next_difference = {theta_3_deviation[25], theta_3_deviation} - {step_3[25], step_3}; // s27.26, step 17
+    wire signed [25:0] theta_3_deviation_next_now = ((&theta_3_deviation_next_difference[26:25]) | ~(|theta_3_deviation_next_difference[26:25])) ? theta_3_deviation_next_difference[25:0] : {theta_3_deviation_next_difference[26], {25{~theta_3_deviation_next_difference[26]}}}; // s26.26, step 17
+    wire signed [17:0] gradient_4 = rho_s; // s18.20, step 14
+    wire signed [26:0] step_4_geared = shifted_1; // s27.26, step 14
+    wire signed [23:0] step_4_now = fresh ? step_4_geared[23:0] : 24'sd0; // s24.26, step 14
+    wire signed [25:0] theta_4_deviation_next_difference = {theta_4_deviation[24], theta_4_deviation} - {{2{step_4[23]}}, step_4}; // s26.26, step 15
+    wire signed [24:0] theta_4_deviation_next_now = ((&theta_4_deviation_next_difference[25:24]) | ~(|theta_4_deviation_next_difference[25:24])) ? theta_4_deviation_next_difference[24:0] : {theta_4_deviation_next_difference[25], {24{~theta_4_deviation_next_difference[25]}}}; // s25.26, step 15
+
+    // Gears of gamma
+    //   gamma halves after some periods of travel, starts again when the residual was large
+    wire residual_large_condition_now = ~(($signed(rho_now[17:14]) < 4'sd1) & ~($signed(rho_now[17:14]) < 4'shf)); // step 9
+    wire residual_large_now = residual_large_condition & fresh_now; // step 12
+    wire period_tick = whole_period & fresh_now; // step 12
+    wire gamma_restart_now = period_tick & disturbed; // step 12
+    wire value_condition_2_now = $signed(gamma_gear[3:1]) < 3'sd3; // step 0
+    wire gamma_shift_condition_2_now = ~(gear_periods < 2'sd1); // step 0
+    wire gamma_shift_condition = period_tick & gamma_shift_condition_2; // step 12
+    wire gamma_shift_now = gamma_shift_condition & value_condition_2; // step 12
+    wire signed [1:0] gamma_gear_next_chosen_2 = gamma_shift ? 2'sd1 : 2'sd0; // s2.0, step 13
+    wire signed [4:0] gamma_gear_next_sum = {gamma_gear[3], gamma_gear} + {{3{gamma_gear_next_chosen_2[1]}}, gamma_gear_next_chosen_2}; // s5.0, step 13
+    wire signed [3:0] gamma_gear_next_bits = {1'b0, gamma_gear_next_sum[2:0]}; // u3.0, step 13
+    wire signed [1:0] gear_periods_next_chosen_2_now = period_tick ? 2'sd1 : 2'sd0; // s2.0, step 12
+    wire signed [2:0] gear_periods_next_sum = {gear_periods[1], gear_periods} + {gear_periods_next_chosen_2[1], gear_periods_next_chosen_2}; // s3.0, step 13
+    wire signed [1:0] gear_periods_next_bits = {1'b0, gear_periods_next_sum[0]}; // u1.0, step 13
+    wire gear_periods_again_now = gamma_restart_now | gamma_shift_condition; // step 12
+    wire signed [3:0] gamma_gear_next_chosen = gamma_restart ? 4'sd0 : gamma_gear_next_bits; // s4.0, step 13
+    wire signed [3:0] gamma_gear_next_now = gamma_gear_next_chosen; // u3.0, step 13
+    wire signed [1:0] gear_periods_next_chosen = gear_periods_again ? 2'sd0 : gear_periods_next_bits; // s2.0, step 13
+    wire signed [1:0] gear_periods_next_now = gear_periods_next_chosen; // u1.0, step 13
+    wire disturbed_next_condition_now = disturbed & ~period_tick; // step 12
+    wire disturbed_next_now = residual_large | disturbed_next_condition; // step 13
+
+    // Flags
+    //   what the machine control needs to know
+    wire lock_lost_next_condition_3_now = lock_lost & ~preset_held; // step 1
+    wire lock_lost_next_condition_now = locked & ~locked_next_now; // step 13
+    wire lock_lost_next_now = lock_lost_next_condition_3 | lock_lost_next_condition; // step 14
+
+    // Shifter 1, shared: gamma is a power of two
+    reg signed [27:0] unshifted_1;
+    always @*
+        case (step)
+            5'd13: unshifted_1 = {{3{gradient_2[17]}}, gradient_2, 7'b0}; // step_2_geared
+            5'd14: unshifted_1 = {{3{gradient_4[17]}}, gradient_4, 7'b0}; // step_4_geared
+            5'd15: unshifted_1 = {gradient_1[29], gradient_1[29:3]}; // step_1_geared
+            5'd16: unshifted_1 = {gradient_3[29], gradient_3[29:3]}; // step_3_geared
+            default: unshifted_1 = gradient_5[29:2];
+        endcase
+    wire signed [27:0] shift_1 = unshifted_1 >>> gamma_gear[2:0];
+    wire signed [26:0] shifted_1_rounded = shift_1[27:1] + {26'b0, shift_1[0]};
+    wire signed [26:0] shifted_1 = shifted_1_rounded;
+
+    // Multiplier 0
+    always @(posedge clk)
+        product_0 <= operand_a_0 * operand_b_0;
+
+    always @(posedge clk)
+        case (step)
+            5'd0: operand_a_0 <= error_previous;
+            5'd1, 5'd5, 5'd13, 5'd15: operand_a_0 <= {{6{y_c[11]}}, y_c};
+            5'd2: operand_a_0 <= {{3{cos_slope[14]}}, cos_slope};
+            5'd3, 5'd14: operand_a_0 <= {{6{y_s[11]}}, y_s};
+            5'd4: operand_a_0 <= {{3{sin_slope[14]}}, sin_slope};
+            5'd6, 5'd9: operand_a_0 <= c;
+            5'd7: operand_a_0 <= s_now;
+            5'd8: operand_a_0 <= s;
+            5'd10, 5'd11: operand_a_0 <= rho;
+            default: operand_a_0 <= 18'sh1cf1c;
+        endcase
+
+    always @(posedge clk)
+        case (step)
+            5'd0: operand_b_0 <= 18'sh13b1b;
+            5'd1: operand_b_0 <= theta_1;
+            5'd2: operand_b_0 <= {{7{cos_inside[10]}}, cos_inside};
+            5'd3: operand_b_0 <= theta_3;
+            5'd4: operand_b_0 <= {{7{sin_inside[10]}}, sin_inside};
+            5'd5: operand_b_0 <= theta_5;
+            5'd6, 5'd8, 5'd10: operand_b_0 <= cos_hat;
+            5'd7, 5'd9, 5'd11: operand_b_0 <= sin_hat;
+            5'd12: operand_b_0 <= e_change;
+            5'd13: operand_b_0 <= rho_c;
+            default: operand_b_0 <= rho_s;
+        endcase
+
+    // Values that later steps or the testbench read, at the end of the step that computes them
+    always @(posedge clk) begin
+        if (step == 5'd0) begin
+            upper_half <= upper_half_now;
+            sin_inside <= sin_inside_now;
+            cos_address <= cos_address_now;
+            cos_inside <= cos_inside_now;
+            cos_hat_condition <= cos_hat_condition_now;
+            theta_1 <= theta_1_now;
+            theta_3 <= theta_3_now;
+            theta_5 <= theta_5_now;
+            last_gear_condition <= last_gear_condition_now;
+            last_gear <= last_gear_now;
+            sector <= sector_now;
+            whole_period_condition <= whole_period_condition_now;
+            fresh_condition_3 <= fresh_condition_3_now;
+            travel_low_next_chosen <= travel_low_next_chosen_now;
+            travel_high_next_chosen <= travel_high_next_chosen_now;
+            value_condition_2 <= value_condition_2_now;
+            gamma_shift_condition_2 <= gamma_shift_condition_2_now;
+            theta_2 <= theta_2_deviation;
+            theta_4 <= theta_4_deviation;
+        end
+        if (step == 5'd1) begin
+            sin_value <= sin_value_now;
+            sin_slope <= sin_slope_now;
+            counting <= counting_now;
+            whole_period <= whole_period_now;
+            travel_clear <= travel_clear_now;
+            fresh_condition_2 <= fresh_condition_2_now;
+            lock_lost_next_condition_3 <= lock_lost_next_condition_3_now;
+        end
+        if (step == 5'd2) begin
+            cos_value <= cos_value_now;
+            drift <= drift_now;
+        end
+        if (step == 5'd3) begin
+            c <= c_now;
+            signal_lost_next_condition_8 <= signal_lost_next_condition_8_now;
+            signal_lost_next_condition_7 <= signal_lost_next_condition_7_now;
+            speed_sum_2 <= speed_sum_2_now;
+        end
+        if (step == 5'd4) begin
+            cos_hat <= cos_hat_now;
+            signal_lost_next_condition_5 <= signal_lost_next_condition_5_now;
+        end
+        if (step == 5'd5) begin
+            s_exact_sum <= s_exact_sum_now;
+        end
+        if (step == 5'd6) begin
+            sin_hat <= sin_hat_now;
+        end
+        if (step == 5'd7) begin
+            s <= s_now;
+            signal_lost_next_condition_4 <= signal_lost_next_condition_4_now;
+            signal_lost_next_condition_3 <= signal_lost_next_condition_3_now;
+        end
+        if (step == 5'd8) begin
+            signal_lost_next <= signal_lost_next_now;
+            rho_exact_difference <= rho_exact_difference_now;
+            in_window_condition <= in_window_condition_now;
+            flip_condition <= flip_condition_now;
+        end
+        if (step == 5'd9) begin
+            rho <= rho_now;
+            in_window_condition_3 <= in_window_condition_3_now;
+            alpha_hat_turned_chosen <= alpha_hat_turned_chosen_now;
+            residual_large_condition <= residual_large_condition_now;
+        end
+        if (step == 5'd10) begin
+            s_times_cos_hat <= s_times_cos_hat_now;
+            alpha_hat_turned <= alpha_hat_turned_now;
+        end
+        if (step == 5'd11) begin
+            e <= e_now;
+        end
+        if (step == 5'd12) begin
+            in_window <= in_window_now;
+            level_moved_sum <= level_moved_sum_now;
+            fresh <= fresh_now;
+            rho_c <= rho_c_now;
+            residual_large <= residual_large_now;
+            gamma_restart <= gamma_restart_now;
+            gamma_shift <= gamma_shift_now;
+            gear_periods_next_chosen_2 <= gear_periods_next_chosen_2_now;
+            gear_periods_again <= gear_periods_again_now;
+            disturbed_next_condition <= disturbed_next_condition_now;
+        end
+        if (step == 5'd13) begin
+            level_empty <= level_empty_now;
+            loop_gear_next_bits <= loop_gear_next_bits_now;
+            locked_next <= locked_next_now;
+            lock_level_next <= lock_level_next_now;
+            rho_s <= rho_s_now;
+            step_2 <= step_2_now;
+            gamma_gear_next <= gamma_gear_next_now;
+            gear_periods_next <= gear_periods_next_now;
+            disturbed_next <= disturbed_next_now;
+            lock_lost_next_condition <= lock_lost_next_condition_now;
+        end
+        if (step == 5'd14) begin
+            loop_gear_next <= loop_gear_next_now;
+            kick <= kick_now;
+            theta_2_deviation_next <= theta_2_deviation_next_now;
+            step_4 <= step_4_now;
+            lock_lost_next <= lock_lost_next_now;
+        end
+        if (step == 5'd15) begin
+            speed <= speed_now;
+            direction_next_condition_2 <= direction_next_condition_2_now;
+            value_condition_4 <= value_condition_4_now;
+            step_1 <= step_1_now;
+            theta_4_deviation_next <= theta_4_deviation_next_now;
+        end
+        if (step == 5'd16) begin
+            alpha_hat_next <= alpha_hat_next_now;
+            count_next <= count_next_now;
+            direction_next <= direction_next_now;
+            theta_1_deviation_next <= theta_1_deviation_next_now;
+            step_3 <= step_3_now;
+        end
+        if (step == 5'd17) begin
+            step_5 <= step_5_now;
+            theta_3_deviation_next <= theta_3_deviation_next_now;
+        end
+    end
+
+    // The sample commits
+    always @(posedge clk or negedge rst_n)
+        if (!rst_n) begin
+            alpha_hat <= 0;
+            count <= 0;
+            rate <= 0;
+            error_previous <= 0;
+            theta_1_deviation <= 0;
+            theta_2_deviation <= 0;
+            theta_3_deviation <= 0;
+            theta_4_deviation <= 0;
+            theta_5_deviation <= 0;
+            lock_level <= 0;
+            loop_gear <= 0;
+            gamma_gear <= 0;
+            gear_periods <= 0;
+            travel_origin <= 0;
+            travel_low <= 0;
+            travel_high <= 0;
+            locked <= 0;
+            lock_lost <= 0;
+            signal_lost <= 0;
+            direction <= 0;
+            disturbed <= 0;
+        end else if (last) begin
+            alpha_hat <= alpha_hat_next;
+            count <= count_next;
+            rate <= speed;
+            error_previous <= e;
+            theta_1_deviation <= theta_1_deviation_next;
+            theta_2_deviation <= theta_2_deviation_next;
+            theta_3_deviation <= theta_3_deviation_next;
+            theta_4_deviation <= theta_4_deviation_next;
+            theta_5_deviation <= theta_5_deviation_next;
+            lock_level <= lock_level_next;
+            loop_gear <= loop_gear_next;
+            gamma_gear <= gamma_gear_next;
+            gear_periods <= gear_periods_next;
+            travel_origin <= travel_origin_next;
+            travel_low <= travel_low_next;
+            travel_high <= travel_high_next;
+            locked <= locked_next;
+            lock_lost <= lock_lost_next;
+            signal_lost <= signal_lost_next;
+            direction <= direction_next;
+            disturbed <= disturbed_next;
+        end
+
+    assign position = {count, alpha_hat[26:0]};
+
+    // Bits that nothing in the chip reads: signs that are known, remainders of roundings, what only the testbench reads
+    wire unused = &{
+        1'b0,
+        odd_quadrant_bits[15:0],
+        sin_address[16],
+        sin_inside_sum[11],
+        sin_magnitude_sum[13:0],
+        cos_address[9:0],
+        cos_address[16],
+        cos_inside_sum[11],
+        cos_magnitude_sum[13:0],
+        theta_1_rounded[9:0],
+        theta_3_rounded[9:0],
+        c_exact[9:0],
+        s_exact[12:0],
+        rho_exact[15:0],
+        e_exact[14:0],
+        in_window,
+        loop_gear_next_sum[3:2],
+        kick_scaled[7:0],
+        drift_scaled[8:0],
+        carry[2],
+        count_next_sum[32],
+        sector_relative_difference[8],
+        cos_hat_times_rho[14:0],
+        sin_hat_times_rho[14:0],
+        gradient_5[1:0],
+        gradient_1[2:0],
+        step_1_geared[26],
+        step_2_geared[26:24],
+        gradient_3[2:0],
+        step_3_geared[26],
+        step_4_geared[26:24],
+        gamma_gear_next_sum[4:3],
+        gear_periods_next_sum[2:1],
+        product_0[35]
+    };
+
+endmodule
+
+`default_nettype wire

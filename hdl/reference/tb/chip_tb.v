@@ -1,0 +1,216 @@
+// Testbench of optical: plays the vectors and compares every probe, register and output after every sample.
+//
+// Run from the folder above: iverilog -g2005 -o chip_tb.vvp rtl/*.v tb/*.v && vvp chip_tb.vvp
+//
+// A vector row is: sample number, adc_cos, adc_sin, preset, calibrate, then one column per signal below, in hex.
+
+`default_nettype none
+`timescale 1ns / 1ps
+
+module chip_tb;
+    reg clk = 1'b0;
+    initial forever #5 clk = ~clk;
+
+    reg rst_n = 1'b0;
+    reg sample_valid = 1'b0;
+    reg [11:0] adc_cos = 0;
+    reg [11:0] adc_sin = 0;
+    reg preset = 1'b0;
+    reg calibrate = 1'b0;
+    wire valid;
+    wire [58:0] position;
+    wire signed [17:0] theta_1;
+    wire signed [24:0] theta_2;
+    wire signed [17:0] theta_3;
+    wire signed [24:0] theta_4;
+    wire signed [17:0] theta_5;
+    wire signed [25:0] speed;
+    wire locked;
+    wire lock_lost;
+    wire signal_lost;
+    wire direction;
+
+    optical chip (
+        .clk(clk),
+        .rst_n(rst_n),
+        .sample_valid(sample_valid),
+        .adc_cos(adc_cos),
+        .adc_sin(adc_sin),
+        .preset(preset),
+        .calibrate(calibrate),
+        .theta_1(theta_1),
+        .theta_2(theta_2),
+        .theta_3(theta_3),
+        .theta_4(theta_4),
+        .theta_5(theta_5),
+        .speed(speed),
+        .locked(locked),
+        .lock_lost(lock_lost),
+        .signal_lost(signal_lost),
+        .direction(direction),
+        .position(position),
+        .valid(valid)
+    );
+
+    // What the model says
+    reg signed [11:0] expect_y_c;
+    reg signed [11:0] expect_y_s;
+    reg signed [17:0] expect_theta_1;
+    reg signed [24:0] expect_theta_2;
+    reg signed [17:0] expect_theta_3;
+    reg signed [24:0] expect_theta_4;
+    reg signed [17:0] expect_theta_5;
+    reg signed [17:0] expect_c;
+    reg signed [17:0] expect_s;
+    reg signed [17:0] expect_cos_hat;
+    reg signed [17:0] expect_sin_hat;
+    reg signed [17:0] expect_e;
+    reg signed [17:0] expect_rho;
+    reg signed [17:0] expect_rho_c;
+    reg signed [17:0] expect_rho_s;
+    reg signed [25:0] expect_speed;
+    reg expect_in_window;
+    reg expect_fresh;
+    reg expect_whole_period;
+    reg signed [27:0] expect_alpha_hat;
+    reg signed [31:0] expect_count;
+    reg signed [25:0] expect_rate;
+    reg signed [17:0] expect_error_previous;
+    reg signed [25:0] expect_theta_1_deviation;
+    reg signed [24:0] expect_theta_2_deviation;
+    reg signed [25:0] expect_theta_3_deviation;
+    reg signed [24:0] expect_theta_4_deviation;
+    reg signed [24:0] expect_theta_5_deviation;
+    reg signed [6:0] expect_lock_level;
+    reg signed [2:0] expect_loop_gear;
+    reg signed [3:0] expect_gamma_gear;
+    reg signed [1:0] expect_gear_periods;
+    reg signed [7:0] expect_travel_origin;
+    reg signed [7:0] expect_travel_low;
+    reg signed [7:0] expect_travel_high;
+    reg expect_locked;
+    reg expect_lock_lost;
+    reg expect_signal_lost;
+    reg expect_direction;
+    reg expect_disturbed;
+
+    integer file;
+    integer got;
+    integer waited;
+    integer played;
+    reg [31:0] sample;
+    reg bad;
+    reg any_bad = 1'b0;
+
+    task check_failed(input [8*32-1:0] signal, input [127:0] expected, input [127:0] actual);
+        if (!bad) begin
+            bad = 1'b1;
+            $display("signal %0s sample %0d expected %0h actual %0h", signal, sample, expected, actual);
+        end
+    endtask
+
+    task play(input [8*64-1:0] path, input [8*32-1:0] name, input integer rows);
+        begin
+            bad = 1'b0;
+            played = 0;
+            file = $fopen(path, "r");
+            rst_n = 1'b0;
+            @(negedge clk);
+            @(negedge clk);
+            rst_n = 1'b1;
+            if (file == 0) begin
+                bad = 1'b1;
+                $display("cannot open the vectors of %0s", name);
+            end
+            while (!bad && played != rows) begin
+                got = $fscanf(file, "%h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h", sample, adc_cos, adc_sin, preset, calibrate, expect_y_c, expect_y_s, expect_theta_1, expect_theta_2, expect_theta_3, expect_theta_4, expect_theta_5, expect_c, expect_s, expect_cos_hat, expect_sin_hat, expect_e, expect_rho, expect_rho_c, expect_rho_s, expect_speed, expect_in_window, expect_fresh, expect_whole_period, expect_alpha_hat, expect_count, expect_rate, expect_error_previous, expect_theta_1_deviation, expect_theta_2_deviation, expect_theta_3_deviation, expect_theta_4_deviation, expect_theta_5_deviation, expect_lock_level, expect_loop_gear, expect_gamma_gear, expect_gear_periods, expect_travel_origin, expect_travel_low, expect_travel_high, expect_locked, expect_lock_lost, expect_signal_lost, expect_direction, expect_disturbed);
+                if (got != 45) begin
+                    bad = 1'b1;
+                    $display("row %0d of %0s cannot be read", played, name);
+                end else begin
+                    sample_valid = 1'b1;
+                    @(negedge clk);
+                    sample_valid = 1'b0;
+                    // What is on the pins between samples must not matter.
+                    adc_cos = ~adc_cos;
+                    adc_sin = ~adc_sin;
+                    preset = ~preset;
+                    calibrate = ~calibrate;
+                    waited = 1;
+                    // The watchdog: a chip that hangs is late.
+                    while (!valid && waited <= 19) begin
+                        @(negedge clk);
+                        waited = waited + 1;
+                    end
+                    if (waited != 19) check_failed("latency", 19, {96'd0, waited});
+                    if (position !== {expect_count, expect_alpha_hat[26:0]})
+                        check_failed("position", {69'd0, expect_count, expect_alpha_hat[26:0]}, {69'd0, position});
+                    if (theta_1 !== expect_theta_1) check_failed("theta_1", {110'd0, expect_theta_1}, {110'd0, theta_1});
+                    if (theta_2 !== expect_theta_2) check_failed("theta_2", {103'd0, expect_theta_2}, {103'd0, theta_2});
+                    if (theta_3 !== expect_theta_3) check_failed("theta_3", {110'd0, expect_theta_3}, {110'd0, theta_3});
+                    if (theta_4 !== expect_theta_4) check_failed("theta_4", {103'd0, expect_theta_4}, {103'd0, theta_4});
+                    if (theta_5 !== expect_theta_5) check_failed("theta_5", {110'd0, expect_theta_5}, {110'd0, theta_5});
+                    if (speed !== expect_speed) check_failed("speed", {102'd0, expect_speed}, {102'd0, speed});
+                    if (locked !== expect_locked) check_failed("locked", {127'd0, expect_locked}, {127'd0, locked});
+                    if (lock_lost !== expect_lock_lost) check_failed("lock_lost", {127'd0, expect_lock_lost}, {127'd0, lock_lost});
+                    if (signal_lost !== expect_signal_lost) check_failed("signal_lost", {127'd0, expect_signal_lost}, {127'd0, signal_lost});
+                    if (direction !== expect_direction) check_failed("direction", {127'd0, expect_direction}, {127'd0, direction});
+                    if (chip.y_c !== expect_y_c) check_failed("y_c", {116'd0, expect_y_c}, {116'd0, chip.y_c});
+                    if (chip.y_s !== expect_y_s) check_failed("y_s", {116'd0, expect_y_s}, {116'd0, chip.y_s});
+                    if (chip.c !== expect_c) check_failed("c", {110'd0, expect_c}, {110'd0, chip.c});
+                    if (chip.s !== expect_s) check_failed("s", {110'd0, expect_s}, {110'd0, chip.s});
+                    if (chip.cos_hat !== expect_cos_hat) check_failed("cos_hat", {110'd0, expect_cos_hat}, {110'd0, chip.cos_hat});
+                    if (chip.sin_hat !== expect_sin_hat) check_failed("sin_hat", {110'd0, expect_sin_hat}, {110'd0, chip.sin_hat});
+                    if (chip.e !== expect_e) check_failed("e", {110'd0, expect_e}, {110'd0, chip.e});
+                    if (chip.rho !== expect_rho) check_failed("rho", {110'd0, expect_rho}, {110'd0, chip.rho});
+                    if (chip.rho_c !== expect_rho_c) check_failed("rho_c", {110'd0, expect_rho_c}, {110'd0, chip.rho_c});
+                    if (chip.rho_s !== expect_rho_s) check_failed("rho_s", {110'd0, expect_rho_s}, {110'd0, chip.rho_s});
+                    if (chip.in_window !== expect_in_window) check_failed("in_window", {127'd0, expect_in_window}, {127'd0, chip.in_window});
+                    if (chip.fresh !== expect_fresh) check_failed("fresh", {127'd0, expect_fresh}, {127'd0, chip.fresh});
+                    if (chip.whole_period !== expect_whole_period) check_failed("whole_period", {127'd0, expect_whole_period}, {127'd0, chip.whole_period});
+                    if (chip.alpha_hat !== expect_alpha_hat) check_failed("alpha_hat", {100'd0, expect_alpha_hat}, {100'd0, chip.alpha_hat});
+                    if (chip.count !== expect_count) check_failed("count", {96'd0, expect_count}, {96'd0, chip.count});
+                    if (chip.rate !== expect_rate) check_failed("rate", {102'd0, expect_rate}, {102'd0, chip.rate});
+                    if (chip.error_previous !== expect_error_previous) check_failed("error_previous", {110'd0, expect_error_previous}, {110'd0, chip.error_previous});
+                    if (chip.theta_1_deviation !== expect_theta_1_deviation) check_failed("theta_1_deviation", {102'd0, expect_theta_1_deviation}, {102'd0, chip.theta_1_deviation});
+                    if (chip.theta_2_deviation !== expect_theta_2_deviation) check_failed("theta_2_deviation", {103'd0, expect_theta_2_deviation}, {103'd0, chip.theta_2_deviation});
+                    if (chip.theta_3_deviation !== expect_theta_3_deviation) check_failed("theta_3_deviation", {102'd0, expect_theta_3_deviation}, {102'd0, chip.theta_3_deviation});
+                    if (chip.theta_4_deviation !== expect_theta_4_deviation) check_failed("theta_4_deviation", {103'd0, expect_theta_4_deviation}, {103'd0, chip.theta_4_deviation});
+                    if (chip.theta_5_deviation !== expect_theta_5_deviation) check_failed("theta_5_deviation", {103'd0, expect_theta_5_deviation}, {103'd0, chip.theta_5_deviation});
+                    if (chip.lock_level !== expect_lock_level) check_failed("lock_level", {121'd0, expect_lock_level}, {121'd0, chip.lock_level});
+                    if (chip.loop_gear !== expect_loop_gear) check_failed("loop_gear", {125'd0, expect_loop_gear}, {125'd0, chip.loop_gear});
+                    if (chip.gamma_gear !== expect_gamma_gear) check_failed("gamma_gear", {124'd0, expect_gamma_gear}, {124'd0, chip.gamma_gear});
+                    if (chip.gear_periods !== expect_gear_periods) check_failed("gear_periods", {126'd0, expect_gear_periods}, {126'd0, chip.gear_periods});
+                    if (chip.travel_origin !== expect_travel_origin) check_failed("travel_origin", {120'd0, expect_travel_origin}, {120'd0, chip.travel_origin});
+                    if (chip.travel_low !== expect_travel_low) check_failed("travel_low", {120'd0, expect_travel_low}, {120'd0, chip.travel_low});
+                    if (chip.travel_high !== expect_travel_high) check_failed("travel_high", {120'd0, expect_travel_high}, {120'd0, chip.travel_high});
+                    if (chip.disturbed !== expect_disturbed) check_failed("disturbed", {127'd0, expect_disturbed}, {127'd0, chip.disturbed});
+                    played = played + 1;
+                end
+            end
+            if (bad) begin
+                any_bad = 1'b1;
+                $display("FAIL %0s", name);
+            end else
+                $display("PASS %0s: %0d samples", name, played);
+            $fclose(file);
+        end
+    endtask
+
+    initial begin
+        play("vectors/standstill.vec", "standstill", 24);
+        play("vectors/forwards.vec", "forwards", 24);
+        play("vectors/backwards.vec", "backwards", 24);
+        play("vectors/sweep.vec", "sweep", 24);
+        play("vectors/step.vec", "step", 24);
+        play("vectors/corners.vec", "corners", 24);
+        play("vectors/bounds.vec", "bounds", 24);
+        play("vectors/ties.vec", "ties", 24);
+        play("vectors/random.vec", "random", 24);
+        if (any_bad) $display("FAIL");
+        else $display("PASS");
+        $finish(0);
+    end
+endmodule
+
+`default_nettype wire
