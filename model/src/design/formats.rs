@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use super::{Acquisition, DesignError, Loop, Words, normalisation};
-use crate::format::{Format, Overflow, Quantiser, Rounding, exp2};
+use crate::format::{Format, Quantiser, exp2};
 use crate::kernel::{Coefficients, Constant, Formats, Method, Structure};
 use crate::rom::{Column, Rom};
 use crate::spec::{Coding, Spec};
@@ -71,11 +71,7 @@ pub(super) fn structure(
     };
     let multiplied = |largest: f64| {
         let format = Format::signed(width, bits(width as i32 - 1 - power_of(largest)));
-        Quantiser {
-            format,
-            rounding: Rounding::Nearest,
-            overflow: Overflow::Saturate,
-        }
+        Quantiser::saturating(format)
     };
     let gain = multiplied(r.nominal + exp2(r.deviation[0].into()));
     let fp = words.phase_bits;
