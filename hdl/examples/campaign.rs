@@ -1,8 +1,10 @@
 //! A long run of mixed stimuli for every variant of the chip, in Verilator and in Icarus.
 //!
-//!     cargo run --release -p nonius-hdl --example campaign -- DOCS [--short]
+//!     cargo run --release -p nonius-hdl --example campaign -- DOCS
+//!     cargo run -p nonius-hdl --example campaign -- --short
 //!
-//! writes DOCS/bit-exact.md. `--short` runs few samples of few variants and writes nothing: the form for every commit.
+//! The first writes DOCS/bit-exact.md. The second runs few samples of few variants and writes nothing: the form for
+//! every commit.
 //! Exit code 1 if any bit of any probe differs.
 
 use std::env;
@@ -34,14 +36,16 @@ struct Outcome {
 }
 
 fn main() -> ExitCode {
-    let mut arguments: Vec<String> = env::args().skip(1).collect();
-    let short = arguments.iter().any(|a| a == "--short");
-    arguments.retain(|a| a != "--short");
-    let [docs] = arguments.as_slice() else {
-        eprintln!("usage: campaign DOCS [--short]");
-        return ExitCode::from(2);
+    let arguments: Vec<String> = env::args().skip(1).collect();
+    let docs = match arguments.as_slice() {
+        [short] if short == "--short" => None,
+        [docs] if !docs.starts_with('-') => Some(Path::new(docs)),
+        _ => {
+            eprintln!("usage: campaign DOCS | campaign --short");
+            return ExitCode::from(2);
+        }
     };
-    match run(Path::new(docs), short) {
+    match run(docs) {
         Ok(true) => ExitCode::SUCCESS,
         Ok(false) => ExitCode::from(1),
         Err(error) => {
@@ -51,11 +55,15 @@ fn main() -> ExitCode {
     }
 }
 
-fn run(docs: &Path, short: bool) -> Result<bool, Box<dyn Error>> {
+/// With a folder for the page the long campaign, without one the short.
+fn run(docs: Option<&Path>) -> Result<bool, Box<dyn Error>> {
     let designs = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../designs/optical.toml");
     let base = Spec::from_toml(&fs::read_to_string(designs)?, "optical.toml")?;
-    let rows = if short { SHORT } else { LONG };
-    let step = if short { 7 } else { 1 };
+    let (rows, step) = if docs.is_some() {
+        (LONG, 1)
+    } else {
+        (SHORT, 13)
+    };
     let mut outcomes = vec![];
     for variant in variants(&base).into_iter().step_by(step) {
         let outcome = Outcome {
@@ -66,7 +74,7 @@ fn run(docs: &Path, short: bool) -> Result<bool, Box<dyn Error>> {
         eprintln!("{}", line(&outcome).trim_end());
         outcomes.push(outcome);
         // What has been measured so far, should somebody stop the campaign.
-        if !short {
+        if let Some(docs) = docs {
             fs::create_dir_all(docs)?;
             fs::write(docs.join("bit-exact.md"), page(&outcomes))?;
         }
