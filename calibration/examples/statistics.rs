@@ -5,8 +5,8 @@
 use std::fmt::Write;
 use std::thread;
 
-use nonius_calibration::bound::bound;
-use nonius_calibration::{Ellipse, Method, Options, calibrate};
+use nonius_calibration::cramer_rao::bound;
+use nonius_calibration::{Curve, Ellipse, Method, Options, calibrate};
 use rand::{Rng, SeedableRng, rngs::StdRng};
 use rand_distr::{Distribution, StandardNormal};
 

@@ -80,6 +80,12 @@ impl Ellipse {
         c.hypot(s) - 1.0
     }
 
+    /// The mean amplitude of the two channels, in the unit of the columns.
+    #[must_use]
+    pub fn amplitude(&self) -> f64 {
+        (self.a_c + self.a_s) / 2.0
+    }
+
     /// Fits an ellipse to samples. Where they do not show one (too short an arc, too much noise),
     /// the extremes serve, and the notes say so.
     #[must_use]
