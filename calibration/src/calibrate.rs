@@ -80,8 +80,7 @@ pub fn calibrate(
     if method == Method::Unbiased && own_residual > words::ROUNDING {
         cannot_tell.extend(words::of_ratio(&fit));
     }
-    let turns = turns(&angles);
-    cannot_tell.extend(words::of_residuals(&fit, own_residual, turns));
+    cannot_tell.extend(words::of_residuals(method, &fit, own_residual));
     let mut remarks = estimate.remarks;
     if samples.outliers > 0 {
         let (n, s) = (
@@ -97,6 +96,11 @@ pub fn calibrate(
     if method != Method::Unbiased && fit.converged && own_residual > words::ROUNDING {
         let beside = words::beside_unbiased(method, &estimate.ellipse.parameters(), &fit);
         remarks.extend(beside);
+    }
+    if method.set().cubic() {
+        remarks.push(format!(
+            "an ellipse leaves a residual of {own_residual:.4e} of the amplitude rms"
+        ));
     }
     let errors = estimate
         .covariance
@@ -296,10 +300,4 @@ fn whole(fit: &Fit, samples: usize) -> Option<Parameters> {
     let bound = cramer_rao::bound(&fit.ellipse, &angles, fit.noise)?;
     let share = 360.0 / samples as f64;
     Some(bound.covariance.diagonal().map(|v| (v * share).sqrt()))
-}
-
-/// Turns travelled from first to last sample, without regard to direction; angles in turns.
-fn turns(angles: &[f64]) -> f64 {
-    let steps = angles.windows(2).map(|w| w[1] - w[0]);
-    steps.map(|d| d - d.round()).sum::<f64>().abs()
 }

@@ -87,11 +87,16 @@ pub fn fit(cos: &[f64], sin: &[f64], start: &Ellipse, ratio: Option<f64>) -> Fit
     let white = residuals.iter().map(|r| r.white * r.white).sum::<f64>();
     let white = (white / (pairs.len() as f64 - 5.0).max(1.0)).sqrt();
     let found = noise::variances(&residuals, metric);
+    let noise = match found {
+        // Of a given ratio the size alone is measured.
+        Some(found) if ratio.is_none() && !ratio_assumed => [found.cos.sqrt(), found.sin.sqrt()],
+        _ => [white, white * metric],
+    };
     let covariance = round.covariance(&ellipse);
     Fit {
-        scatter: covariance.and_then(|c| round.scatter(&c)),
+        scatter: covariance.and_then(|c| round.scatter(&residuals, &c)),
         covariance: covariance.unwrap_or_else(|| SMatrix::repeat(f64::NAN)),
-        noise: [white, white * metric],
+        noise,
         log_ratio_error: match (ratio, found) {
             (Some(_), _) => 0.0,
             (None, Some(found)) => found.log_ratio_error,
@@ -114,8 +119,8 @@ struct Round {
     curved: Parameters,
     sigma2: f64,
     residuals: Vec<Residual>,
-    /// Score of each part of the recording, and its bias by curvature.
-    parts: Vec<(Parameters, Parameters)>,
+    /// How far the curve moves across itself with each parameter, sample by sample.
+    by: Vec<Parameters>,
 }
 
 impl Round {
@@ -127,18 +132,18 @@ impl Round {
             curved: Parameters::zeros(),
             sigma2: 0.0,
             residuals: Vec::with_capacity(pairs.len()),
-            parts: vec![(Parameters::zeros(), Parameters::zeros()); PARTS],
+            by: Vec::with_capacity(pairs.len()),
         };
         let mut sum = 0.0;
         let mut half_curvatures = Vec::with_capacity(pairs.len());
-        for (k, (y, foot)) in pairs.iter().zip(feet).enumerate() {
+        for (y, foot) in pairs.iter().zip(feet) {
             let near = Projection::of(ellipse, *y, ratio, *foot);
             *foot = near.alpha;
             let by = near.by;
             this.information.syger(1.0, &by, &by, 1.0);
-            let part = &mut this.parts[k * PARTS / pairs.len()];
-            part.0 += by * near.distance;
-            part.1 += by * near.half_curvature;
+            this.score += by * near.distance;
+            this.curved += by * near.half_curvature;
+            this.by.push(by);
             sum += near.distance * near.distance;
             half_curvatures.push(near.half_curvature);
             this.residuals.push(Residual {
@@ -148,10 +153,6 @@ impl Round {
             });
         }
         this.information.fill_upper_triangle_with_lower_triangle();
-        for (score, curved) in &this.parts {
-            this.score += score;
-            this.curved += curved;
-        }
         this.sigma2 = sum / (pairs.len() as f64 - 5.0).max(1.0);
         for (r, half) in this.residuals.iter_mut().zip(half_curvatures) {
             r.white -= half * this.sigma2;
@@ -186,19 +187,24 @@ impl Round {
         }
     }
 
-    /// The parts' scores scatter as the information says, or more.
-    fn scatter(&self, covariance: &SMatrix<f64, 5, 5>) -> Option<f64> {
-        if self.residuals.len() < PARTS * PART || self.sigma2 <= 0.0 {
+    /// How the scores of the recording's parts scatter, beside what white noise of that size does. `residuals` are
+    /// those without what repeats with the angle: within less than a turn that would look like a change in time.
+    fn scatter(&self, residuals: &[Residual], covariance: &SMatrix<f64, 5, 5>) -> Option<f64> {
+        let n = residuals.len();
+        let white = residuals.iter().map(|r| r.white * r.white).sum::<f64>() / n as f64;
+        if n < PARTS * PART || white <= 0.0 {
             return None;
         }
-        let mut sum = SMatrix::<f64, 5, 5>::zeros();
-        for (score, curved) in &self.parts {
-            let own = score - curved * self.sigma2;
-            sum += own * own.transpose();
+        let mut parts = [Parameters::zeros(); PARTS];
+        for (k, (r, by)) in residuals.iter().zip(&self.by).enumerate() {
+            parts[k * PARTS / n] += by * r.white;
         }
         let inverse = covariance / self.sigma2;
-        let found = inverse * sum * inverse * (PARTS as f64 / (PARTS as f64 - 1.0));
-        let ratio = (0..5).map(|i| found[(i, i)] / covariance[(i, i)]);
+        let shifts = parts.iter().map(|part| inverse * part);
+        let sum = shifts.fold(Parameters::zeros(), |sum, shift| {
+            sum + shift.component_mul(&shift)
+        });
+        let ratio = (0..5).map(|i| sum[i] / (inverse[(i, i)] * white));
         ratio.reduce(f64::max).map(f64::sqrt)
     }
 }

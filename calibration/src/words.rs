@@ -60,12 +60,14 @@ pub(crate) fn of_arc(gap: f64, fit: &Fit, whole: Option<Parameters>) -> Vec<Stri
 }
 
 /// Of the noise, and of what is not noise.
-pub(crate) fn of_residuals(fit: &Fit, residual_rms: f64, turns: f64) -> Vec<String> {
+pub(crate) fn of_residuals(method: Method, fit: &Fit, residual_rms: f64) -> Vec<String> {
     let mut out = vec![];
     if residual_rms < ROUNDING {
         return out;
     }
-    if let Some(shape) = &fit.shape {
+    if let Some(shape) = &fit.shape
+        && !method.set().cubic()
+    {
         out.push(format!(
             "the signals are no exact ellipse: the radius strays by {:.2} % of the amplitude rms in step with the angle, \
              most at order {}; the parameters are those of the nearest ellipse, an angle error of that size stays \
@@ -76,10 +78,8 @@ pub(crate) fn of_residuals(fit: &Fit, residual_rms: f64, turns: f64) -> Vec<Stri
             shape.rms
         ));
     }
-    // Within a turn a distortion looks like a change in time.
     if let Some(scatter) = fit.scatter
         && scatter > SCATTER
-        && (fit.shape.is_none() || turns > 20.0)
     {
         out.push(format!(
             "consecutive parts of the recording differ {scatter:.1} times as much as the error bars say: something \
@@ -144,6 +144,9 @@ pub(crate) fn beside_unbiased(method: Method, found: &Parameters, fit: &Fit) -> 
         (miss.abs(), NAMES[i])
     });
     let (most, name) = against.max_by(|a, b| a.0.total_cmp(&b.0))?;
+    if method.set().cubic() {
+        return None;
+    }
     (most > 2.0 && most.is_finite()).then(|| {
         format!(
             "{name} lies {most:.1} standard errors from the estimate of unbiased: noise and distortion bias {}",

@@ -125,7 +125,10 @@ fn short_arcs_are_named() {
     for method in [Method::Unbiased, Method::Heydemann] {
         let found = calibrate(&cos, &sin, method, &Options::default()).expect("an ellipse");
         assert!(
-            found.cannot_tell.iter().any(|s| s.starts_with("0.60 of the scale period holds no sample")),
+            found
+                .cannot_tell
+                .iter()
+                .any(|s| s.starts_with("0.60 of the scale period holds no sample")),
             "{:?}",
             found.cannot_tell
         );
