@@ -7,7 +7,7 @@
 use nalgebra::{SMatrix, Vector2};
 use nonius_recording::Ellipse;
 
-use crate::curve::{Curve, Parameters, theta_covariance};
+use crate::curve::{Curve, Parameters, invert, theta_covariance};
 
 /// Bounds for given angles and noise.
 #[derive(Clone, Debug, PartialEq)]
@@ -64,17 +64,12 @@ pub fn bound(ellipse: &Ellipse, alpha: &[f64], noise: [f64; 2]) -> Option<Bound>
     if !(noise[0] > 0.0 && noise[1] > 0.0) {
         return None;
     }
-    let unit = SMatrix::<f64, 5, 5>::from_diagonal(&ellipse.units());
     let mut information = SMatrix::<f64, 5, 5>::zeros();
     for a in alpha {
         let by = across(ellipse, *a, noise);
         information += by * by.transpose();
     }
-    // Inverted in comparable units.
-    let covariance = unit * (unit * information * unit).try_inverse()? * unit;
-    if !covariance.iter().all(|v| v.is_finite()) || covariance.diagonal().min() <= 0.0 {
-        return None;
-    }
+    let covariance = invert(&information, ellipse)?;
     let [angle_by_parameters, angle_by_noise] = of_angle(ellipse, &covariance, noise);
     Some(Bound {
         theta: theta_covariance(ellipse, &covariance),

@@ -147,3 +147,26 @@ pub fn theta_covariance(ellipse: &Ellipse, covariance: &SMatrix<f64, 5, 5>) -> S
     }
     jacobian * covariance * jacobian.transpose()
 }
+
+/// Share of the largest eigenvalue below which an information matrix, in comparable units, is rounding.
+const RANK: f64 = 1e-13;
+
+/// The inverse of an information matrix of the parameters; `None` where the samples leave a direction open.
+pub(crate) fn invert(
+    information: &SMatrix<f64, 5, 5>,
+    ellipse: &Ellipse,
+) -> Option<SMatrix<f64, 5, 5>> {
+    let unit = SMatrix::<f64, 5, 5>::from_diagonal(&ellipse.units());
+    let comparable = unit * information * unit;
+    if !comparable.iter().all(|v| v.is_finite()) {
+        return None;
+    }
+    let eigen = comparable.symmetric_eigen();
+    let values = eigen.eigenvalues;
+    if values.max() <= 0.0 || values.min() <= RANK * values.max() {
+        return None;
+    }
+    let inverse = SMatrix::from_diagonal(&values.map(|v| 1.0 / v));
+    let vectors = unit * eigen.eigenvectors;
+    Some(vectors * inverse * vectors.transpose())
+}

@@ -8,7 +8,7 @@
 use nalgebra::{SMatrix, Vector2};
 use nonius_recording::Ellipse;
 
-use crate::curve::{Curve, Parameters};
+use crate::curve::{Curve, Parameters, invert};
 use crate::noise::{self, Residual, Shape};
 
 /// A fit with what it says about the noise.
@@ -75,7 +75,7 @@ pub fn fit(cos: &[f64], sin: &[f64], start: &Ellipse, ratio: Option<f64>) -> Fit
         if searching && (settled || size < 1e-4 || iteration % 8 == 7) {
             let last = metric;
             (metric, ratio_assumed) = round.ratio(metric);
-            searching = (metric / last).ln().abs() > 1e-3 && iteration < ITERATIONS / 2;
+            searching = (metric / last).ln().abs() > 3e-4 && iteration < ITERATIONS / 2;
         } else if settled {
             converged = true;
             break;
@@ -160,21 +160,13 @@ impl Round {
         this
     }
 
-    /// F⁻¹, inverted in comparable units.
-    fn inverse(&self, ellipse: &Ellipse) -> Option<SMatrix<f64, 5, 5>> {
-        let unit = SMatrix::<f64, 5, 5>::from_diagonal(&ellipse.units());
-        let inverse = unit * (unit * self.information * unit).try_inverse()? * unit;
-        let sound = inverse.iter().all(|v| v.is_finite()) && inverse.diagonal().min() > 0.0;
-        sound.then_some(inverse)
-    }
-
     fn step(&self, ellipse: &Ellipse) -> Option<Parameters> {
-        let step = self.inverse(ellipse)? * (self.score - self.curved * self.sigma2);
+        let step = invert(&self.information, ellipse)? * (self.score - self.curved * self.sigma2);
         step.iter().all(|v| v.is_finite()).then_some(step)
     }
 
     fn covariance(&self, ellipse: &Ellipse) -> Option<SMatrix<f64, 5, 5>> {
-        self.inverse(ellipse).map(|inverse| inverse * self.sigma2)
+        invert(&self.information, ellipse).map(|inverse| inverse * self.sigma2)
     }
 
     /// σ_s/σ_c from the residuals, and whether it had to be assumed.
