@@ -126,6 +126,7 @@ pub fn calibrate(
             .then(|| fit.log_ratio_error * fit.noise[1] / fit.noise[0])
             .filter(|e| e.is_finite()),
         shape: fit.shape.clone(),
+        scatter: fit.scatter,
         arc: 1.0 - gap,
         bound,
         cannot_tell,
@@ -160,6 +161,7 @@ pub fn undetermined(method: Method, cos: &[f64], sin: &[f64], why: &Error) -> Ca
         noise: None,
         noise_ratio_error: None,
         shape: None,
+        scatter: None,
         arc: 0.0,
         bound: None,
         cannot_tell: vec![format!(

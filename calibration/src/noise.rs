@@ -16,7 +16,7 @@ const OWN: usize = 5;
 const SIGNIFICANT: f64 = 1e-3;
 /// Samples per shape that are needed to look for shapes.
 const SAMPLES: usize = 8 * COLUMNS;
-/// Beyond this ratio one channel's noise is as good as none.
+/// Beyond this ratio, each in fractions of its amplitude, one channel's noise is as good as none.
 const EXTREME: f64 = 10.0;
 
 /// A sample's residual.
@@ -109,10 +109,11 @@ struct Square {
     by_sin: f64,
 }
 
-/// The variances of both channels in units of the metric's σ_c²; the metric has σ_s = `ratio` σ_c. Residuals that
+/// The variances of both channels in units of the metric's σ_c²; the metric has σ_s = `ratio` σ_c,
+/// the signals a_s = `gain` a_c. Residuals that
 /// resemble their neighbours hold drift as well; the noise then is what second differences show.
-pub(crate) fn variances(residuals: &[Residual], ratio: f64) -> Option<Variances> {
-    let square = ratio * ratio;
+pub(crate) fn variances(residuals: &[Residual], ratio: f64, gain: f64) -> Option<Variances> {
+    let (square, gain2) = (ratio * ratio, gain * gain);
     let plain = |r: &Residual| {
         let (cos, sin) = (r.cos_share, 1.0 - r.cos_share);
         // In the metric the normal has length one.
@@ -126,7 +127,7 @@ pub(crate) fn variances(residuals: &[Residual], ratio: f64) -> Option<Variances>
     let n = residuals.len() as f64;
     let squares: Vec<Square> = residuals.iter().map(plain).collect();
     if correlation(residuals) < CORRELATED + 4.0 / n.sqrt() {
-        return scoring(&squares, square, n / (n - OWN as f64).max(1.0), 1.0);
+        return scoring(&squares, square, gain2, n / (n - OWN as f64).max(1.0), 1.0);
     }
     let middle = residuals.windows(3).zip(squares.windows(3));
     let second: Vec<Square> = middle
@@ -138,7 +139,7 @@ pub(crate) fn variances(residuals: &[Residual], ratio: f64) -> Option<Variances>
         .collect();
     // Neighbouring second differences correlate by −2/3 and 1/6: their squares tell less than independent ones.
     let inflation = 1.0 + 2.0 * (4.0 / 9.0 + 1.0 / 36.0);
-    scoring(&second, square, 1.0, inflation)
+    scoring(&second, square, gain2, 1.0, inflation)
 }
 
 /// Lag-one correlation.
@@ -148,8 +149,14 @@ fn correlation(residuals: &[Residual]) -> f64 {
     products.sum::<f64>() / squares.max(f64::MIN_POSITIVE)
 }
 
-/// Scoring of the Gaussian likelihood. `scale` makes up for what a fit took, `inflation` for correlated squares.
-fn scoring(squares: &[Square], start: f64, scale: f64, inflation: f64) -> Option<Variances> {
+/// Scoring of the Gaussian likelihood from σ_s²/σ_c² = `start`; `gain2` is (a_s/a_c)². `scale` makes up for what a fit took, `inflation` for correlated squares.
+fn scoring(
+    squares: &[Square],
+    start: f64,
+    gain2: f64,
+    scale: f64,
+    inflation: f64,
+) -> Option<Variances> {
     let values: f64 = squares.iter().map(|s| s.value).sum::<f64>() * scale;
     let sizes: f64 = squares.iter().map(|s| s.by_cos + s.by_sin * start).sum();
     let mean = values / sizes;
@@ -180,8 +187,8 @@ fn scoring(squares: &[Square], start: f64, scale: f64, inflation: f64) -> Option
             (sum[0] * bb - sum[1] * ab) / determinant,
             (sum[1] * aa - sum[0] * ab) / determinant,
         ];
-        let least = next[0].max(next[1]) / (EXTREME * EXTREME);
-        let next = next.map(|v| v.max(least));
+        let least = next[0].max(next[1] / gain2) / (EXTREME * EXTREME);
+        let next = [next[0].max(least), next[1].max(least * gain2)];
         let still = (next[0] / cos - 1.0).abs() + (next[1] / sin - 1.0).abs() < 1e-6;
         [cos, sin] = next;
         if !(cos > 0.0 && sin > 0.0) {
@@ -224,7 +231,7 @@ mod tests {
     }
 
     fn ratio(residuals: &[Residual]) -> (f64, f64) {
-        let found = variances(residuals, 1.0).unwrap();
+        let found = variances(residuals, 1.0, 1.0).unwrap();
         ((found.sin / found.cos).sqrt(), found.log_ratio_error)
     }
 
@@ -295,6 +302,6 @@ mod tests {
                 ..r
             })
             .collect();
-        assert_eq!(variances(&still, 1.0), None);
+        assert_eq!(variances(&still, 1.0, 1.0), None);
     }
 }

@@ -48,6 +48,8 @@ pub struct Calibration {
     pub noise_ratio_error: Option<f64>,
     /// What repeats with the angle and is no ellipse.
     pub shape: Option<Shape>,
+    /// How much further consecutive parts of the recording differ than the error bars of [`Method::Unbiased`] say.
+    pub scatter: Option<f64>,
     /// Share of the scale period in which there are samples, 0 to 1.
     pub arc: f64,
     /// The Cramér–Rao bound for that noise and those angles.

@@ -74,7 +74,7 @@ pub fn fit(cos: &[f64], sin: &[f64], start: &Ellipse, ratio: Option<f64>) -> Fit
         let settled = size < 1e-9;
         if searching && (settled || size < 1e-4 || iteration % 8 == 7) {
             let last = metric;
-            (metric, ratio_assumed) = round.ratio(metric);
+            (metric, ratio_assumed) = round.ratio(metric, ellipse.a_s / ellipse.a_c);
             searching = (metric / last).ln().abs() > 3e-4 && iteration < ITERATIONS / 2;
         } else if settled {
             converged = true;
@@ -86,7 +86,7 @@ pub fn fit(cos: &[f64], sin: &[f64], start: &Ellipse, ratio: Option<f64>) -> Fit
     let shape = noise::take_shape(&mut residuals);
     let white = residuals.iter().map(|r| r.white * r.white).sum::<f64>();
     let white = (white / (pairs.len() as f64 - 5.0).max(1.0)).sqrt();
-    let found = noise::variances(&residuals, metric);
+    let found = noise::variances(&residuals, metric, ellipse.a_s / ellipse.a_c);
     let noise = match found {
         // Of a given ratio the size alone is measured.
         Some(found) if ratio.is_none() && !ratio_assumed => [found.cos.sqrt(), found.sin.sqrt()],
@@ -170,10 +170,10 @@ impl Round {
     }
 
     /// σ_s/σ_c from the residuals, and whether it had to be assumed.
-    fn ratio(&self, now: f64) -> (f64, bool) {
+    fn ratio(&self, now: f64, gain: f64) -> (f64, bool) {
         let mut residuals = self.residuals.clone();
         let _ = noise::take_shape(&mut residuals);
-        match noise::variances(&residuals, now) {
+        match noise::variances(&residuals, now, gain) {
             Some(found) if found.log_ratio_error < VAGUE => ((found.sin / found.cos).sqrt(), false),
             _ => (1.0, true),
         }
