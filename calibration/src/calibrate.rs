@@ -54,6 +54,9 @@ pub fn calibrate(
     let mut fit = unbiased::fit(c, s, &samples.start, options.noise_ratio);
     if !fit.converged {
         fit.ellipse = samples.start;
+        if samples::gap(&fit.ellipse, c, s) > words::GAP {
+            return Err(Error::NoEllipse);
+        }
     }
     let estimate = estimate(method, c, s, &fit).ok_or(Error::NoEllipse)?;
     let angles: Vec<f64> = c
@@ -71,12 +74,14 @@ pub fn calibrate(
     cannot_tell.extend(words::of_method(method));
     if !fit.converged && method == Method::Unbiased {
         cannot_tell.push(
-            "the geometric fit did not come to rest on so little of the curve: the values are those of a conic, without \
+            "a_c, b_c, a_s, b_s, beta: the geometric fit did not come to rest; the values are those of a conic, without \
              error bars"
                 .into(),
         );
     }
-    cannot_tell.extend(words::of_arc(gap, &fit, whole(&fit, c.len())));
+    if fit.converged {
+        cannot_tell.extend(words::of_arc(gap, &fit, whole(&fit, c.len())));
+    }
     if method == Method::Unbiased && own_residual > words::ROUNDING {
         cannot_tell.extend(words::of_ratio(&fit));
     }
@@ -164,9 +169,7 @@ pub fn undetermined(method: Method, cos: &[f64], sin: &[f64], why: &Error) -> Ca
         scatter: None,
         arc: 0.0,
         bound: None,
-        cannot_tell: vec![format!(
-            "a_c, b_c, a_s, b_s, beta, theta: {why}; the values are half the sums and differences of the extremes"
-        )],
+        cannot_tell: vec![words::of_nothing(words::slimness(cos, sin), why)],
         remarks: vec![],
     }
 }

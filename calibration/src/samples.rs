@@ -5,7 +5,7 @@
 
 use nonius_recording::{Ellipse, FitMethod};
 
-use crate::conic;
+use crate::curve::Curve;
 
 /// Residual, in robust standard deviations, from which a sample is far off. White noise gets there once in 5·10⁸.
 const FAR: f64 = 6.0;
@@ -34,7 +34,7 @@ impl Samples {
         let start = if quick.method == FitMethod::Conic {
             quick.ellipse
         } else {
-            conic::heydemann(cos, sin)?
+            Ellipse::of_arc(cos, sin).filter(Curve::is_sound)?
         };
         let limit = limit(&start, cos, sin);
         let near = |(c, s): &(&f64, &f64)| start.radial_residual(**c, **s).abs() <= limit;
@@ -101,7 +101,6 @@ mod tests {
     };
 
     fn turning(n: usize, turns: f64) -> (Vec<f64>, Vec<f64>) {
-        use crate::curve::Curve;
         let angle = |k: usize| std::f64::consts::TAU * turns * k as f64 / n as f64;
         // A deterministic wobble in place of noise.
         let at = |k: usize| SENSOR.point(angle(k)) * (1.0 + 0.003 * (k as f64 * 2.4).sin());

@@ -2,14 +2,14 @@
 
 use crate::curve::{Curve, Parameters};
 use crate::gradient::Minimum;
-use crate::method::Method;
+use crate::method::{Error, Method};
 use crate::unbiased::Fit;
 
 pub(crate) const NAMES: [&str; 5] = ["a_c", "b_c", "a_s", "b_s", "beta"];
 /// Standard errors above this, in amplitudes or radians, are no knowledge.
 const VAGUE: f64 = 0.1;
 /// Largest gap between neighbouring angles, in turns, of data that go round.
-const GAP: f64 = 0.25;
+pub(crate) const GAP: f64 = 0.25;
 /// Loss by a short arc that is worth a name.
 const WORSE: f64 = 3.0;
 /// Scatter of the recording's parts, in standard errors, that white noise reaches once in thousands.
@@ -153,4 +153,38 @@ pub(crate) fn beside_unbiased(method: Method, found: &Parameters, fit: &Fit) -> 
             method.name()
         )
     })
+}
+
+/// Standard deviation across the samples' main direction over that along it, 0 to 1.
+pub(crate) fn slimness(cos: &[f64], sin: &[f64]) -> f64 {
+    let n = cos.len() as f64;
+    let mean = |v: &[f64]| v.iter().sum::<f64>() / n;
+    let (c0, s0) = (mean(cos), mean(sin));
+    let mut spread = nalgebra::Matrix2::zeros();
+    for (c, s) in cos.iter().zip(sin) {
+        let y = nalgebra::Vector2::new(c - c0, s - s0);
+        spread += y * y.transpose();
+    }
+    let values = spread.symmetric_eigenvalues();
+    (values.min().max(0.0) / values.max().max(f64::MIN_POSITIVE)).sqrt()
+}
+
+/// Where the samples draw no ellipse at all.
+pub(crate) fn of_nothing(slimness: f64, why: &Error) -> String {
+    /// Slimmer than this is a line, rounder a cloud.
+    const LINE: f64 = 0.4;
+    let seen = match why {
+        Error::NoEllipse if slimness < LINE => {
+            "the samples lie on a line within their noise: the arc is too short, or both channels carry one signal"
+                .into()
+        }
+        Error::NoEllipse => {
+            "the samples are a cloud and no ring: the scale stands still, or the signals are no sin/cos pair".into()
+        }
+        other => other.to_string(),
+    };
+    format!(
+        "a_c, b_c, a_s, b_s, beta, theta: {seen}; move the scale by a period or more while recording; the values are \
+         half the sums and differences of the extremes"
+    )
 }
