@@ -2,8 +2,8 @@
 //!
 //! Every sample is projected on the curve along the metric of the noise; Gauss–Newton makes the signed distances
 //! small. Noise makes a curved line look larger: a distance has the mean κσ²/2, which is taken off in every step. What
-//! is left of the bias is below a tenth of a standard error, where the plain fit has 1.3 and the algebraic one 6 at
-//! 5 % noise and 4000 samples.
+//! is left of the bias is below a tenth of a standard error, where the plain fit has about one and the algebraic one six
+//! at 5 % noise and 4000 samples.
 
 use nalgebra::{SMatrix, Vector2};
 use nonius_recording::Ellipse;
