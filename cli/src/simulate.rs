@@ -67,7 +67,6 @@ struct BitTrue<'a> {
 
 impl Interpolator for BitTrue<'_> {
     fn estimate(&self) -> Estimate {
-        let parameters = self.design.spec.calibration.parameters as usize;
         Estimate {
             position: exact(
                 self.chip.position_raw(),
@@ -75,7 +74,11 @@ impl Interpolator for BitTrue<'_> {
             ),
             speed_per_sample: self.speed,
             locked: self.chip.state.locked,
-            theta: theta(&self.design.spec, self.chip.theta())[..parameters].to_vec(),
+            theta: {
+                let all = theta(&self.design.spec, self.chip.theta());
+                let numbers = self.design.spec.calibration.thetas();
+                numbers.iter().map(|i| all[i - 1]).collect()
+            },
         }
     }
 
@@ -148,11 +151,11 @@ pub(crate) fn run(args: &Simulate) -> Result<()> {
     let design = Design::new(&spec).with_context(|| format!("{file} cannot work"))?;
     let recording = Recording::read(&args.recording, &args.recording_args.overrides())?;
     play::check(&spec, &recording, &args.recording, args.repeat)?;
-    let parameters = spec.calibration.parameters as usize;
+    let thetas = spec.calibration.thetas();
     let mut interpolator: Box<dyn Interpolator> = if args.reference {
         Box::new(Paper {
             paper: crate::paper::Paper::of(&design)?,
-            parameters,
+            parameters: thetas.len(),
         })
     } else {
         Box::new(BitTrue {
@@ -173,7 +176,7 @@ pub(crate) fn run(args: &Simulate) -> Result<()> {
         interpolator.as_mut(),
         &recording,
         args.repeat,
-        parameters,
+        thetas,
     )
     .with_context(|| format!("cannot write {}", args.output.display()))?;
     interpolator.finish()?;
@@ -194,11 +197,11 @@ fn write(
     interpolator: &mut dyn Interpolator,
     recording: &Recording,
     repeat: u32,
-    parameters: usize,
+    thetas: &[usize],
 ) -> Result<()> {
     let mut out = BufWriter::with_capacity(1 << 16, target.file());
     write!(out, "time_s,position_periods,speed_periods_per_s,locked")?;
-    for i in 1..=parameters {
+    for i in thetas {
         write!(out, ",theta_{i}")?;
     }
     writeln!(out)?;

@@ -5,7 +5,7 @@
 // radial residual rho shows what the correction still misses and moves its parameters theta.
 // After S. Balemi, "Automatic calibration of sinusoidal encoder signals", IFAC 2005; equation numbers are the paper's.
 //
-// Design 330a69fa3b46: 16 products on 1 multiplier, 19 clocks per sample.
+// Design 410cac1d0417: 16 products on 1 multiplier, 19 clocks per sample.
 //
 // Formats: sW.F is a two's complement number of W bits, F of them behind the point; uW.F has no sign and is kept here
 // with a zero in front, so that every number is signed. Angles are in turns of a scale period.
@@ -448,12 +448,13 @@ module optical (
     //   theta -= gamma (2 y_c rho_c, rho_c, 2 y_s rho_s, rho_s, 4 y_c rho_s)
     //   (paper section 5.5.1, M of equation (7))
     wire signed [29:0] y_c_times_rho_s = product_0[29:0]; // s30.27, step 17
+    wire signed [29:0] y_c_times_rho_c = product_0[29:0]; // s30.27, step 15
+    wire signed [29:0] y_s_times_rho_s = product_0[29:0]; // s30.27, step 16
     wire signed [29:0] gradient_5 = y_c_times_rho_s; // s30.29, step 17
     wire signed [26:0] step_5_geared = shifted_1; // s27.26, step 17
     wire signed [26:0] step_5_now = fresh ? step_5_geared : 27'sd0; // s27.26, step 17
     wire signed [26:0] theta_5_deviation_next_difference = {{2{theta_5_deviation[24]}}, theta_5_deviation} - step_5; // s27.26, step 18
     wire signed [24:0] theta_5_deviation_next = ((&theta_5_deviation_next_difference[26:24]) | ~(|theta_5_deviation_next_difference[26:24])) ? theta_5_deviation_next_difference[24:0] : {theta_5_deviation_next_difference[26], {24{~theta_5_deviation_next_difference[26]}}}; // s25.26, step 18
-    wire signed [29:0] y_c_times_rho_c = product_0[29:0]; // s30.27, step 15
     wire signed [29:0] gradient_1 = y_c_times_rho_c; // s30.30, step 15
     wire signed [26:0] step_1_geared = shifted_1; // s27.26, step 15
     wire signed [25:0] step_1_now = fresh ? step_1_geared[25:0] : 26'sd0; // s26.26, step 15
@@ -464,7 +465,6 @@ module optical (
     wire signed [23:0] step_2_now = fresh ? step_2_geared[23:0] : 24'sd0; // s24.26, step 13
     wire signed [25:0] theta_2_deviation_next_difference = {theta_2_deviation[24], theta_2_deviation} - {{2{step_2[23]}}, step_2}; // s26.26, step 14
     wire signed [24:0] theta_2_deviation_next_now = ((&theta_2_deviation_next_difference[25:24]) | ~(|theta_2_deviation_next_difference[25:24])) ? theta_2_deviation_next_difference[24:0] : {theta_2_deviation_next_difference[25], {24{~theta_2_deviation_next_difference[25]}}}; // s25.26, step 14
-    wire signed [29:0] y_s_times_rho_s = product_0[29:0]; // s30.27, step 16
     wire signed [29:0] gradient_3 = y_s_times_rho_s; // s30.30, step 16
     wire signed [26:0] step_3_geared = shifted_1; // s27.26, step 16
     wire signed [25:0] step_3_now = fresh ? step_3_geared[25:0] : 26'sd0; // s26.26, step 16

@@ -162,7 +162,7 @@ impl Method {
 impl OnChip {
     fn step(&mut self, y: [f64; 2]) -> Said {
         let (middle, amplitude) = (self.spec.adc.middle, self.spec.sensor.amplitude);
-        let [one, two, three, four, five] = physical::theta(&self.spec, self.chip.theta());
+        let [one, two, three, four, five, ..] = physical::theta(&self.spec, self.chip.theta());
         // For signals of amplitude 1 about 0, from those in volts.
         let mut theta = Theta::zeros();
         theta[0] = one * amplitude;

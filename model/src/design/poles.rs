@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use super::DesignError;
-use crate::spec::Spec;
+use crate::spec::{CalibrationMethod, Spec};
 
 /// The tracking loop in real numbers.
 #[derive(Clone, Debug, PartialEq)]
@@ -158,14 +158,14 @@ pub(super) fn check(spec: &Spec) -> Result<(), DesignError> {
         44.0,
         "counted periods",
     )?;
-    if !matches!(spec.calibration.parameters, 0 | 4 | 5) {
-        return refuse(
-            "calibration.parameters",
-            spec.calibration.parameters,
-            "0, 4 or 5",
-            "offsets and gains are 4, with the phase 5",
-        );
-    }
+    between(
+        "sensor.bend_max",
+        spec.sensor.bend_max,
+        0.0,
+        0.2,
+        "polynomials of third order mend no more",
+    )?;
+    calibration(spec)?;
     between(
         "calibration.gamma_first",
         spec.calibration.gamma_first.into(),
@@ -213,6 +213,57 @@ pub(super) fn check(spec: &Spec) -> Result<(), DesignError> {
         );
     }
     Ok(())
+}
+
+fn calibration(spec: &Spec) -> Result<(), DesignError> {
+    let c = &spec.calibration;
+    if !matches!(c.parameters, 0 | 4 | 5 | 8 | 9) {
+        return refuse(
+            "calibration.parameters",
+            c.parameters,
+            "0, 4, 5, 8 or 9",
+            "offsets and gains are 4, with the phase 5, with the bends of both channels 8 and 9",
+        );
+    }
+    let bends = c.parameters >= 8;
+    if bends && c.method == CalibrationMethod::Exact {
+        return refuse(
+            "calibration.method",
+            "exact",
+            "\"final\", which completes itself with one sensitivity, or 4 or 5 parameters",
+            "recursion (11) for each of 8 or 9 parameters costs 16 or 18 products a sample for what one scalar shows",
+        );
+    }
+    if bends && c.method != CalibrationMethod::Final {
+        return refuse(
+            "calibration.method",
+            "sum of squares",
+            "\"final\", or 4 or 5 parameters",
+            "the sum of squares sees the radius alone and cannot be completed: with bends it stands still beside the truth",
+        );
+    }
+    if bends && c.completion && spec.sensor.periods_per_revolution == Some(1.0) {
+        return refuse(
+            "calibration.completion",
+            true,
+            "false, or 5 parameters",
+            "where a scale period is a revolution, motion at two cycles per revolution looks like a bend and would be learnt",
+        );
+    }
+    between(
+        "calibration.forgetting",
+        c.forgetting.into(),
+        0.0,
+        4.0,
+        "longer memory than a quarter of a period makes the search swing",
+    )?;
+    between(
+        "calibration.completion_gamma",
+        c.completion_gamma.into(),
+        1.0,
+        18.0,
+        "a gamma of 2^-0 does not converge, and 2^-18 takes a million samples",
+    )
 }
 
 impl Loop {

@@ -1,12 +1,15 @@
-//! On-line calibration: the residual gradient in its final form.
+//! On-line calibration: the step of the parameters against the gradient.
 //!
 //! δΘ = −γ Mᵀ n ρ with n = (cos α̂, sin α̂) and ρ the radial residual. γ is a power of two and shifts gear: large
 //! first, halved after every few periods of travel, large again when the residual shows that the signal has changed.
 
 use super::detector::within;
-use super::{Coefficients, State, Structure};
+use super::gradient::{self, Seen};
+use super::sensitivity::Sensitivity;
+use super::{Coefficients, State, Structure, sum_of_squares};
 use crate::format::Quantiser;
 use crate::signal::{Formula, Logic, Signal, Wide};
+use crate::spec::CalibrationMethod;
 
 // Powers of two that bring the modes of the gradient (offsets 1/2, gains 1/4, phase 1/8 per unit of gamma and
 // normalised amplitude) to about one speed.
@@ -14,20 +17,19 @@ const OFFSET: i32 = 0;
 const GAIN: i32 = 1;
 const PHASE: i32 = 2;
 
-const GRADIENT: [&str; 5] = [
+const GRADIENT: [&str; 8] = [
     "gradient_1",
     "gradient_2",
     "gradient_3",
     "gradient_4",
     "gradient_5",
+    "gradient_6",
+    "gradient_7",
+    "gradient_8",
 ];
-const STEP: [&str; 5] = ["step_1", "step_2", "step_3", "step_4", "step_5"];
-
-static DIRECTION: Formula = Formula {
-    title: "Gradient along the radius",
-    equation: "rho_c = cos(alpha_hat) rho,  rho_s = sin(alpha_hat) rho",
-    source: "paper section 5.5.1: r + (sin, -cos) e = n (n^T r)",
-};
+const STEP: [&str; 8] = [
+    "step_1", "step_2", "step_3", "step_4", "step_5", "step_6", "step_7", "step_8",
+];
 
 static UPDATE: Formula = Formula {
     title: "Parameter update",
@@ -41,36 +43,96 @@ static GEARS: Formula = Formula {
     source: "",
 };
 
-/// n ρ.
-pub fn gradient<S: Signal>(rho: S, cos_hat: S, sin_hat: S, structure: &Structure) -> (S, S) {
-    rho.begin(&DIRECTION);
-    let signal = &structure.formats.signal;
-    (
-        (cos_hat * rho).quantise(signal),
-        (sin_hat * rho).quantise(signal),
-    )
+/// The parameters after a sample, and what their search remembers.
+pub struct Update<S: Signal> {
+    /// Accumulators of θ1 … θ9.
+    pub theta: [S; 9],
+    /// ∇α̂ by θ1 … θ5.
+    pub sensitivities: [Sensitivity<S>; 5],
+    /// Gathered gradients by θ1 … θ5.
+    pub gathered: [S; 5],
+    /// sin α̂ cos α̂, where bends are calibrated.
+    pub w_null: S,
 }
 
-/// The parameter accumulators after this sample.
+/// The parameter accumulators after this sample, all but θ9. `whole_period`: a period of travel ends.
 pub fn update<S: Signal>(
-    (y_c, y_s): (S, S),
-    (rho_c, rho_s): (S, S),
+    seen: &Seen<S>,
     fresh: S::Bool,
+    whole_period: S::Bool,
     state: &State<S>,
     k: &Coefficients<S>,
     structure: &Structure,
-) -> [S; 5] {
-    y_c.begin(&UPDATE);
-    let old = [
-        state.theta_1_deviation,
-        state.theta_2_deviation,
-        state.theta_3_deviation,
-        state.theta_4_deviation,
-        state.theta_5_deviation,
-    ];
+) -> Update<S> {
+    seen.rho.begin(&UPDATE);
+    let mut this = Update {
+        theta: [
+            state.theta_1_deviation,
+            state.theta_2_deviation,
+            state.theta_3_deviation,
+            state.theta_4_deviation,
+            state.theta_5_deviation,
+            state.theta_6_deviation,
+            state.theta_7_deviation,
+            state.theta_8_deviation,
+            state.theta_9_deviation,
+        ],
+        sensitivities: [Sensitivity {
+            gradient: k.zero,
+            rate: k.zero,
+            error: k.zero,
+        }; 5],
+        gathered: sum_of_squares::gathered(state),
+        w_null: k.zero,
+    };
     if structure.parameters == 0 {
-        return old;
+        return this;
     }
+    let mut gradient = gradient::linear(seen, k, structure);
+    match structure.gradient {
+        CalibrationMethod::Final => {}
+        CalibrationMethod::Exact => {
+            this.sensitivities = gradient::sensitivities(seen, state, k, structure);
+            for i in 0..5 {
+                if i < 4 || structure.has_phase() {
+                    gradient[i] = gradient[i] + this.sensitivities[i].error * seen.e;
+                }
+            }
+        }
+        CalibrationMethod::SumOfSquares | CalibrationMethod::Batch => {
+            for i in 0..5 {
+                if i < 4 || structure.has_phase() {
+                    let before = this.gathered[i];
+                    let gathered = sum_of_squares::gather(
+                        gradient[i],
+                        before,
+                        fresh,
+                        whole_period,
+                        k.zero,
+                        structure,
+                    );
+                    gradient[i] = gathered.gradient.widen();
+                    this.gathered[i] = gathered.next;
+                }
+            }
+            seen.rho.begin(&UPDATE);
+        }
+    }
+    // A batch acts where its period ends.
+    let due = if structure.gradient == CalibrationMethod::Batch {
+        fresh.and(whole_period).named("batch_due")
+    } else {
+        fresh
+    };
+    let mut bends = None;
+    if structure.has_bend() {
+        let bent = gradient::bent(seen, k, structure);
+        (gradient[1], gradient[3], gradient[4]) = (bent.offsets[0], bent.offsets[1], bent.phase);
+        bends = Some((bent.second, bent.third));
+        this.w_null = bent.w;
+        seen.rho.begin(&UPDATE);
+    }
+    let old = this.theta;
     let step = |gradient: S::Wide, i: usize, equaliser: i32| {
         let geared = gradient
             .scale(equaliser - structure.gamma_first as i32)
@@ -81,21 +143,22 @@ pub fn update<S: Signal>(
                 structure.gamma_gears,
                 &structure.formats.step,
             );
-        let step = S::select(fresh, geared, k.zero).named(STEP[i]);
+        let step = S::select(due, geared, k.zero).named(STEP[i]);
         (old[i] - step).quantise(&structure.formats.deviation[i])
     };
-    let fifth = if structure.parameters >= 5 {
-        step(y_c * rho_s, 4, PHASE)
-    } else {
-        k.zero
-    };
-    [
-        step(y_c * rho_c, 0, GAIN),
-        step(rho_c.widen(), 1, OFFSET),
-        step(y_s * rho_s, 2, GAIN),
-        step(rho_s.widen(), 3, OFFSET),
-        fifth,
-    ]
+    if structure.has_phase() {
+        this.theta[4] = step(gradient[4], 4, PHASE);
+    }
+    this.theta[0] = step(gradient[0], 0, GAIN);
+    this.theta[1] = step(gradient[1], 1, OFFSET);
+    this.theta[2] = step(gradient[2], 2, GAIN);
+    this.theta[3] = step(gradient[3], 3, OFFSET);
+    if let Some(([second_c, second_s], third)) = bends {
+        this.theta[5] = step(second_c, 5, 0);
+        this.theta[6] = step(second_s, 6, 0);
+        this.theta[7] = step(third, 7, 0);
+    }
+    this
 }
 
 /// γ gear, periods in it, and whether the running period was disturbed.
