@@ -141,6 +141,8 @@ pub(super) fn structure(
         loop_gears: acquisition.gears,
         loop_stride: acquisition.stride,
         gamma_first: spec.calibration.gamma_first,
+        // To the nearest power of two.
+        amplitude_shift: (-2.0 * normalisation(spec).0.log2()).round() as u32,
         gamma_gears: spec.calibration.gamma_last - spec.calibration.gamma_first,
     })
 }
@@ -243,6 +245,10 @@ pub(super) fn constants(
         lock_full: whole(full),
         lock_restart: whole(full / 2),
         loop_gear_last: whole(acquisition.gears.into()),
+        completion_residual: Constant::rounded(
+            exp2((6.0 * s.noise_rms).max(0.05).log2().ceil() as i64),
+            f.min(8),
+        ),
         travel_samples_last: whole(travel_samples(spec).into()),
         gamma_gear_last: whole(structure.gamma_gears.into()),
         gear_periods_last: whole(i64::from(spec.calibration.gear_periods) - 1),

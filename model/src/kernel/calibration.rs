@@ -11,11 +11,38 @@ use crate::format::Quantiser;
 use crate::signal::{Formula, Logic, Signal, Wide};
 use crate::spec::CalibrationMethod;
 
-// Powers of two that bring the modes of the gradient (offsets 1/2, gains 1/4, phase 1/8 per unit of gamma and
-// normalised amplitude) to about one speed.
-const OFFSET: i32 = 0;
-const GAIN: i32 = 1;
-const PHASE: i32 = 2;
+/// Powers of two that equalise the modes of the gradient: offsets 1/2, gains 1/4 and 1/2, phase 1/8, per unit of gamma
+/// and amplitude.
+struct Equaliser {
+    offset: i32,
+    gain: i32,
+    phase: i32,
+    bend: i32,
+}
+
+impl Equaliser {
+    fn of(structure: &Structure) -> Self {
+        let amplitude = structure.amplitude_shift as i32;
+        // With bends the gradients by offset and phase are made of the estimate, whose amplitude is 1, and the offset's
+        // has its factor.
+        let bent = structure.has_bend();
+        let (offset, gain, phase) = match structure.gradient {
+            _ if bent => (0, 1, 2),
+            // The phase waits for the others in the first periods; twice as fast it is done with them.
+            CalibrationMethod::Final | CalibrationMethod::Exact => (0, 1, 4),
+            // What is remembered lags, and must not be as fast.
+            CalibrationMethod::SumOfSquares => (0, 1, 3),
+            // The inverse of the modes, with [3 -1; -1 3] for the gains: a period is a step of Newton's.
+            CalibrationMethod::Batch => (1, 0, 3),
+        };
+        Self {
+            offset,
+            gain: gain + amplitude,
+            phase: phase + if bent { 0 } else { amplitude },
+            bend: 0,
+        }
+    }
+}
 
 const GRADIENT: [&str; 8] = [
     "gradient_1",
@@ -55,8 +82,9 @@ pub struct Update<S: Signal> {
     pub w_null: S,
 }
 
-/// The parameter accumulators after this sample, all but θ9. `whole_period`: a period of travel ends.
-pub fn update<S: Signal>(
+/// The parameter accumulators after this sample, all but θ9. `whole_period`: a period of travel ends. `PLAIN` as
+/// [`Structure::is_plain`].
+pub fn update<S: Signal, const PLAIN: bool>(
     seen: &Seen<S>,
     fresh: S::Bool,
     whole_period: S::Bool,
@@ -89,7 +117,12 @@ pub fn update<S: Signal>(
         return this;
     }
     let mut gradient = gradient::linear(seen, k, structure);
-    match structure.gradient {
+    let method = if PLAIN {
+        CalibrationMethod::Final
+    } else {
+        structure.gradient
+    };
+    match method {
         CalibrationMethod::Final => {}
         CalibrationMethod::Exact => {
             this.sensitivities = gradient::sensitivities(seen, state, k, structure);
@@ -119,18 +152,26 @@ pub fn update<S: Signal>(
         }
     }
     // A batch acts where its period ends.
-    let due = if structure.gradient == CalibrationMethod::Batch {
+    let due = if method == CalibrationMethod::Batch {
         fresh.and(whole_period).named("batch_due")
     } else {
         fresh
     };
     let mut bends = None;
-    if structure.has_bend() {
+    if !PLAIN && structure.has_bend() {
         let bent = gradient::bent(seen, k, structure);
         (gradient[1], gradient[3], gradient[4]) = (bent.offsets[0], bent.offsets[1], bent.phase);
         bends = Some((bent.second, bent.third));
         this.w_null = bent.w;
         seen.rho.begin(&UPDATE);
+    }
+    let by = Equaliser::of(structure);
+    if method == CalibrationMethod::Batch {
+        let newton = |own: S::Wide, other: S::Wide| own.scale(2) - own - other;
+        (gradient[0], gradient[2]) = (
+            newton(gradient[0], gradient[2]),
+            newton(gradient[2], gradient[0]),
+        );
     }
     let old = this.theta;
     let step = |gradient: S::Wide, i: usize, equaliser: i32| {
@@ -147,16 +188,16 @@ pub fn update<S: Signal>(
         (old[i] - step).quantise(&structure.formats.deviation[i])
     };
     if structure.has_phase() {
-        this.theta[4] = step(gradient[4], 4, PHASE);
+        this.theta[4] = step(gradient[4], 4, by.phase);
     }
-    this.theta[0] = step(gradient[0], 0, GAIN);
-    this.theta[1] = step(gradient[1], 1, OFFSET);
-    this.theta[2] = step(gradient[2], 2, GAIN);
-    this.theta[3] = step(gradient[3], 3, OFFSET);
+    this.theta[0] = step(gradient[0], 0, by.gain);
+    this.theta[1] = step(gradient[1], 1, by.offset);
+    this.theta[2] = step(gradient[2], 2, by.gain);
+    this.theta[3] = step(gradient[3], 3, by.offset);
     if let Some(([second_c, second_s], third)) = bends {
-        this.theta[5] = step(second_c, 5, 0);
-        this.theta[6] = step(second_s, 6, 0);
-        this.theta[7] = step(third, 7, 0);
+        this.theta[5] = step(second_c, 5, by.bend);
+        this.theta[6] = step(second_s, 6, by.bend);
+        this.theta[7] = step(third, 7, by.bend);
     }
     this
 }

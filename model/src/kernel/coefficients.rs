@@ -119,6 +119,8 @@ coefficients! {
     lock_restart,
     /// Last loop gear.
     loop_gear_last,
+    /// |ρ| below this lets the completion learn.
+    completion_residual,
     /// A period of travel that takes so many samples is too slow for the completion.
     travel_samples_last,
     /// Last γ gear.

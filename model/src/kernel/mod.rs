@@ -66,6 +66,8 @@ pub struct Structure {
     pub loop_stride: u32,
     /// First γ is 2^-`gamma_first`.
     pub gamma_first: u32,
+    /// The gradient by gains and phase carries the square of the amplitude, ¼ … 1; this power of two brings it near 1.
+    pub amplitude_shift: u32,
     /// Last γ gear; each halves γ.
     pub gamma_gears: u32,
 }
@@ -75,6 +77,12 @@ impl Structure {
     #[must_use]
     pub fn has_phase(&self) -> bool {
         matches!(self.parameters, 5 | 9)
+    }
+
+    /// Neither bends nor another gradient than the final form.
+    #[must_use]
+    pub fn is_plain(&self) -> bool {
+        !self.has_bend() && self.gradient == CalibrationMethod::Final
     }
 
     /// The sum of squares, gathered over samples, moves the parameters.

@@ -15,7 +15,24 @@ static FLAGS: Formula = Formula {
 };
 
 /// The registers after the sample and its named internal signals.
+#[inline]
 pub fn sample<S: Signal>(
+    input: &Input<S>,
+    state: &State<S>,
+    k: &Coefficients<S>,
+    structure: &Structure,
+) -> (State<S>, Probes<S>) {
+    // The same code twice: where the design has neither bends nor another gradient than the final form, the compiler
+    // leaves them out, which makes the bit-true model faster by two thirds.
+    if structure.is_plain() {
+        sample_of::<S, true>(input, state, k, structure)
+    } else {
+        sample_of::<S, false>(input, state, k, structure)
+    }
+}
+
+#[inline]
+fn sample_of<S: Signal, const PLAIN: bool>(
     input: &Input<S>,
     state: &State<S>,
     k: &Coefficients<S>,
@@ -26,7 +43,7 @@ pub fn sample<S: Signal>(
     let y_s = correction::normalise(input.adc_sin, k, structure);
     let theta = correction::parameters(state, k, structure);
     let mut bends = None;
-    let (c, s) = if structure.has_bend() {
+    let (c, s) = if !PLAIN && structure.has_bend() {
         let bends = bends.insert(bend::parameters(state, structure));
         correction::correct_bent(y_c, y_s, theta, bends, k, structure)
     } else {
@@ -50,7 +67,7 @@ pub fn sample<S: Signal>(
     let counting = state.locked.and(input.calibrate).named("counting");
     let travel = travel::travel(counting, state, k, structure);
     let fresh = counting.and(in_window).and(travel.new_sector);
-    let (rho_c, rho_s) = if structure.gathers() {
+    let (rho_c, rho_s) = if !PLAIN && structure.gathers() {
         let epsilon = sum_of_squares::half_square(c, s, k.half, structure);
         gradient::along(epsilon, (c, s), structure)
     } else {
@@ -64,9 +81,11 @@ pub fn sample<S: Signal>(
         along: (rho_c, rho_s),
     };
     let whole = travel.whole_period;
-    let mut updated = calibration::update(&seen, fresh, whole, state, k, structure);
-    let completed = structure.completion.map(|_| {
-        let open = counting.and(in_window);
+    let mut updated = calibration::update::<S, PLAIN>(&seen, fresh, whole, state, k, structure);
+    let completion = if PLAIN { None } else { structure.completion };
+    let completed = completion.map(|_| {
+        // What fades or is not yet calibrated along the radius teaches nothing across it.
+        let open = counting.and(detector::within(rho, k.completion_residual));
         let w = updated.w_null;
         completion::complete((w, e), open, counting, &travel, state, k, structure)
     });
@@ -91,8 +110,7 @@ pub fn sample<S: Signal>(
     } else {
         rate
     };
-    let null = completed.as_ref().map(|c| c.sensitivity);
-    let next = State {
+    let mut next = State {
         alpha_hat: position.alpha_hat,
         count: position.count,
         alpha_hat_previous: if one {
@@ -107,10 +125,6 @@ pub fn sample<S: Signal>(
         theta_3_deviation: updated.theta[2],
         theta_4_deviation: updated.theta[3],
         theta_5_deviation: updated.theta[4],
-        theta_6_deviation: updated.theta[5],
-        theta_7_deviation: updated.theta[6],
-        theta_8_deviation: updated.theta[7],
-        theta_9_deviation: updated.theta[8],
         lock_level: lock.level,
         loop_gear: lock.gear,
         gamma_gear: gears.gear,
@@ -118,37 +132,16 @@ pub fn sample<S: Signal>(
         travel_origin: travel.origin,
         travel_low: travel.low,
         travel_high: travel.high,
-        alpha_gradient_1: updated.sensitivities[0].gradient,
-        alpha_gradient_rate_1: updated.sensitivities[0].rate,
-        alpha_gradient_error_1: updated.sensitivities[0].error,
-        alpha_gradient_2: updated.sensitivities[1].gradient,
-        alpha_gradient_rate_2: updated.sensitivities[1].rate,
-        alpha_gradient_error_2: updated.sensitivities[1].error,
-        alpha_gradient_3: updated.sensitivities[2].gradient,
-        alpha_gradient_rate_3: updated.sensitivities[2].rate,
-        alpha_gradient_error_3: updated.sensitivities[2].error,
-        alpha_gradient_4: updated.sensitivities[3].gradient,
-        alpha_gradient_rate_4: updated.sensitivities[3].rate,
-        alpha_gradient_error_4: updated.sensitivities[3].error,
-        alpha_gradient_5: updated.sensitivities[4].gradient,
-        alpha_gradient_rate_5: updated.sensitivities[4].rate,
-        alpha_gradient_error_5: updated.sensitivities[4].error,
-        gathered_1: updated.gathered[0],
-        gathered_2: updated.gathered[1],
-        gathered_3: updated.gathered[2],
-        gathered_4: updated.gathered[3],
-        gathered_5: updated.gathered[4],
-        null_gradient: null.map_or(k.zero, |n| n.gradient),
-        null_gradient_rate: null.map_or(k.zero, |n| n.rate),
-        null_gradient_error: null.map_or(k.zero, |n| n.error),
-        travel_samples: completed.as_ref().map_or(k.zero, |c| c.samples),
         locked: lock.locked,
         lock_lost: lost,
         signal_lost: weak,
         direction,
         disturbed: gears.disturbed,
-        moving: completed.as_ref().map_or(state.moving, |c| c.moving),
+        ..*state
     };
+    if !PLAIN {
+        remember(&mut next, &updated, completed.as_ref());
+    }
     let [theta_1, theta_2, theta_3, theta_4, theta_5] = theta;
     let whole_period = travel.whole_period;
     let probes = Probes {
@@ -175,4 +168,53 @@ pub fn sample<S: Signal>(
         whole_period,
     };
     (next, probes)
+}
+
+/// The registers of the searches that not every design has.
+fn remember<S: Signal>(
+    next: &mut State<S>,
+    updated: &calibration::Update<S>,
+    completed: Option<&completion::Completion<S>>,
+) {
+    [
+        next.theta_6_deviation,
+        next.theta_7_deviation,
+        next.theta_8_deviation,
+        next.theta_9_deviation,
+    ] = [5, 6, 7, 8].map(|i| updated.theta[i]);
+    [
+        next.alpha_gradient_1,
+        next.alpha_gradient_2,
+        next.alpha_gradient_3,
+        next.alpha_gradient_4,
+        next.alpha_gradient_5,
+    ] = updated.sensitivities.map(|s| s.gradient);
+    [
+        next.alpha_gradient_rate_1,
+        next.alpha_gradient_rate_2,
+        next.alpha_gradient_rate_3,
+        next.alpha_gradient_rate_4,
+        next.alpha_gradient_rate_5,
+    ] = updated.sensitivities.map(|s| s.rate);
+    [
+        next.alpha_gradient_error_1,
+        next.alpha_gradient_error_2,
+        next.alpha_gradient_error_3,
+        next.alpha_gradient_error_4,
+        next.alpha_gradient_error_5,
+    ] = updated.sensitivities.map(|s| s.error);
+    [
+        next.gathered_1,
+        next.gathered_2,
+        next.gathered_3,
+        next.gathered_4,
+        next.gathered_5,
+    ] = updated.gathered;
+    if let Some(completed) = completed {
+        next.null_gradient = completed.sensitivity.gradient;
+        next.null_gradient_rate = completed.sensitivity.rate;
+        next.null_gradient_error = completed.sensitivity.error;
+        next.travel_samples = completed.samples;
+        next.moving = completed.moving;
+    }
 }

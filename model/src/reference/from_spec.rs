@@ -64,6 +64,26 @@ pub fn tracking(spec: &Spec) -> Result<LoopConfig, ReferenceError> {
     LoopConfig::named(t.method, t.filter_type, t.pole, &poles, ts)
 }
 
+/// The gradient's modes are 1/2 for offsets, 1/4 and 1/2 for gains, 1/8 for the phase: brought to about one speed as the
+/// chip does, whose gains and phase carry the square of the amplitude at its input to the nearest power of two.
+fn equaliser(spec: &Spec, parameters: Parameters) -> Theta {
+    let octaves = 2.0 * (spec.sensor.amplitude / spec.adc.full_scale).log2();
+    let square = (octaves - octaves.round()).exp2();
+    let (gain, phase) = match spec.calibration.method {
+        _ if spec.calibration.parameters >= 8 => (2.0 * square, 4.0),
+        CalibrationMethod::Final | CalibrationMethod::Exact => (2.0 * square, 16.0 * square),
+        CalibrationMethod::SumOfSquares => (2.0 * square, 8.0 * square),
+        CalibrationMethod::Batch => (2.0, 8.0),
+    };
+    let mut equaliser = Theta::repeat(1.0);
+    let [gain_c, _, gain_s, _] = parameters.linear();
+    (equaliser[gain_c], equaliser[gain_s]) = (gain, gain);
+    if parameters.count() % 2 == 1 {
+        equaliser[parameters.count() - 1] = phase;
+    }
+    equaliser
+}
+
 fn search(spec: &Spec) -> Search {
     let k = &spec.calibration;
     match (k.parameters, k.method) {
@@ -116,13 +136,7 @@ pub fn config(spec: &Spec) -> Result<Config, ReferenceError> {
         + s.amplitude_tolerance
         + s.phase_error_max_deg.to_radians()
         + 5.0 * s.noise_rms;
-    // The gradient's modes are 1/2 for offsets, 1/4 for gains, 1/8 for the phase: brought to one speed.
-    let mut equaliser = Theta::repeat(1.0);
-    let [gain_c, _, gain_s, _] = parameters.linear();
-    (equaliser[gain_c], equaliser[gain_s]) = (2.0, 2.0);
-    if parameters.count() % 2 == 1 {
-        equaliser[parameters.count() - 1] = 4.0;
-    }
+    let equaliser = equaliser(spec, parameters);
     // A loop settles within some multiples of 1/ω0.
     let omega = TAU * spec.tracking.bandwidth_hz / spec.adc.sample_rate_hz;
     let settled = (4.0 / omega).ceil().clamp(8.0, 1e6) as u32;
