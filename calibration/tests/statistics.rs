@@ -70,7 +70,7 @@ fn unbiased_efficient_and_honest() {
 #[test]
 fn unequal_noise_does_no_harm() {
     for noise in [[0.05 / 1.7, 0.05], [0.05, 0.05 / 1.7]] {
-        let tally = run(Method::Unbiased, noise, 100);
+        let tally = run(Method::Unbiased, noise, 250);
         assert_unbiased_efficient_and_honest(&tally, &format!("noise {noise:?}"));
     }
 }
