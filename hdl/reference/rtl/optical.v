@@ -34,10 +34,10 @@
 //   12 | sin_hat * rho                | in_window e_change fresh rho_c residual_large period_tick gamma_restart
 //      |                              | gamma_shift gear_periods_again
 //   13 | loop_a * e_change            | level_moved level_full level_empty narrower rho_s gradient_2 step_2
-//   14 | y_c * rho_s                  | kick gradient_4 step_4
-//   15 | y_c * rho_c                  | speed gradient_5 step_5
-//   16 | y_s * rho_s                  | alpha_hat_sum carry gradient_1 step_1
-//   17 | -                            | gradient_3 step_3
+//   14 | y_c * rho_c                  | kick gradient_4 step_4
+//   15 | y_s * rho_s                  | speed gradient_1 step_1
+//   16 | y_c * rho_s                  | alpha_hat_sum carry gradient_3 step_3
+//   17 | -                            | gradient_5 step_5
 //   18 | -                            |
 //
 // Coefficients, by name in the comments below:
@@ -179,13 +179,13 @@ module optical (
     reg fresh;
     reg signed [17:0] rho_c;
     reg signed [17:0] rho_s;
-    reg signed [26:0] step_5;
-    reg signed [24:0] theta_5_deviation_next;
-    reg signed [26:0] step_1;
+    reg signed [23:0] step_5;
+    reg signed [23:0] step_1;
     reg signed [25:0] theta_1_deviation_next;
     reg signed [23:0] step_2;
     reg signed [24:0] theta_2_deviation_next;
-    reg signed [26:0] step_3;
+    reg signed [23:0] step_3;
+    reg signed [25:0] theta_3_deviation_next;
     reg signed [23:0] step_4;
     reg signed [24:0] theta_4_deviation_next;
     reg residual_large_condition;
@@ -447,32 +447,32 @@ module optical (
     // Parameter update
     //   theta -= gamma (2 y_c rho_c, rho_c, 2 y_s rho_s, rho_s, 4 y_c rho_s)
     //   (paper section 5.5.1, M of equation (7))
-    wire signed [29:0] y_c_times_rho_s = product_0[29:0]; // s30.27, step 15
-    wire signed [29:0] y_c_times_rho_c = product_0[29:0]; // s30.27, step 16
-    wire signed [29:0] y_s_times_rho_s = product_0[29:0]; // s30.27, step 17
-    wire signed [29:0] gradient_5 = y_c_times_rho_s; // s30.26, step 15
-    wire signed [26:0] step_5_geared = shifted_1; // s27.26, step 15
-    wire signed [26:0] step_5_now = fresh ? step_5_geared : 27'sd0; // s27.26, step 15
-    wire signed [27:0] theta_5_deviation_next_difference = {{3{theta_5_deviation[24]}}, theta_5_deviation} - {step_5[26], step_5}; // s28.26, step 16
-    wire signed [24:0] theta_5_deviation_next_now = ((&theta_5_deviation_next_difference[27:24]) | ~(|theta_5_deviation_next_difference[27:24])) ? theta_5_deviation_next_difference[24:0] : {theta_5_deviation_next_difference[27], {24{~theta_5_deviation_next_difference[27]}}}; // s25.26, step 16
-    wire signed [29:0] gradient_1 = y_c_times_rho_c; // s30.29, step 16
-    wire signed [26:0] step_1_geared = shifted_1; // s27.26, step 16
-    wire signed [26:0] step_1_now = fresh ? step_1_geared : 27'sd0; // s27.26, step 16
-    wire signed [26:0] theta_1_deviation_next_difference = {theta_1_deviation[25], theta_1_deviation} - step_1; // s27.26, step 17
-    wire signed [25:0] theta_1_deviation_next_now = ((&theta_1_deviation_next_difference[26:25]) | ~(|theta_1_deviation_next_difference[26:25])) ? theta_1_deviation_next_difference[25:0] : {theta_1_deviation_next_difference[26], {25{~theta_1_deviation_next_difference[26]}}}; // s26.26, step 17
+    wire signed [29:0] y_c_times_rho_s = product_0[29:0]; // s30.27, step 17
+    wire signed [29:0] y_c_times_rho_c = product_0[29:0]; // s30.27, step 15
+    wire signed [29:0] y_s_times_rho_s = product_0[29:0]; // s30.27, step 16
+    wire signed [29:0] gradient_5 = y_c_times_rho_s; // s30.26, step 17
+    wire signed [23:0] step_5_geared = shifted_1; // s24.26, step 17
+    wire signed [23:0] step_5_now = fresh ? step_5_geared : 24'sd0; // s24.26, step 17
+    wire signed [25:0] theta_5_deviation_next_difference = {theta_5_deviation[24], theta_5_deviation} - {{2{step_5[23]}}, step_5}; // s26.26, step 18
+    wire signed [24:0] theta_5_deviation_next = ((&theta_5_deviation_next_difference[25:24]) | ~(|theta_5_deviation_next_difference[25:24])) ? theta_5_deviation_next_difference[24:0] : {theta_5_deviation_next_difference[25], {24{~theta_5_deviation_next_difference[25]}}}; // s25.26, step 18
+    wire signed [29:0] gradient_1 = y_c_times_rho_c; // s30.29, step 15
+    wire signed [23:0] step_1_geared = shifted_1; // s24.26, step 15
+    wire signed [23:0] step_1_now = fresh ? step_1_geared : 24'sd0; // s24.26, step 15
+    wire signed [26:0] theta_1_deviation_next_difference = {theta_1_deviation[25], theta_1_deviation} - {{3{step_1[23]}}, step_1}; // s27.26, step 16
+    wire signed [25:0] theta_1_deviation_next_now = ((&theta_1_deviation_next_difference[26:25]) | ~(|theta_1_deviation_next_difference[26:25])) ? theta_1_deviation_next_difference[25:0] : {theta_1_deviation_next_difference[26], {25{~theta_1_deviation_next_difference[26]}}}; // s26.26, step 16
     wire signed [17:0] gradient_2 = rho_c; // s18.20, step 13
-    wire signed [26:0] step_2_geared = shifted_1; // s27.26, step 13
-    wire signed [23:0] step_2_now = fresh ? step_2_geared[23:0] : 24'sd0; // s24.26, step 13
+    wire signed [23:0] step_2_geared = shifted_1; // s24.26, step 13
+    wire signed [23:0] step_2_now = fresh ? step_2_geared : 24'sd0; // s24.26, step 13
     wire signed [25:0] theta_2_deviation_next_difference = {theta_2_deviation[24], theta_2_deviation} - {{2{step_2[23]}}, step_2}; // s26.26, step 14
     wire signed [24:0] theta_2_deviation_next_now = ((&theta_2_deviation_next_difference[25:24]) | ~(|theta_2_deviation_next_difference[25:24])) ? theta_2_deviation_next_difference[24:0] : {theta_2_deviation_next_difference[25], {24{~theta_2_deviation_next_difference[25]}}}; // s25.26, step 14
-    wire signed [29:0] gradient_3 = y_s_times_rho_s; // s30.29, step 17
-    wire signed [26:0] step_3_geared = shifted_1; // s27.26, step 17
-    wire signed [26:0] step_3_now = fresh ? step_3_geared : 27'sd0; // s27.26, step 17
-    wire signed [26:0] theta_3_deviation_next_difference = {theta_3_deviation[25], theta_3_deviation} - step_3; // s27.26, step 18
-    wire signed [25:0] theta_3_deviation_next = ((&theta_3_deviation_next_difference[26:25]) | ~(|theta_3_deviation_next_difference[26:25])) ? theta_3_deviation_next_difference[25:0] : {theta_3_deviation_next_difference[26], {25{~theta_3_deviation_next_difference[26]}}}; // s26.26, step 18
+    wire signed [29:0] gradient_3 = y_s_times_rho_s; // s30.29, step 16
+    wire signed [23:0] step_3_geared = shifted_1; // s24.26, step 16
+    wire signed [23:0] step_3_now = fresh ? step_3_geared : 24'sd0; // s24.26, step 16
+    wire signed [26:0] theta_3_deviation_next_difference = {theta_3_deviation[25], theta_3_deviation} - {{3{step_3[23]}}, step_3}; // s27.26, step 17
+    wire signed [25:0] theta_3_deviation_next_now = ((&theta_3_deviation_next_difference[26:25]) | ~(|theta_3_deviation_next_difference[26:25])) ? theta_3_deviation_next_difference[25:0] : {theta_3_deviation_next_difference[26], {25{~theta_3_deviation_next_difference[26]}}}; // s26.26, step 17
     wire signed [17:0] gradient_4 = rho_s; // s18.20, step 14
-    wire signed [26:0] step_4_geared = shifted_1; // s27.26, step 14
-    wire signed [23:0] step_4_now = fresh ? step_4_geared[23:0] : 24'sd0; // s24.26, step 14
+    wire signed [23:0] step_4_geared = shifted_1; // s24.26, step 14
+    wire signed [23:0] step_4_now = fresh ? step_4_geared : 24'sd0; // s24.26, step 14
     wire signed [25:0] theta_4_deviation_next_difference = {theta_4_deviation[24], theta_4_deviation} - {{2{step_4[23]}}, step_4}; // s26.26, step 15
     wire signed [24:0] theta_4_deviation_next_now = ((&theta_4_deviation_next_difference[25:24]) | ~(|theta_4_deviation_next_difference[25:24])) ? theta_4_deviation_next_difference[24:0] : {theta_4_deviation_next_difference[25], {24{~theta_4_deviation_next_difference[25]}}}; // s25.26, step 15
 
@@ -512,13 +512,13 @@ module optical (
         case (step)
             5'd13: unshifted_1 = {{6{gradient_2[17]}}, gradient_2, 7'b0}; // step_2_geared
             5'd14: unshifted_1 = {{6{gradient_4[17]}}, gradient_4, 7'b0}; // step_4_geared
-            5'd15: unshifted_1 = {gradient_5, 1'b0}; // step_5_geared
-            5'd16: unshifted_1 = {{3{gradient_1[29]}}, gradient_1[29:2]}; // step_1_geared
-            default: unshifted_1 = {{3{gradient_3[29]}}, gradient_3[29:2]};
+            5'd15: unshifted_1 = {{3{gradient_1[29]}}, gradient_1[29:2]}; // step_1_geared
+            5'd16: unshifted_1 = {{3{gradient_3[29]}}, gradient_3[29:2]}; // step_3_geared
+            default: unshifted_1 = {gradient_5, 1'b0};
         endcase
     wire signed [30:0] shift_1 = unshifted_1 >>> gamma_gear[2:0];
     wire signed [29:0] shifted_1_rounded = shift_1[30:1] + {29'b0, shift_1[0]};
-    wire signed [26:0] shifted_1 = ((&shifted_1_rounded[29:26]) | ~(|shifted_1_rounded[29:26])) ? shifted_1_rounded[26:0] : {shifted_1_rounded[29], {26{~shifted_1_rounded[29]}}};
+    wire signed [23:0] shifted_1 = ((&shifted_1_rounded[29:23]) | ~(|shifted_1_rounded[29:23])) ? shifted_1_rounded[23:0] : {shifted_1_rounded[29], {23{~shifted_1_rounded[29]}}};
 
     // Multiplier 0
     always @(posedge clk)
@@ -527,9 +527,9 @@ module optical (
     always @(posedge clk)
         case (step)
             5'd0: operand_a_0 <= error_previous;
-            5'd1, 5'd5, 5'd13, 5'd14: operand_a_0 <= {{6{y_c[11]}}, y_c};
+            5'd1, 5'd5, 5'd13, 5'd15: operand_a_0 <= {{6{y_c[11]}}, y_c};
             5'd2: operand_a_0 <= {{3{cos_slope[14]}}, cos_slope};
-            5'd3, 5'd15: operand_a_0 <= {{6{y_s[11]}}, y_s};
+            5'd3, 5'd14: operand_a_0 <= {{6{y_s[11]}}, y_s};
             5'd4: operand_a_0 <= {{3{sin_slope[14]}}, sin_slope};
             5'd6, 5'd9: operand_a_0 <= c;
             5'd7: operand_a_0 <= s_now;
@@ -549,8 +549,7 @@ module optical (
             5'd6, 5'd8, 5'd10: operand_b_0 <= cos_hat;
             5'd7, 5'd9, 5'd11: operand_b_0 <= sin_hat;
             5'd12: operand_b_0 <= e_change;
-            5'd13: operand_b_0 <= rho_s_now;
-            5'd14: operand_b_0 <= rho_c;
+            5'd13: operand_b_0 <= rho_c;
             default: operand_b_0 <= rho_s;
         endcase
 
@@ -665,19 +664,19 @@ module optical (
             speed <= speed_now;
             direction_next_condition_2 <= direction_next_condition_2_now;
             value_condition_4 <= value_condition_4_now;
-            step_5 <= step_5_now;
+            step_1 <= step_1_now;
             theta_4_deviation_next <= theta_4_deviation_next_now;
         end
         if (step == 5'd16) begin
             alpha_hat_next <= alpha_hat_next_now;
             count_next <= count_next_now;
             direction_next <= direction_next_now;
-            theta_5_deviation_next <= theta_5_deviation_next_now;
-            step_1 <= step_1_now;
-        end
-        if (step == 5'd17) begin
             theta_1_deviation_next <= theta_1_deviation_next_now;
             step_3 <= step_3_now;
+        end
+        if (step == 5'd17) begin
+            step_5 <= step_5_now;
+            theta_3_deviation_next <= theta_3_deviation_next_now;
         end
     end
 
@@ -758,9 +757,7 @@ module optical (
         cos_hat_times_rho[14:0],
         sin_hat_times_rho[14:0],
         gradient_1[1:0],
-        step_2_geared[26:24],
         gradient_3[1:0],
-        step_4_geared[26:24],
         gamma_gear_next_sum[4:3],
         gear_periods_next_sum[2:1],
         product_0[35]

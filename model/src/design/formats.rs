@@ -117,7 +117,8 @@ pub(super) fn structure(
             1
         }),
         travel_samples: counting_to(travel_samples(spec)),
-        step: accumulator(r.deviation.into_iter().max().unwrap_or(0) + 1),
+        // A step of more than a quarter of the range is no measurement: the word holds it there.
+        step: accumulator(r.deviation.into_iter().max().unwrap_or(0) - 2),
         level: Quantiser::saturating(Format::unsigned(level_bits(tracking), 0)),
         loop_gear: Format::unsigned(2, 0),
         gamma_gear: counting_to(spec.calibration.gamma_last - spec.calibration.gamma_first),
