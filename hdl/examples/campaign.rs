@@ -17,7 +17,7 @@ use std::time::Duration;
 use nonius_hdl::progress::silent;
 use nonius_hdl::{ChipDir, Options, verify};
 use nonius_model::design::Design;
-use nonius_model::spec::{All, Multipliers, Spec};
+use nonius_model::spec::{All, CalibrationMethod, Multipliers, Spec};
 
 /// Rows of each of the nine stimuli: at least 100 000 samples for Verilator, 2 000 for Icarus.
 const LONG: (usize, usize) = (11_200, 230);
@@ -107,6 +107,38 @@ fn variants(base: &Spec) -> Vec<Variant> {
                 let what = format!("{method} | {filter_type} | {parameters} | {number} | 12");
                 all.push(Variant { what, spec });
             }
+        }
+    }
+    for (method, parameters, completion) in [
+        (CalibrationMethod::Final, 8, true),
+        (CalibrationMethod::Final, 9, true),
+        (CalibrationMethod::Final, 9, false),
+        (CalibrationMethod::Exact, 4, false),
+        (CalibrationMethod::Exact, 5, false),
+        (CalibrationMethod::SumOfSquares, 4, false),
+        (CalibrationMethod::SumOfSquares, 5, false),
+        (CalibrationMethod::Batch, 4, false),
+        (CalibrationMethod::Batch, 5, false),
+    ] {
+        for multipliers in [Multipliers::Count(1), Multipliers::All(All::All)] {
+            let mut spec = base.clone();
+            spec.calibration.method = method;
+            spec.calibration.parameters = parameters;
+            spec.calibration.completion = completion;
+            spec.chip.multipliers = multipliers;
+            let number = match multipliers {
+                Multipliers::Count(n) => n.to_string(),
+                Multipliers::All(_) => "all".into(),
+            };
+            let how = match method {
+                CalibrationMethod::Final if completion => "completed",
+                CalibrationMethod::Final => "bends, radius alone",
+                CalibrationMethod::Exact => "exact",
+                CalibrationMethod::SumOfSquares => "sum of squares",
+                CalibrationMethod::Batch => "batch",
+            };
+            let what = format!("3 | 2 | {parameters}, {how} | {number} | 12");
+            all.push(Variant { what, spec });
         }
     }
     for bits in [8, 10, 14, 16, 18] {
