@@ -207,7 +207,12 @@ fn attempted(
         effects.push((effect, m));
     }
     let hidden: Vec<Hidden> = effects.iter().map(|(e, m)| (e.as_ref(), *m)).collect();
-    let rows = simulate(&world, &hidden, Finish::Recorded(noise_seed));
+    let mut rows = simulate(&world, &hidden, Finish::Recorded(noise_seed));
+    let clean = simulate(&world, &hidden, Finish::Clean);
+    for channel in [0, 1] {
+        let pairs = rows.volts[channel].iter().zip(&clean.volts[channel]);
+        rows.noise[channel] = pairs.map(|(shown, clean)| shown - clean).collect();
+    }
     let truth = Truth {
         seed,
         kind,

@@ -7,18 +7,23 @@
 
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
+mod baseline;
 mod case;
 mod effect;
 mod effects;
 mod magnitude;
 mod motion;
 mod rows;
+mod score;
 mod sealed;
 mod simulate;
 mod spectrum;
 mod strange_circuits;
 mod strangers;
+mod summary;
+mod table;
 mod truth;
+mod verdict;
 mod vibration;
 mod visible;
 mod world;
@@ -26,8 +31,12 @@ mod world;
 pub use case::{Case, Unreachable};
 pub use motion::{Drive, Motion};
 pub use rows::Rows;
+pub use score::{Outcome, Score};
 pub use sealed::{SealError, Sealed, seal};
+pub use summary::{Share, Summary};
+pub use table::page;
 pub use truth::{HiddenCause, Kind, TrueParameter, Truth};
+pub use verdict::{Named, Verdict, verdict};
 pub use vibration::Vibration;
 pub use world::World;
 

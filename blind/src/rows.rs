@@ -17,7 +17,7 @@ pub struct Rows {
     pub temperature: Option<Vec<f64>>,
     /// The true angle, rad: never in the file.
     pub alpha: Vec<f64>,
-    /// Noise of the two channels, V: never in the file.
+    /// What noise and rounding added to the two channels, V: never in the file.
     pub noise: [Vec<f64>; 2],
 }
 
