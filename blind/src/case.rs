@@ -184,8 +184,8 @@ fn attempted(
             wild: false,
             snr: *asked,
         });
-        // A reference shows real motion as well as the sensor does: only without it is motion to be found.
-        let visible = Visible::new(&world, wish.reference && !effect.is_motion())?;
+        let known = wish.reference && !effect.takes_reference_along();
+        let visible = Visible::new(&world, known)?;
         let (m, snr) = scaled(effect.as_ref(), &world, &visible, noise_seed, *asked)?;
         truths.push(HiddenCause {
             name: effect.name().into(),

@@ -109,6 +109,11 @@ pub(crate) trait Effect: Send + Sync {
         None
     }
 
+    /// The reference column goes along with it, and tells nothing of it.
+    fn takes_reference_along(&self) -> bool {
+        self.is_motion()
+    }
+
     /// Whether it is real motion of the axis.
     fn is_motion(&self) -> bool {
         false

@@ -122,6 +122,9 @@ const QUESTIONS: [Question; 19] = [
         "≤ 1.10",
         |s| {
             let (spread, count) = s.spread();
+            if count == 0 {
+                return "none".into();
+            }
             format!("{spread:.2} ({count} parameters)")
         },
     ),
@@ -133,6 +136,9 @@ const QUESTIONS: [Question; 19] = [
         "≥ 90 %",
         |s| {
             let (share, count) = s.removed();
+            if count == 0 {
+                return "none".into();
+            }
             format!("{:.1} % ({count} recordings)", 100.0 * share)
         },
     ),

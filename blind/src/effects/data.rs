@@ -59,6 +59,9 @@ impl Effect for Dropped {
     fn name(&self) -> &'static str {
         "dropped_samples"
     }
+    fn takes_reference_along(&self) -> bool {
+        true
+    }
     fn limit(&self) -> f64 {
         self.sets.len() as f64
     }
@@ -108,6 +111,9 @@ struct Repeated {
 impl Effect for Repeated {
     fn name(&self) -> &'static str {
         "repeated_samples"
+    }
+    fn takes_reference_along(&self) -> bool {
+        !self.hold
     }
     fn limit(&self) -> f64 {
         self.sets.len() as f64
