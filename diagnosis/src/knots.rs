@@ -19,15 +19,17 @@ const PATIENCE: usize = 6;
 /// The knot spacing, in samples, whose spline explains an angle (radians) best for its number of coefficients, with what
 /// repeats with the period taken off first, and the strongest line in time and in the revolution: real vibration and
 /// cogging are no reason for more knots.
-pub(crate) fn spacing(
-    angle: &[f64],
-    weight: &[f64],
-    periods_per_revolution: Option<u32>,
-) -> f64 {
+pub(crate) fn spacing(angle: &[f64], weight: &[f64], periods_per_revolution: Option<u32>) -> f64 {
     let n = angle.len();
     let stretches: Vec<Stretch> = stretches(n)
         .into_iter()
-        .map(|range| Stretch::new(&angle[range.clone()], &weight[range], periods_per_revolution))
+        .map(|range| {
+            Stretch::new(
+                &angle[range.clone()],
+                &weight[range],
+                periods_per_revolution,
+            )
+        })
         .collect();
     let counting: f64 = stretches.iter().map(|s| s.weight.iter().sum::<f64>()).sum();
     let longest = stretches.iter().map(|s| s.angle.len()).max().unwrap_or(1);
@@ -62,9 +64,7 @@ fn stretches(n: usize) -> Vec<Range<usize>> {
     }
     let length = WHOLE / STRETCHES;
     let gap = (n - length) / (STRETCHES - 1);
-    (0..STRETCHES)
-        .map(|i| i * gap..i * gap + length)
-        .collect()
+    (0..STRETCHES).map(|i| i * gap..i * gap + length).collect()
 }
 
 /// A part of the record, and what repeats with the period in it.
@@ -114,9 +114,8 @@ impl<'a> Stretch<'a> {
             .filter(|o| o % *per as usize != 0)
             .max_by(|a, b| power(a).total_cmp(&power(b)));
         let Some(order) = best else { return left };
-        let wave = |f: fn(f64) -> f64| -> Vec<f64> {
-            phi.iter().map(|p| f(order as f64 * p)).collect()
-        };
+        let wave =
+            |f: fn(f64) -> f64| -> Vec<f64> { phi.iter().map(|p| f(order as f64 * p)).collect() };
         let waves = [wave(f64::cos), wave(f64::sin)];
         let columns: Vec<&[f64]> = waves.iter().map(Vec::as_slice).collect();
         crate::solve::without(&left, &spline.residuals(&columns, self.weight))

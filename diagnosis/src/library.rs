@@ -140,7 +140,12 @@ impl Library {
 impl Place {
     /// Function `i` along the radius.
     pub(crate) fn radial(&self, i: usize) -> Shape {
-        Shape(self.radial.map(|first| (first + i, 1.0)).into_iter().collect())
+        Shape(
+            self.radial
+                .map(|first| (first + i, 1.0))
+                .into_iter()
+                .collect(),
+        )
     }
 
     /// Function `i` along the circle, or as motion.

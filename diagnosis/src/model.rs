@@ -84,7 +84,11 @@ impl<'a> System<'a> {
         }
         let plain = this.moments(&atoms);
         this.total = this.normal(&plain, &atoms, true);
-        let broad: Vec<Shape> = catalogue.broad.iter().map(|i| Shape(vec![(*i, 1.0)])).collect();
+        let broad: Vec<Shape> = catalogue
+            .broad
+            .iter()
+            .map(|i| Shape(vec![(*i, 1.0)]))
+            .collect();
         let x = this.total.of(&broad).solve().x;
         let amounts: Vec<(usize, f64)> = catalogue.broad.iter().copied().zip(x).collect();
         let left = this.samples.left(&amounts);
@@ -127,9 +131,8 @@ impl<'a> System<'a> {
     }
 
     fn in_row<'b>(&'b self, atoms: &'b [usize], row: Row) -> impl Iterator<Item = usize> + 'b {
-        let of = move |(i, a): (usize, &usize)| {
-            (self.samples.library.atoms[*a].row == row).then_some(i)
-        };
+        let of =
+            move |(i, a): (usize, &usize)| (self.samples.library.atoms[*a].row == row).then_some(i);
         atoms.iter().enumerate().filter_map(of)
     }
 

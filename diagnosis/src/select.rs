@@ -280,12 +280,7 @@ fn holds(
 }
 
 /// Domains in which something significant is left that no cause was found for.
-fn leftover(
-    system: &System,
-    catalogue: &Catalogue,
-    fit: &Fit,
-    closed: &[Domain],
-) -> Vec<Unnamed> {
+fn leftover(system: &System, catalogue: &Catalogue, fit: &Fit, closed: &[Domain]) -> Vec<Unnamed> {
     let beside = Beside::new(system, &fit.shapes);
     let open = [
         Domain::Angle,

@@ -204,11 +204,7 @@ impl<'a> Samples<'a> {
     }
 
     /// Makes the functions of atoms block by block, as they are: block, splines of it, which of the atoms, values.
-    fn fill(
-        &self,
-        atoms: &[usize],
-        visit: &mut dyn FnMut(&Block, Option<&Basis>, usize, &[f64]),
-    ) {
+    fn fill(&self, atoms: &[usize], visit: &mut dyn FnMut(&Block, Option<&Basis>, usize, &[f64])) {
         let n = self.context.samples();
         // Each group is filled once for all of its atoms.
         let mut groups: Vec<(usize, Vec<usize>)> = vec![];
@@ -248,11 +244,7 @@ impl<'a> Samples<'a> {
     }
 
     /// Goes through the samples: the half of the blocks that it belongs to, and the three rows.
-    pub(crate) fn pass(
-        &self,
-        atoms: &[usize],
-        visit: &mut dyn FnMut(usize, &[Part; 3]),
-    ) {
+    pub(crate) fn pass(&self, atoms: &[usize], visit: &mut dyn FnMut(usize, &[Part; 3])) {
         let n = self.context.samples();
         let rows: Vec<usize> = atoms
             .iter()
@@ -288,7 +280,8 @@ impl<'a> Samples<'a> {
                 }
                 part.samples = block.len();
                 let data = (part.columns - 1) * STRIDE + ORDER;
-                part.plain[data..data + block.len()].copy_from_slice(&self.data[row][range.clone()]);
+                part.plain[data..data + block.len()]
+                    .copy_from_slice(&self.data[row][range.clone()]);
                 self.whiteners[row].block(part.columns, block.len(), &part.plain, &mut part.white);
             }
             visit(block.start / half % 2, parts);
@@ -305,7 +298,10 @@ impl<'a> Samples<'a> {
             for first in (0..n).step_by(half) {
                 let last = (first + half).min(n);
                 for start in (first..last).step_by(CHUNK) {
-                    finish(&self.context.block(start..(start + CHUNK).min(last)), &mut parts);
+                    finish(
+                        &self.context.block(start..(start + CHUNK).min(last)),
+                        &mut parts,
+                    );
                 }
             }
             return;
@@ -382,7 +378,9 @@ impl<'a> Samples<'a> {
         let mut sum = vec![0.0; self.context.samples()];
         self.fill(&atoms, &mut |block, _, i, values| {
             let part = &mut sum[block.start..block.start + block.len()];
-            part.iter_mut().zip(values).for_each(|(s, v)| *s += own[i].1 * v);
+            part.iter_mut()
+                .zip(values)
+                .for_each(|(s, v)| *s += own[i].1 * v);
         });
         sum
     }

@@ -52,8 +52,7 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
     for order in 2..=7 {
         let shapes = (0..2)
             .flat_map(|which| {
-                [Trig::cos(order, 0.0), Trig::sin(order, 0.0)]
-                    .map(|wave| of_channel(which, &wave))
+                [Trig::cos(order, 0.0), Trig::sin(order, 0.0)].map(|wave| of_channel(which, &wave))
             })
             .collect();
         list.push(Candidate {

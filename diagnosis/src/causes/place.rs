@@ -80,7 +80,12 @@ fn cogging(
         positive: false,
         chip: Chip::NotASensorError,
         parameters: harmonic(order, "amplitude", "rad"),
-        evidence: Rc::new(move |p| format!("the axis really moves unevenly, {order} times per revolution by {:.3e} rad of a scale period, without any change of the radius", p[1].value)),
+        evidence: Rc::new(move |p| {
+            format!(
+                "the axis really moves unevenly, {order} times per revolution by {:.3e} rad of a scale period, without any change of the radius",
+                p[1].value
+            )
+        }),
     })
 }
 

@@ -76,9 +76,8 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
     let (zero, one_) = (Trig::constant(0.0), Trig::constant(1.0));
     let scaled = |shape: Shape, by: f64| Shape(shape.0.iter().map(|(i, x)| (*i, x * by)).collect());
     // The speed times a change of one channel.
-    let times = |which: usize, change: &Trig| {
-        scaled(speed.shape(ODD, &channel(beta, which, change)), top)
-    };
+    let times =
+        |which: usize, change: &Trig| scaled(speed.shape(ODD, &channel(beta, which, change)), top);
     let slope = derivatives(beta);
     let one = |name,
                shape: Shape,
@@ -153,9 +152,11 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
                     },
                 );
                 candidate.trials = 10.0;
-                candidate.refine = Some(Rc::new(move |block: &Block, inner: &[f64], c: &mut [f64], s: &mut [f64]| {
-                    block.channel(which, &low_pass(block, which, inner[0]), c, s);
-                }));
+                candidate.refine = Some(Rc::new(
+                    move |block: &Block, inner: &[f64], c: &mut [f64], s: &mut [f64]| {
+                        block.channel(which, &low_pass(block, which, inner[0]), c, s);
+                    },
+                ));
                 list.push(candidate);
             }
         }
