@@ -135,6 +135,12 @@ fn line(score: &Score) -> String {
     if !score.motions.is_empty() {
         text += &format!(", motion {:?}", score.motions);
     }
+    for p in &score.parameters {
+        text += &format!(", {} off {:.1} errors", p.name, p.stated);
+        if let Some(bound) = p.bound {
+            text += &format!(" ({bound:.1} bounds)");
+        }
+    }
     if score.unexplained {
         text += &format!(", left: {}", score.signature);
     }

@@ -31,7 +31,7 @@ mod world;
 pub use case::{Case, Unreachable};
 pub use motion::{Drive, Motion};
 pub use rows::Rows;
-pub use score::{Outcome, Score};
+pub use score::{Outcome, ParameterScore, Score};
 pub use sealed::{SealError, Sealed, seal};
 pub use summary::{Share, Summary};
 pub use table::page;

@@ -23,8 +23,10 @@ pub enum Outcome {
 }
 
 /// A parameter against the truth.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct ParameterScore {
+    /// Which.
+    pub name: String,
     /// Error over the stated standard error.
     pub stated: f64,
     /// Error over the Cramér–Rao bound, where that is |value| / SNR.
@@ -140,6 +142,7 @@ fn parameters(hidden: &HiddenCause, named: &[Named]) -> Vec<ParameterScore> {
     let scores = hidden.parameters.iter().filter_map(|p| {
         let (_, shown, error) = value(&p.name)?;
         (*error > 0.0).then(|| ParameterScore {
+            name: p.name.clone(),
             stated: (shown - p.value) / error,
             bound: p
                 .bounded
