@@ -9,6 +9,9 @@ use crate::solve::{Normal, Solution};
 use crate::sweep::Samples;
 use crate::whiten::Whitener;
 
+/// Share of a function's square below which it is a rounding error.
+const NOTHING: f64 = 1e-18;
+
 /// What the model so far leaves of the recording.
 #[derive(Clone, Debug)]
 pub(crate) struct Residual {
@@ -83,12 +86,8 @@ impl<'a> System<'a> {
             whitener.sigma = power.sqrt().max(1e-12);
         }
         let plain = this.moments(&atoms);
-        this.total = this.normal(&plain, &atoms, true);
-        let broad: Vec<Shape> = catalogue
-            .broad
-            .iter()
-            .map(|i| Shape(vec![(*i, 1.0)]))
-            .collect();
+        this.total = this.without_nothing(this.normal(&plain, &atoms, true));
+        let broad: Vec<Shape> = catalogue.broad.iter().map(|i| Shape(vec![(*i, 1.0)])).collect();
         let x = this.total.of(&broad).solve().x;
         let amounts: Vec<(usize, f64)> = catalogue.broad.iter().copied().zip(x).collect();
         let left = this.samples.left(&amounts);
@@ -109,7 +108,7 @@ impl<'a> System<'a> {
         // White noise changes the scale of a row only.
         let white = this.samples.whiteners.iter().all(Whitener::is_white);
         let moments = if white { plain } else { this.moments(&atoms) };
-        this.total = this.normal(&moments, &atoms, true);
+        this.total = this.without_nothing(this.normal(&moments, &atoms, true));
         this
     }
 
@@ -131,8 +130,9 @@ impl<'a> System<'a> {
     }
 
     fn in_row<'b>(&'b self, atoms: &'b [usize], row: Row) -> impl Iterator<Item = usize> + 'b {
-        let of =
-            move |(i, a): (usize, &usize)| (self.samples.library.atoms[*a].row == row).then_some(i);
+        let of = move |(i, a): (usize, &usize)| {
+            (self.samples.library.atoms[*a].row == row).then_some(i)
+        };
         atoms.iter().enumerate().filter_map(of)
     }
 
@@ -158,6 +158,19 @@ impl<'a> System<'a> {
         Normal::new(gram, right, power)
     }
 
+    /// What follows the motion wholly leaves rounding errors, and they explain nothing.
+    fn without_nothing(&self, mut total: Normal) -> Normal {
+        for (i, atom) in self.samples.library.atoms.iter().enumerate() {
+            let scale = self.samples.whiteners[atom.row as usize].sigma.powi(-2);
+            if total.gram[(i, i)] < NOTHING * scale * self.samples.squares[i] {
+                total.gram.row_mut(i).fill(0.0);
+                total.gram.column_mut(i).fill(0.0);
+                total.right[i] = 0.0;
+            }
+        }
+        Normal::new(total.gram, total.right, total.power)
+    }
+
     /// Takes atoms in that the library has got since.
     pub(crate) fn extend(&mut self) {
         let known = self.total.right.len();
@@ -175,10 +188,9 @@ impl<'a> System<'a> {
         });
         let mut total = self.normal(&sums, &atoms, true);
         // What was known stays.
-        let block = total.gram.view_mut((0, 0), (known, known));
-        let mut block = block;
+        let mut block = total.gram.view_mut((0, 0), (known, known));
         block.copy_from(&self.total.gram);
-        self.total = Normal::new(total.gram, total.right, total.power);
+        self.total = self.without_nothing(total);
     }
 
     /// Leaves atoms out; the new number of each.

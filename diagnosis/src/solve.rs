@@ -141,11 +141,15 @@ impl Normal {
     /// The least-squares solution; directions that the columns hardly have are left at zero.
     pub(crate) fn solve(&self) -> Solution {
         let m = self.right.len();
+        // A column of nothing gets no amount.
         let scale: Vec<f64> = (0..m)
-            .map(|i| self.norms[i].max(0.0).sqrt().max(1e-150))
+            .map(|i| {
+                let norm = self.norms[i];
+                if norm > 1e-300 { norm.sqrt().recip() } else { 0.0 }
+            })
             .collect();
-        let unit = DMatrix::from_fn(m, m, |i, j| self.gram[(i, j)] / scale[i] / scale[j]);
-        let right = DVector::from_fn(m, |i, _| self.right[i] / scale[i]);
+        let unit = DMatrix::from_fn(m, m, |i, j| self.gram[(i, j)] * scale[i] * scale[j]);
+        let right = DVector::from_fn(m, |i, _| self.right[i] * scale[i]);
         if m == 0 {
             return Solution {
                 x: vec![],
@@ -173,8 +177,8 @@ impl Normal {
             rank += 1;
         }
         Solution {
-            x: (0..m).map(|i| x[i] / scale[i]).collect(),
-            covariance: DMatrix::from_fn(m, m, |i, j| covariance[(i, j)] / scale[i] / scale[j]),
+            x: (0..m).map(|i| x[i] * scale[i]).collect(),
+            covariance: DMatrix::from_fn(m, m, |i, j| covariance[(i, j)] * scale[i] * scale[j]),
             explained,
             rank,
         }

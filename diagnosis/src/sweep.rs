@@ -36,6 +36,8 @@ pub(crate) struct Samples<'a> {
     pub(crate) whiteners: [Whitener; 3],
     /// What is taken off each atom: coefficients of the motion that follows it.
     motions: Vec<Vec<f64>>,
+    /// Square of each atom before the motion is taken off; 0 where there is none to take off.
+    pub(crate) squares: Vec<f64>,
 }
 
 /// The columns of a row in a block: atoms in the order asked for, then the data.
@@ -124,6 +126,7 @@ impl<'a> Samples<'a> {
             data,
             whiteners: Default::default(),
             motions: vec![],
+            squares: vec![],
         };
         this.take_motion_off();
         this
@@ -172,11 +175,13 @@ impl<'a> Samples<'a> {
             .filter(|i| !sums[i - from].is_empty())
             .collect();
         let mut weighted = vec![];
+        let mut squares = vec![0.0; self.library.atoms.len() - from];
         self.fill(&wanted, &mut |block, basis, i, values| {
             let range = block.start..block.start + block.len();
             weighted.clear();
             let pairs = values.iter().zip(&weight[range]);
             weighted.extend(pairs.map(|(v, w)| v * w));
+            squares[wanted[i] - from] += weighted.iter().map(|v| v * v).sum::<f64>();
             let own = &mut sums[wanted[i] - from];
             match (own.len(), basis) {
                 (2.., Some(basis)) => basis.accumulate(&weighted, own),
@@ -191,6 +196,7 @@ impl<'a> Samples<'a> {
             }
         }
         self.motions.extend(sums);
+        self.squares.extend(squares);
     }
 
     /// Leaves out atoms that are not kept; the new number of each.
@@ -199,6 +205,10 @@ impl<'a> Samples<'a> {
         let kept = std::mem::take(&mut self.motions).into_iter().zip(&map);
         self.motions = kept
             .filter_map(|(m, new)| new.is_some().then_some(m))
+            .collect();
+        let kept = std::mem::take(&mut self.squares).into_iter().zip(&map);
+        self.squares = kept
+            .filter_map(|(s, new)| new.is_some().then_some(s))
             .collect();
         map
     }
