@@ -86,7 +86,7 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
             .map(|i| {
                 let (which, sign) = (i / 2, if i % 2 == 0 { 1.0 } else { -1.0 });
                 catalogue.library.pair(move |block: &Block, c, s| {
-                    let u = &block.normalised()[which];
+                    let u = block.u[which];
                     let over = |v: &f64| -(v * sign - threshold).max(0.0) * sign;
                     block.channel(which, &u.iter().map(over).collect::<Vec<_>>(), c, s);
                 })

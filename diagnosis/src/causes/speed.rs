@@ -38,11 +38,11 @@ fn reverses(context: &Context) -> bool {
 
 /// What a first-order low pass of time constant `tau` takes from a channel, over `tau`.
 fn low_pass(block: &Block, which: usize, tau: f64) -> Vec<f64> {
-    let (u, slope) = (block.normalised(), block.derivatives());
+    let (u, slope) = (block.u[which], block.slope[which]);
     (0..block.len())
         .map(|k| {
             let w = block.speed[k] * tau;
-            let lost = -w * slope[which][k] - w * w * u[which][k];
+            let lost = -w * slope[k] - w * w * u[k];
             lost / (1.0 + w * w) / tau
         })
         .collect()
@@ -212,7 +212,7 @@ fn slow(block: &Block, which: usize, rate: f64, state: &RefCell<(usize, f64)>) -
         *state = (block.start, 0.0);
     }
     let mut now = state.1;
-    let values = block.normalised()[which]
+    let values = block.u[which]
         .iter()
         .map(|v| {
             now += rate * (v - now);
