@@ -15,33 +15,51 @@ pub(crate) struct Block<'a> {
     pub cos: &'a [f64],
     /// See `cos`.
     pub sin: &'a [f64],
-    /// Smooth angle, radians.
-    pub alpha: &'a [f64],
     /// Smooth speed, radians per second.
     pub speed: &'a [f64],
     /// Angle of the revolution, radians.
     pub phi: Option<&'a [f64]>,
     /// Temperature, centred and of unit spread.
     pub temperature: Option<&'a [f64]>,
-    /// ADC codes.
-    pub codes: [&'a [i64]; 2],
+    /// Normalised raw channels: cos α and sin(α − β).
+    pub u: [&'a [f64]; 2],
+    /// Their derivatives by α.
+    pub slope: [&'a [f64]; 2],
     /// Phase error, radians.
     pub beta: f64,
 }
 
+/// What blocks share, made once for each.
+#[derive(Default)]
+pub(crate) struct Shared {
+    u: [Vec<f64>; 2],
+    slope: [Vec<f64>; 2],
+}
+
 impl Context {
     /// Some samples of the recording.
-    pub(crate) fn block(&self, range: Range<usize>) -> Block<'_> {
+    pub(crate) fn block<'a>(&'a self, range: Range<usize>, shared: &'a mut Shared) -> Block<'a> {
+        let (sin_b, cos_b) = self.ellipse.beta.sin_cos();
+        let pairs = || self.cos[range.clone()].iter().zip(&self.sin[range.clone()]);
+        let fill = |to: &mut Vec<f64>, f: &dyn Fn(f64, f64) -> f64| {
+            to.clear();
+            to.extend(pairs().map(|(c, s)| f(*c, *s)));
+        };
+        fill(&mut shared.u[0], &|c, _| c);
+        fill(&mut shared.u[1], &|c, s| s * cos_b - c * sin_b);
+        fill(&mut shared.slope[0], &|_, s| -s);
+        fill(&mut shared.slope[1], &|c, s| c * cos_b + s * sin_b);
+        let shared = &*shared;
         Block {
+            u: [&shared.u[0], &shared.u[1]],
+            slope: [&shared.slope[0], &shared.slope[1]],
             start: range.start,
             time: &self.time[range.clone()],
             cos: &self.cos[range.clone()],
             sin: &self.sin[range.clone()],
-            alpha: &self.alpha[range.clone()],
             speed: &self.speed[range.clone()],
             phi: self.phi.as_deref().map(|v| &v[range.clone()]),
-            temperature: self.temperature.as_deref().map(|v| &v[range.clone()]),
-            codes: [&self.codes[0][range.clone()], &self.codes[1][range]],
+            temperature: self.temperature.as_deref().map(|v| &v[range]),
             beta: self.ellipse.beta,
         }
     }
@@ -51,26 +69,6 @@ impl Block<'_> {
     /// Number of samples.
     pub(crate) fn len(&self) -> usize {
         self.time.len()
-    }
-
-    /// Normalised raw channels: cos α and sin(α − β).
-    pub(crate) fn normalised(&self) -> [Vec<f64>; 2] {
-        let (sin_b, cos_b) = self.beta.sin_cos();
-        let pairs = self.cos.iter().zip(self.sin);
-        [
-            self.cos.to_vec(),
-            pairs.map(|(c, s)| s * cos_b - c * sin_b).collect(),
-        ]
-    }
-
-    /// Their derivatives by α.
-    pub(crate) fn derivatives(&self) -> [Vec<f64>; 2] {
-        let (sin_b, cos_b) = self.beta.sin_cos();
-        let pairs = self.cos.iter().zip(self.sin);
-        [
-            self.sin.iter().map(|s| -s).collect(),
-            pairs.map(|(c, s)| c * cos_b + s * sin_b).collect(),
-        ]
     }
 
     /// Writes a change of one raw channel, in fractions of its amplitude, as a change of the corrected pair.

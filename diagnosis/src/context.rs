@@ -3,12 +3,12 @@
 use std::f64::consts::TAU;
 
 use nonius_calibration::{Ellipse, Method, Options, calibrate};
-use nonius_recording::Recording;
+use nonius_recording::{AdcPair, Recording};
 
 use crate::spline::Spline;
 
 /// Most samples that the first ellipse is fitted to; the model of all samples has the five parameters again.
-const FIRST: usize = 32_768;
+const FIRST: usize = 8192;
 
 /// The recording, corrected, with everything that shapes are made of. One value per sample.
 #[derive(Clone, Debug)]
@@ -48,6 +48,8 @@ pub struct Context {
     pub codes: [Vec<i64>; 2],
     /// Bits of the ADC.
     pub bits: u32,
+    /// Codes and what they stand for.
+    pub adc: AdcPair,
     /// Scale periods per revolution.
     pub periods_per_revolution: Option<u32>,
     /// The motion that is taken off the angle; none with a reference.
@@ -112,6 +114,7 @@ impl Context {
             weight,
             codes: [codes.0, codes.1],
             bits: recording.metadata.adc.cos.bits,
+            adc: recording.metadata.adc,
             periods_per_revolution: recording.metadata.periods_per_revolution,
             spline: None,
         };

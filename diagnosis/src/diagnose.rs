@@ -3,10 +3,10 @@
 use nonius_recording::Recording;
 use serde::Serialize;
 
+use crate::causes::Catalogue;
 use crate::checks;
 use crate::context::{Context, ContextError, unwrapped};
 use crate::finding::{Finding, Parameter};
-use crate::causes::Catalogue;
 use crate::library::Row;
 use crate::model::{System, above_motion};
 use crate::noise;
@@ -149,10 +149,7 @@ pub fn diagnose(recording: &Recording) -> Result<Diagnosis, ContextError> {
         },
     };
     let was = system.residual(&selection.base);
-    let residuals = [
-        (was.radial, was.tangential),
-        (left.radial, left.tangential),
-    ];
+    let residuals = [(was.radial, was.tangential), (left.radial, left.tangential)];
     let simulation = simulation(
         &context,
         &system,

@@ -6,54 +6,70 @@ use crate::spline::Spline;
 
 /// Finest knot spacing, in samples.
 const FINEST: f64 = 6.0;
-/// Knots stand so much closer than the likelihood asks for: what the motion leaves behind must be far below the noise,
-/// not just not worth another knot.
+/// Knots stand at least so much closer than the likelihood asks for: what the motion leaves behind must be far below the
+/// noise, not just not worth another knot.
 const CLOSER: f64 = 2.0;
 /// Records longer than this are judged by stretches.
 const WHOLE: usize = 32_768;
 /// So many of them, spread over the record.
 const STRETCHES: usize = 4;
-/// A spacing so many times worse in a row ends the search.
-const PATIENCE: usize = 6;
+/// So many halvings in a row that are worse end the search.
+const PATIENCE: usize = 3;
 
 /// The knot spacing, in samples, whose spline explains an angle (radians) best for its number of coefficients, with what
 /// repeats with the period taken off first, and the strongest line in time and in the revolution: real vibration and
 /// cogging are no reason for more knots.
-pub(crate) fn spacing(
-    angle: &[f64],
-    weight: &[f64],
-    periods_per_revolution: Option<u32>,
-) -> f64 {
+pub(crate) fn spacing(angle: &[f64], weight: &[f64], periods_per_revolution: Option<u32>) -> f64 {
     let n = angle.len();
     let stretches: Vec<Stretch> = stretches(n)
         .into_iter()
-        .map(|range| Stretch::new(&angle[range.clone()], &weight[range], periods_per_revolution))
+        .map(|range| {
+            Stretch::new(
+                &angle[range.clone()],
+                &weight[range],
+                periods_per_revolution,
+            )
+        })
         .collect();
     let counting: f64 = stretches.iter().map(|s| s.weight.iter().sum::<f64>()).sum();
     let longest = stretches.iter().map(|s| s.angle.len()).max().unwrap_or(1);
     let mut spacing = (longest as f64 / 2.0).max(FINEST);
-    let mut best = (f64::MAX, spacing);
-    let mut worse = 0;
-    while spacing >= FINEST {
+    let score = |spacing: f64| {
         let (mut power, mut count) = (0.0, 0.0);
         for stretch in &stretches {
             let spline = Spline::new(stretch.angle.len(), spacing, stretch.weight);
             power += stretch.left(&spline);
             count += spline.count() as f64;
         }
-        let score = counting * (power / counting).max(1e-300).ln() + count * counting.ln();
-        if score < best.0 {
-            best = (score, spacing);
+        counting * (power / counting).max(1e-300).ln() + count * counting.ln()
+    };
+    let mut best = (f64::MAX, spacing);
+    let mut worse = 0;
+    while spacing >= FINEST && worse <= PATIENCE {
+        let now = score(spacing);
+        worse += 1;
+        if now < best.0 {
+            best = (now, spacing);
             worse = 0;
-        } else {
-            worse += 1;
-            if worse > PATIENCE {
-                break;
-            }
         }
-        spacing /= 1.5;
+        spacing /= 2.0;
     }
-    (best.1 / CLOSER).max(FINEST)
+    let coarse = best.1;
+    for share in [1.0 / 2f64.sqrt(), 2f64.sqrt()] {
+        let spacing = (coarse * share).max(FINEST);
+        let now = score(spacing);
+        if now < best.0 {
+            best = (now, spacing);
+        }
+    }
+    (best.1 / closer(n as f64, best.1)).max(FINEST)
+}
+
+/// How much closer than the likelihood asks for. There, what the spline leaves of the motion raises the log-likelihood by
+/// about n ln n/(8 h) for a spacing of h samples; it falls with the eighth power of the spacing, and has to be below one.
+fn closer(n: f64, spacing: f64) -> f64 {
+    const MARGIN: f64 = 1.25;
+    (MARGIN * (n * n.ln() / 8.0 / spacing).powf(0.125)).max(CLOSER)
 }
 
 fn stretches(n: usize) -> Vec<Range<usize>> {
@@ -62,9 +78,7 @@ fn stretches(n: usize) -> Vec<Range<usize>> {
     }
     let length = WHOLE / STRETCHES;
     let gap = (n - length) / (STRETCHES - 1);
-    (0..STRETCHES)
-        .map(|i| i * gap..i * gap + length)
-        .collect()
+    (0..STRETCHES).map(|i| i * gap..i * gap + length).collect()
 }
 
 /// A part of the record, and what repeats with the period in it.
@@ -114,9 +128,8 @@ impl<'a> Stretch<'a> {
             .filter(|o| o % *per as usize != 0)
             .max_by(|a, b| power(a).total_cmp(&power(b)));
         let Some(order) = best else { return left };
-        let wave = |f: fn(f64) -> f64| -> Vec<f64> {
-            phi.iter().map(|p| f(order as f64 * p)).collect()
-        };
+        let wave =
+            |f: fn(f64) -> f64| -> Vec<f64> { phi.iter().map(|p| f(order as f64 * p)).collect() };
         let waves = [wave(f64::cos), wave(f64::sin)];
         let columns: Vec<&[f64]> = waves.iter().map(Vec::as_slice).collect();
         crate::solve::without(&left, &spline.residuals(&columns, self.weight))

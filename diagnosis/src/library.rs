@@ -28,8 +28,6 @@ pub(crate) type Fill = Rc<dyn Fn(&Block, &mut [f64])>;
 pub(crate) enum Use {
     /// As they are, along the radius.
     Radial,
-    /// As they are, along the circle.
-    Tangential,
     /// As they are, each in both ways.
     Both,
     /// As real motion.
@@ -87,7 +85,6 @@ impl Library {
         };
         let (radial, tangential) = match way {
             Use::Radial => (true, None),
-            Use::Tangential => (false, Some(Row::Tangential)),
             Use::Motion => (false, Some(fast)),
             Use::Both | Use::Pairs => (true, Some(Row::Tangential)),
         };
@@ -140,7 +137,12 @@ impl Library {
 impl Place {
     /// Function `i` along the radius.
     pub(crate) fn radial(&self, i: usize) -> Shape {
-        Shape(self.radial.map(|first| (first + i, 1.0)).into_iter().collect())
+        Shape(
+            self.radial
+                .map(|first| (first + i, 1.0))
+                .into_iter()
+                .collect(),
+        )
     }
 
     /// Function `i` along the circle, or as motion.
@@ -189,6 +191,13 @@ impl Shape {
             kept.filter_map(|(i, x)| map[*i].map(|new| (new, *x)))
                 .collect(),
         )
+    }
+
+    /// The same by places in an ordered list of atoms, those that are there.
+    pub(crate) fn among(&self, atoms: &[usize]) -> Self {
+        let at = |i: &usize| atoms.binary_search(i).ok();
+        let known = self.0.iter().filter_map(|(i, x)| Some((at(i)?, *x)));
+        Self(known.collect())
     }
 
     /// The sum of two.

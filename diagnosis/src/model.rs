@@ -86,8 +86,12 @@ impl<'a> System<'a> {
             whitener.sigma = power.sqrt().max(1e-12);
         }
         let plain = this.moments(&atoms);
-        this.total = this.without_nothing(this.normal(&plain, &atoms, true));
-        let broad: Vec<Shape> = catalogue.broad.iter().map(|i| Shape(vec![(*i, 1.0)])).collect();
+        this.total = this.without_nothing(this.normal(&plain, &atoms, true), &atoms);
+        let broad: Vec<Shape> = catalogue
+            .broad
+            .iter()
+            .map(|i| Shape(vec![(*i, 1.0)]))
+            .collect();
         let x = this.total.of(&broad).solve().x;
         let amounts: Vec<(usize, f64)> = catalogue.broad.iter().copied().zip(x).collect();
         let left = this.samples.left(&amounts);
@@ -108,7 +112,7 @@ impl<'a> System<'a> {
         // White noise changes the scale of a row only.
         let white = this.samples.whiteners.iter().all(Whitener::is_white);
         let moments = if white { plain } else { this.moments(&atoms) };
-        this.total = this.without_nothing(this.normal(&moments, &atoms, true));
+        this.total = this.without_nothing(this.normal(&moments, &atoms, true), &atoms);
         this
     }
 
@@ -130,9 +134,8 @@ impl<'a> System<'a> {
     }
 
     fn in_row<'b>(&'b self, atoms: &'b [usize], row: Row) -> impl Iterator<Item = usize> + 'b {
-        let of = move |(i, a): (usize, &usize)| {
-            (self.samples.library.atoms[*a].row == row).then_some(i)
-        };
+        let of =
+            move |(i, a): (usize, &usize)| (self.samples.library.atoms[*a].row == row).then_some(i);
         atoms.iter().enumerate().filter_map(of)
     }
 
@@ -159,10 +162,11 @@ impl<'a> System<'a> {
     }
 
     /// What follows the motion wholly leaves rounding errors, and they explain nothing.
-    fn without_nothing(&self, mut total: Normal) -> Normal {
-        for (i, atom) in self.samples.library.atoms.iter().enumerate() {
+    fn without_nothing(&self, mut total: Normal, atoms: &[usize]) -> Normal {
+        for (i, number) in atoms.iter().enumerate() {
+            let atom = self.samples.library.atoms[*number];
             let scale = self.samples.whiteners[atom.row as usize].sigma.powi(-2);
-            if total.gram[(i, i)] < NOTHING * scale * self.samples.squares[i] {
+            if total.gram[(i, i)] < NOTHING * scale * self.samples.squares[*number] {
                 total.gram.row_mut(i).fill(0.0);
                 total.gram.column_mut(i).fill(0.0);
                 total.right[i] = 0.0;
@@ -190,13 +194,23 @@ impl<'a> System<'a> {
         // What was known stays.
         let mut block = total.gram.view_mut((0, 0), (known, known));
         block.copy_from(&self.total.gram);
-        self.total = self.without_nothing(total);
+        self.total = self.without_nothing(total, &atoms);
+    }
+
+    /// Normal equations of some atoms, of new ones that no pass has seen yet too, and those atoms: cheaper than to take
+    /// the new ones in against every function.
+    pub(crate) fn among(&mut self, atoms: &[usize]) -> Normal {
+        self.samples.take_motion_off();
+        let moments = self.moments(atoms);
+        self.without_nothing(self.normal(&moments, atoms, true), atoms)
     }
 
     /// Leaves atoms out; the new number of each.
     pub(crate) fn retain(&mut self, keep: impl Fn(usize) -> bool) -> Vec<Option<usize>> {
         let map = self.samples.retain(keep);
-        let kept: Vec<usize> = (0..map.len()).filter(|i| map[*i].is_some()).collect();
+        // Some may not have been taken in yet.
+        let known = self.total.right.len();
+        let kept: Vec<usize> = (0..known).filter(|i| map[*i].is_some()).collect();
         let gram = self.total.gram.select_rows(&kept).select_columns(&kept);
         let right = self.total.right.select_rows(&kept);
         self.total = Normal::new(gram, right, self.total.power);
@@ -226,12 +240,7 @@ impl<'a> System<'a> {
 
     /// The sums of either half, for all that some fits are made of.
     pub(crate) fn halves(&self, shapes: &[Shape]) -> Halves {
-        let mut atoms: Vec<usize> = shapes
-            .iter()
-            .flat_map(|s| s.0.iter().map(|p| p.0))
-            .collect();
-        atoms.sort_unstable();
-        atoms.dedup();
+        let atoms = atoms_of(shapes);
         let make = || self.empty(&atoms);
         let (mut white, mut plain) = ([make(), make()], [make(), make()]);
         self.samples.pass(&atoms, &mut |half, parts| {
@@ -257,12 +266,7 @@ impl<'a> System<'a> {
 
 impl Halves {
     fn mapped(&self, shapes: &[Shape]) -> Vec<Shape> {
-        let at = |i: &usize| self.atoms.binary_search(i).ok();
-        let of = |s: &Shape| {
-            let known = s.0.iter().filter_map(|(i, x)| Some((at(i)?, *x)));
-            Shape(known.collect())
-        };
-        shapes.iter().map(of).collect()
+        shapes.iter().map(|s| s.among(&self.atoms)).collect()
     }
 
     fn left(&self, half: usize, row: usize, shapes: &[Shape], x: &[f64]) -> f64 {
@@ -312,6 +316,13 @@ impl Fit {
     pub(crate) fn amounts(&self) -> Vec<(usize, f64)> {
         amounts(&self.shapes, &self.solution.x)
     }
+}
+
+/// The atoms of shapes, in the order of their numbers.
+pub(crate) fn atoms_of(shapes: &[Shape]) -> Vec<usize> {
+    let all = shapes.iter().flat_map(|s| s.0.iter().map(|p| p.0));
+    let set: std::collections::BTreeSet<usize> = all.collect();
+    set.into_iter().collect()
 }
 
 /// How much of each atom is in a sum of shapes.

@@ -1,46 +1,26 @@
 //! Which causes are in a recording: the one that explains most first, rivals named, unknown shapes left unnamed.
 
-use crate::cause::{Candidate, Domain, Estimate};
+use crate::cause::{Candidate, Domain};
 use crate::causes::{self, Catalogue};
 use crate::context::Context;
-use crate::finding::{Finding, Gain};
 use crate::library::Shape;
-use crate::model::{Fit, Halves, System, amounts};
+use crate::model::{Fit, System, atoms_of};
+use crate::selection::{Accepted, Selection, Unnamed};
 use crate::solve::Normal;
 use crate::statistics::{after_trials, log_tail};
 
 /// Global probability below which a cause is shown.
-const SHOWN: f64 = 3e-4;
+pub(crate) const SHOWN: f64 = 3e-4;
 /// Kinds of cause that are tried.
-const KINDS: f64 = 22.0;
+pub(crate) const KINDS: f64 = 22.0;
 /// A cause must hold this share of what a generic basis of its domain explains.
 const HOLDS: f64 = 0.75;
 /// Most causes of one recording.
 const MOST: usize = 8;
+/// Share of the best gain below which another cause is no rival.
+const RIVALS: f64 = 0.6;
 /// A cause that adds less than this probability says nothing new.
 const NOTHING_NEW: f64 = 1e-3;
-
-/// A cause that was accepted; its shapes stand in the fit from `first` on.
-pub(crate) struct Accepted {
-    pub(crate) candidate: Candidate,
-    first: usize,
-    confounded: Vec<String>,
-}
-
-/// What cannot be named.
-#[derive(Clone, Debug)]
-pub(crate) struct Unnamed {
-    pub(crate) log_p: f64,
-    pub(crate) signature: String,
-}
-
-/// The end of the selection.
-pub(crate) struct Selection {
-    pub(crate) fit: Fit,
-    pub(crate) base: Fit,
-    pub(crate) accepted: Vec<Accepted>,
-    pub(crate) unnamed: Vec<Unnamed>,
-}
 
 struct Scored {
     candidate: Candidate,
@@ -56,10 +36,10 @@ struct Beside<'a> {
 }
 
 impl<'a> Beside<'a> {
-    fn new(system: &'a System, shapes: &[Shape]) -> Self {
+    fn new(whole: &'a Normal, shapes: &[Shape]) -> Self {
         Self {
-            whole: &system.total,
-            rest: system.total.deflated(shapes),
+            whole,
+            rest: whole.deflated(shapes),
         }
     }
 
@@ -99,6 +79,42 @@ fn score(beside: &Beside, candidate: Candidate) -> Option<Scored> {
     })
 }
 
+/// Of candidates with functions of their own, those that explain something, or could rival a gain of `most`.
+fn worth(system: &mut System, fit: &Fit, list: Vec<Candidate>, most: f64) -> Vec<Scored> {
+    let all = list.iter().flat_map(|c| &c.shapes).chain(&fit.shapes);
+    let atoms = atoms_of(&all.cloned().collect::<Vec<_>>());
+    let whole = system.among(&atoms);
+    let among =
+        |shapes: &[Shape]| -> Vec<Shape> { shapes.iter().map(|s| s.among(&atoms)).collect() };
+    let beside = Beside::new(&whole, &among(&fit.shapes));
+    let mut scored: Vec<Scored> = list
+        .into_iter()
+        .filter_map(|mut candidate| {
+            let own = std::mem::take(&mut candidate.shapes);
+            candidate.shapes = among(&own);
+            let mut scored = score(&beside, candidate)?;
+            scored.candidate.shapes = own;
+            Some(scored)
+        })
+        .collect();
+    let most = scored.iter().map(|s| s.gain).fold(most, f64::max);
+    scored.retain(|s| s.log_p < SHOWN.ln() && s.gain > RIVALS * most);
+    scored
+}
+
+/// Takes the functions of these candidates in, and drops those of all others.
+fn take_in(system: &mut System, fixed: usize, fit: &Fit, mut list: Vec<Scored>) -> Vec<Scored> {
+    let own = list.iter().flat_map(|s| &s.candidate.shapes);
+    let used = atoms_of(&own.chain(&fit.shapes).cloned().collect::<Vec<_>>());
+    // What the fit has stands before what is new, so that its numbers stay.
+    let map = system.retain(|i| i < fixed || used.binary_search(&i).is_ok());
+    for shape in list.iter_mut().flat_map(|s| &mut s.candidate.shapes) {
+        *shape = shape.mapped(&map);
+    }
+    system.extend();
+    list
+}
+
 /// Accepts causes one after the other.
 pub(crate) fn select(context: &Context, system: &mut System, catalogue: &Catalogue) -> Selection {
     let base = system.fit(catalogue.parameters.clone());
@@ -111,20 +127,20 @@ pub(crate) fn select(context: &Context, system: &mut System, catalogue: &Catalog
     while accepted.len() + unnamed.len() < MOST {
         let residual = system.residual(&fit);
         let shown = causes::shown(context, &residual, &mut system.samples.library);
-        system.extend();
-        let beside = Beside::new(system, &fit.shapes);
-        let candidates = catalogue.candidates.iter().cloned().chain(shown);
-        let mut scored: Vec<Scored> = candidates
-            .filter(|c| !closed.contains(&c.domain) && !refused.contains(&c.name))
-            .filter_map(|c| score(&beside, c))
-            .collect();
+        let open = |c: &Candidate| !closed.contains(&c.domain) && !refused.contains(&c.name);
+        let beside = Beside::new(&system.total, &fit.shapes);
+        let known = catalogue.candidates.iter().filter(|c| open(c));
+        let mut scored: Vec<Scored> = known.filter_map(|c| score(&beside, c.clone())).collect();
+        let most = scored.iter().map(|s| s.gain).fold(0.0, f64::max);
+        let worth = worth(system, &fit, shown.into_iter().filter(open).collect(), most);
+        scored.extend(take_in(system, fixed, &fit, worth));
         scored.sort_by(|a, b| a.log_p.total_cmp(&b.log_p));
         if scored.is_empty() || scored[0].log_p > SHOWN.ln() {
             break;
         }
         let best = scored.remove(0);
         let best = refined(system, &fit, best);
-        let beside = Beside::new(system, &fit.shapes);
+        let beside = Beside::new(&system.total, &fit.shapes);
         let rivals = rivals(&beside, &best, &scored);
         let held = holds(system, catalogue, &fit, &best, &scored);
         if rivals.len() > 1 || held < HOLDS {
@@ -176,12 +192,8 @@ pub(crate) fn select(context: &Context, system: &mut System, catalogue: &Catalog
 
 /// Drops the functions that were only tried.
 fn keep_used(system: &mut System, fixed: usize, fit: &mut Fit, accepted: &mut [Accepted]) {
-    let used: std::collections::BTreeSet<usize> = fit
-        .shapes
-        .iter()
-        .flat_map(|s| s.0.iter().map(|p| p.0))
-        .collect();
-    let map = system.retain(|i| i < fixed || used.contains(&i));
+    let used = atoms_of(&fit.shapes);
+    let map = system.retain(|i| i < fixed || used.binary_search(&i).is_ok());
     for shape in &mut fit.shapes {
         *shape = shape.mapped(&map);
     }
@@ -197,7 +209,7 @@ fn refined(system: &mut System, fit: &Fit, mut best: Scored) -> Scored {
         return best;
     };
     for _ in 0..3 {
-        let beside = Beside::new(system, &fit.shapes);
+        let beside = Beside::new(&system.total, &fit.shapes);
         let own = beside
             .rest
             .solve_beside(beside.whole, &best.candidate.shapes)
@@ -211,7 +223,7 @@ fn refined(system: &mut System, fit: &Fit, mut best: Scored) -> Scored {
         };
         best.candidate.shapes = vec![system.samples.library.pair(fill)];
         system.extend();
-        let beside = Beside::new(system, &fit.shapes);
+        let beside = Beside::new(&system.total, &fit.shapes);
         best.gain = beside.gain(&best.candidate.shapes).0;
         let log_p = log_tail(2.0 * best.gain, best.freedom);
         best.log_p = after_trials(log_p, best.candidate.trials * KINDS);
@@ -228,7 +240,7 @@ fn rivals(beside: &Beside, best: &Scored, others: &[Scored]) -> Vec<String> {
             continue;
         }
         // Far behind, or bought with more parameters: no rival.
-        if other.gain < 0.6 * best.gain || other.freedom > best.freedom + 1 {
+        if other.gain < RIVALS * best.gain || other.freedom > best.freedom + 1 {
             continue;
         }
         let together = both(&other.candidate.shapes, &best.candidate.shapes);
@@ -256,7 +268,7 @@ fn holds(
     }
     let mut named = both(&fit.shapes, &best.candidate.shapes);
     let mut held = best.gain;
-    let mut beside = Beside::new(system, &named);
+    let mut beside = Beside::new(&system.total, &named);
     for _ in 0..3 {
         let next = others
             .iter()
@@ -270,7 +282,7 @@ fn holds(
         let Some((_, gain, other)) = next else { break };
         named.extend(other.candidate.shapes.iter().cloned());
         held += gain;
-        beside = Beside::new(system, &named);
+        beside = Beside::new(&system.total, &named);
     }
     let (beyond, freedom) = beside.gain(basis);
     // What as many free numbers explain of noise alone does not count against it.
@@ -280,13 +292,8 @@ fn holds(
 }
 
 /// Domains in which something significant is left that no cause was found for.
-fn leftover(
-    system: &System,
-    catalogue: &Catalogue,
-    fit: &Fit,
-    closed: &[Domain],
-) -> Vec<Unnamed> {
-    let beside = Beside::new(system, &fit.shapes);
+fn leftover(system: &System, catalogue: &Catalogue, fit: &Fit, closed: &[Domain]) -> Vec<Unnamed> {
+    let beside = Beside::new(&system.total, &fit.shapes);
     let open = [
         Domain::Angle,
         Domain::Speed,
@@ -314,78 +321,5 @@ fn lives(domain: Domain) -> &'static str {
         Domain::Line => "something stands at a fixed frequency",
         Domain::Revolution => "something repeats with the revolution",
         Domain::Motion => "something moves that the motion's spline does not follow",
-    }
-}
-
-impl Selection {
-    /// The findings, the one that explains most first.
-    pub(crate) fn findings(&self, system: &System, halves: &Halves) -> Vec<Finding> {
-        let mut list = vec![];
-        for (i, accepted) in self.accepted.iter().enumerate() {
-            let count = accepted.candidate.shapes.len();
-            let range = accepted.first..accepted.first + count;
-            let error: Vec<f64> = range
-                .clone()
-                .map(|k| self.fit.solution.covariance[(k, k)].sqrt())
-                .collect();
-            let parameters = (accepted.candidate.parameters)(&Estimate {
-                x: &self.fit.solution.x[range.clone()],
-                error: &error,
-            });
-            let shapes = self.fit.shapes.iter().enumerate();
-            let others = shapes.filter(|(k, _)| !range.contains(k));
-            let without = system.fit(others.map(|(_, s)| s.clone()).collect());
-            // What the others explain as well in the end is no finding of its own.
-            let gain = self.fit.solution.gain() - without.solution.gain();
-            let freedom = self.fit.solution.rank.saturating_sub(without.solution.rank);
-            let trials = accepted.candidate.trials * KINDS;
-            let log_p = after_trials(log_tail(2.0 * gain, freedom), trials);
-            if freedom == 0 || log_p > SHOWN.ln() {
-                continue;
-            }
-            let p_value = log_p.exp();
-            let seen = (accepted.candidate.evidence)(&parameters);
-            list.push(Finding {
-                cause: accepted.candidate.name.into(),
-                confounded_with: accepted.confounded.clone(),
-                p_value,
-                evidence: format!("{seen}; it raises the log-likelihood by {gain:.1}"),
-                parameters,
-                gain: Gain {
-                    held_out_residual_rms_before: halves.held_out(&without.shapes),
-                    held_out_residual_rms_after: halves.held_out(&self.fit.shapes),
-                    position_error_rms_before_rad: halves.position_error(&without),
-                    position_error_rms_after_rad: halves.position_error(&self.fit),
-                },
-                chip: accepted.candidate.chip,
-                weight: gain - i as f64 * 1e-9,
-            });
-        }
-        list.sort_by(|a, b| b.weight.total_cmp(&a.weight));
-        list
-    }
-
-    /// The five parameters and every accepted cause that is no motion, with their amounts.
-    pub(crate) fn sensor_amounts(&self) -> Vec<(usize, f64)> {
-        let of_motion = |k: usize| {
-            self.accepted.iter().any(|a| {
-                let range = a.first..a.first + a.candidate.shapes.len();
-                a.candidate.motion && range.contains(&k)
-            })
-        };
-        let own = self.base.shapes.len();
-        let named = |k: &usize| {
-            *k < own
-                || self.accepted.iter().any(|a| {
-                    let range = a.first..a.first + a.candidate.shapes.len();
-                    range.contains(k)
-                })
-        };
-        let kept: Vec<usize> = (0..self.fit.shapes.len())
-            .filter(|k| named(k) && !of_motion(*k))
-            .collect();
-        let shapes: Vec<Shape> = kept.iter().map(|k| self.fit.shapes[*k].clone()).collect();
-        let x: Vec<f64> = kept.iter().map(|k| self.fit.solution.x[*k]).collect();
-        amounts(&shapes, &x)
     }
 }

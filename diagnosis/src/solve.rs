@@ -7,8 +7,19 @@ use crate::library::Shape;
 /// Directions with less than this share of a column's own square are combinations of others.
 const DEPENDENT: f64 = 1e-8;
 
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
+/// The sum of products; in several sums, so that no addition waits for the last one.
+pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    const SUMS: usize = 8;
+    let mut sums = [0.0; SUMS];
+    let (left, right) = (a.chunks_exact(SUMS), b.chunks_exact(SUMS));
+    let rest = left.remainder().iter().zip(right.remainder());
+    let rest: f64 = rest.map(|(a, b)| a * b).sum();
+    for (a, b) in left.zip(right) {
+        for i in 0..SUMS {
+            sums[i] += a[i] * b[i];
+        }
+    }
+    sums.iter().sum::<f64>() + rest
 }
 
 /// `values` without their projection on `shapes`.
@@ -145,7 +156,11 @@ impl Normal {
         let scale: Vec<f64> = (0..m)
             .map(|i| {
                 let norm = self.norms[i];
-                if norm > 1e-300 { norm.sqrt().recip() } else { 0.0 }
+                if norm > 1e-300 {
+                    norm.sqrt().recip()
+                } else {
+                    0.0
+                }
             })
             .collect();
         let unit = DMatrix::from_fn(m, m, |i, j| self.gram[(i, j)] * scale[i] * scale[j]);

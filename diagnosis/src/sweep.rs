@@ -1,24 +1,18 @@
 //! One pass over the samples: functions are made block by block, motion is taken off, the rest whitened, and only the
 //! sums of products are kept. So memory does not grow with the number of causes.
 
-use nalgebra::{DMatrix, DMatrixView, Dyn};
+use std::ops::Range;
 
-use crate::block::Block;
+use crate::block::{Block, Shared};
 use crate::context::Context;
 use crate::library::{Library, ROWS, Row, Use};
+use crate::part::{CHUNK, Part, STRIDE};
+use crate::solve::dot;
 use crate::spline::{Basis, Spline};
 use crate::whiten::{ORDER, Whitener};
 
-/// Samples of a block: its functions fit the cache.
-const CHUNK: usize = 1024;
-/// Between the columns of a block: the past of each stands before it.
-const STRIDE: usize = CHUNK + ORDER;
 /// Interleaved blocks, every other one of which is held out.
 const BLOCKS: usize = 20;
-/// Columns that are multiplied together.
-const PANEL: usize = 48;
-/// Fewest columns that are worth a matrix product.
-const WORTH: usize = 6;
 
 /// How what cannot be seen is taken off a row.
 enum Projector<'a> {
@@ -26,6 +20,9 @@ enum Projector<'a> {
     Mean(f64),
     Spline(&'a Spline),
 }
+
+/// Takes a block, the splines of it, which of the atoms asked for, and its values.
+type Visit<'v> = dyn FnMut(&Block, Option<&Basis>, usize, &[f64]) + 'v;
 
 /// Functions, data and noise of a recording: everything that a pass needs.
 pub(crate) struct Samples<'a> {
@@ -38,84 +35,6 @@ pub(crate) struct Samples<'a> {
     motions: Vec<Vec<f64>>,
     /// Square of each atom before the motion is taken off; 0 where there is none to take off.
     pub(crate) squares: Vec<f64>,
-}
-
-/// The columns of a row in a block: atoms in the order asked for, then the data.
-#[derive(Default)]
-pub(crate) struct Part {
-    pub(crate) columns: usize,
-    samples: usize,
-    plain: Vec<f64>,
-    white: Vec<f64>,
-}
-
-impl Part {
-    /// Column `i` of plain or of white values.
-    fn column(&self, white: bool, i: usize) -> &[f64] {
-        let from = i * STRIDE + ORDER;
-        &self.values(white)[from..from + self.samples]
-    }
-
-    fn values(&self, white: bool) -> &[f64] {
-        if white && !self.white.is_empty() {
-            &self.white
-        } else {
-            &self.plain
-        }
-    }
-
-    /// Adds the products of columns `a` with columns `b` to a matrix of all by all.
-    fn products(
-        &self,
-        white: bool,
-        a: std::ops::Range<usize>,
-        b: std::ops::Range<usize>,
-        sums: &mut DMatrix<f64>,
-    ) {
-        if a.len().min(b.len()) < WORTH {
-            for i in a {
-                let left = self.column(white, i);
-                for j in b.clone() {
-                    let pairs = left.iter().zip(self.column(white, j));
-                    sums[(i, j)] += pairs.map(|(x, y)| x * y).sum::<f64>();
-                }
-            }
-            return;
-        }
-        let values = self.values(white);
-        let n = Dyn(self.samples);
-        let (left, right) = (
-            &values[a.start * STRIDE + ORDER..],
-            &values[b.start * STRIDE + ORDER..],
-        );
-        // Lying down: the transpose, without moving a number.
-        let left: DMatrixView<f64, Dyn, Dyn> = DMatrixView::from_slice_with_strides_generic(
-            left,
-            Dyn(a.len()),
-            n,
-            Dyn(STRIDE),
-            Dyn(1),
-        );
-        let right: DMatrixView<f64, Dyn, Dyn> = DMatrixView::from_slice_with_strides_generic(
-            right,
-            n,
-            Dyn(b.len()),
-            Dyn(1),
-            Dyn(STRIDE),
-        );
-        sums.view_mut((a.start, b.start), (a.len(), b.len()))
-            .gemm(1.0, &left, &right, 1.0);
-    }
-
-    /// Adds all products of columns from `fresh` on with all columns; only those above the diagonal of panels count.
-    pub(crate) fn add_products(&self, white: bool, fresh: usize, sums: &mut DMatrix<f64>) {
-        for b in (fresh..self.columns).step_by(PANEL) {
-            let b = b..(b + PANEL).min(self.columns);
-            for a in (0..b.end).step_by(PANEL) {
-                self.products(white, a..(a + PANEL).min(b.end), b.clone(), sums);
-            }
-        }
-    }
 }
 
 impl<'a> Samples<'a> {
@@ -181,7 +100,7 @@ impl<'a> Samples<'a> {
             weighted.clear();
             let pairs = values.iter().zip(&weight[range]);
             weighted.extend(pairs.map(|(v, w)| v * w));
-            squares[wanted[i] - from] += weighted.iter().map(|v| v * v).sum::<f64>();
+            squares[wanted[i] - from] += dot(&weighted, &weighted);
             let own = &mut sums[wanted[i] - from];
             match (own.len(), basis) {
                 (2.., Some(basis)) => basis.accumulate(&weighted, own),
@@ -214,11 +133,7 @@ impl<'a> Samples<'a> {
     }
 
     /// Makes the functions of atoms block by block, as they are: block, splines of it, which of the atoms, values.
-    fn fill(
-        &self,
-        atoms: &[usize],
-        visit: &mut dyn FnMut(&Block, Option<&Basis>, usize, &[f64]),
-    ) {
+    fn fill(&self, atoms: &[usize], visit: &mut Visit) {
         let n = self.context.samples();
         // Each group is filled once for all of its atoms.
         let mut groups: Vec<(usize, Vec<usize>)> = vec![];
@@ -229,22 +144,25 @@ impl<'a> Samples<'a> {
                 None => groups.push((group, vec![i])),
             }
         }
-        let mut scratch = vec![];
+        let (mut scratch, mut shared) = (vec![], Shared::default());
         let half = n.div_ceil(BLOCKS).max(1);
         for first in (0..n).step_by(half) {
             let last = (first + half).min(n);
             for start in (first..last).step_by(CHUNK) {
-                let block = self.context.block(start..(start + CHUNK).min(last));
+                let range = start..(start + CHUNK).min(last);
+                let block = self.context.block(range, &mut shared);
                 let basis = self.basis(&block);
                 for (group, members) in &groups {
                     let group = &self.library.groups[*group];
                     let (len, count) = (block.len(), group.count);
                     let rows = if group.way == Use::Pairs { 2 } else { 1 };
-                    scratch.clear();
-                    scratch.resize(rows * count * len, 0.0);
-                    (group.fill)(&block, &mut scratch);
+                    let need = rows * count * len;
+                    if scratch.len() < need {
+                        scratch.resize(need, 0.0);
+                    }
+                    (group.fill)(&block, &mut scratch[..need]);
                     if group.way == Use::Pairs {
-                        rotate(&block, &mut scratch, count);
+                        rotate(&block, &mut scratch[..need], count);
                     }
                     for i in members {
                         let atom = self.library.atoms[atoms[*i]];
@@ -258,11 +176,7 @@ impl<'a> Samples<'a> {
     }
 
     /// Goes through the samples: the half of the blocks that it belongs to, and the three rows.
-    pub(crate) fn pass(
-        &self,
-        atoms: &[usize],
-        visit: &mut dyn FnMut(usize, &[Part; 3]),
-    ) {
+    pub(crate) fn pass(&self, atoms: &[usize], visit: &mut dyn FnMut(usize, &[Part; 3])) {
         let n = self.context.samples();
         let rows: Vec<usize> = atoms
             .iter()
@@ -290,23 +204,23 @@ impl<'a> Samples<'a> {
         let half = n.div_ceil(BLOCKS).max(1);
         let mut left = atoms.len();
         let weight = &self.context.weight;
-        let mut finish = |block: &Block, parts: &mut [Part; 3]| {
-            let range = block.start..block.start + block.len();
+        let mut finish = |range: Range<usize>, parts: &mut [Part; 3]| {
             for (row, part) in parts.iter_mut().enumerate() {
                 if part.columns == 0 {
                     continue;
                 }
-                part.samples = block.len();
+                part.samples = range.len();
                 let data = (part.columns - 1) * STRIDE + ORDER;
-                part.plain[data..data + block.len()].copy_from_slice(&self.data[row][range.clone()]);
-                self.whiteners[row].block(part.columns, block.len(), &part.plain, &mut part.white);
+                part.plain[data..data + range.len()]
+                    .copy_from_slice(&self.data[row][range.clone()]);
+                self.whiteners[row].block(part.columns, range.len(), &part.plain, &mut part.white);
             }
-            visit(block.start / half % 2, parts);
+            visit(range.start / half % 2, parts);
             // The end of this block is the past of the next.
             for part in parts.iter_mut().filter(|p| p.columns > 0) {
                 for column in 0..part.columns {
                     let from = column * STRIDE;
-                    let end = from + block.len();
+                    let end = from + range.len();
                     part.plain.copy_within(end..end + ORDER, from);
                 }
             }
@@ -315,7 +229,7 @@ impl<'a> Samples<'a> {
             for first in (0..n).step_by(half) {
                 let last = (first + half).min(n);
                 for start in (first..last).step_by(CHUNK) {
-                    finish(&self.context.block(start..(start + CHUNK).min(last)), &mut parts);
+                    finish(start..(start + CHUNK).min(last), &mut parts);
                 }
             }
             return;
@@ -332,11 +246,13 @@ impl<'a> Samples<'a> {
                 _ => own.iter_mut().for_each(|v| *v -= motion[0]),
             }
             let weights = &weight[block.start..block.start + block.len()];
-            own.iter_mut().zip(weights).for_each(|(v, w)| *v *= w);
+            if weights.iter().any(|w| *w != 1.0) {
+                own.iter_mut().zip(weights).for_each(|(v, w)| *v *= w);
+            }
             left -= 1;
             if left == 0 {
                 left = atoms.len();
-                finish(block, &mut parts);
+                finish(block.start..block.start + block.len(), &mut parts);
             }
         });
     }
@@ -392,7 +308,9 @@ impl<'a> Samples<'a> {
         let mut sum = vec![0.0; self.context.samples()];
         self.fill(&atoms, &mut |block, _, i, values| {
             let part = &mut sum[block.start..block.start + block.len()];
-            part.iter_mut().zip(values).for_each(|(s, v)| *s += own[i].1 * v);
+            part.iter_mut()
+                .zip(values)
+                .for_each(|(s, v)| *s += own[i].1 * v);
         });
         sum
     }

@@ -99,7 +99,9 @@ impl Whitener {
 /// Average spectrum of overlapping segments, per sample: its mean over all frequencies is the mean square.
 fn averaged(values: &[f64]) -> Vec<f64> {
     let n = values.len();
-    let segment = SEGMENT.min((n / 4).next_power_of_two()).clamp(16, n.max(16));
+    let segment = SEGMENT
+        .min((n / 4).next_power_of_two())
+        .clamp(16, n.max(16));
     let window: Vec<f64> = (0..segment)
         .map(|k| (std::f64::consts::PI * (k as f64 + 0.5) / segment as f64).sin())
         .collect();

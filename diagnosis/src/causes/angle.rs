@@ -52,8 +52,7 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
     for order in 2..=7 {
         let shapes = (0..2)
             .flat_map(|which| {
-                [Trig::cos(order, 0.0), Trig::sin(order, 0.0)]
-                    .map(|wave| of_channel(which, &wave))
+                [Trig::cos(order, 0.0), Trig::sin(order, 0.0)].map(|wave| of_channel(which, &wave))
             })
             .collect();
         list.push(Candidate {
@@ -87,7 +86,7 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
             .map(|i| {
                 let (which, sign) = (i / 2, if i % 2 == 0 { 1.0 } else { -1.0 });
                 catalogue.library.pair(move |block: &Block, c, s| {
-                    let u = &block.normalised()[which];
+                    let u = block.u[which];
                     let over = |v: &f64| -(v * sign - threshold).max(0.0) * sign;
                     block.channel(which, &u.iter().map(over).collect::<Vec<_>>(), c, s);
                 })

@@ -31,6 +31,13 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
     if coarse > 1 {
         return;
     }
+    // The codes of the smooth signals: those of the measured ones know the noise that carried them over an edge.
+    let (e, adc) = (context.ellipse, context.adc);
+    let smooth = move |block: &Block, which: usize| -> Vec<i64> {
+        let (a, b, adc) = [(e.a_c, e.b_c, adc.cos), (e.a_s, e.b_s, adc.sin)][which];
+        let u = block.u[which].iter();
+        u.map(|u| adc.code(a * u + b)).collect()
+    };
     // The highest bit is the step in the middle of the range.
     for bit in (0..context.bits.min(40)).rev().take(8) {
         if (1i64 << bit) > reach || (1i64 << bit) < 8 {
@@ -40,8 +47,8 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
             .map(|which| {
                 catalogue.library.pair(move |block: &Block, c, s| {
                     let set = |c: &i64| ((c + half) >> bit & 1) as f64 - 0.5;
-                    let codes = block.codes[which].iter();
-                    block.channel(which, &codes.map(set).collect::<Vec<_>>(), c, s);
+                    let codes = smooth(block, which);
+                    block.channel(which, &codes.iter().map(set).collect::<Vec<_>>(), c, s);
                 })
             })
             .collect();

@@ -14,12 +14,32 @@ use crate::model::Residual;
 /// Lowest frequency of a line, in cycles per recording: below, it is drift.
 const SLOWEST: f64 = 4.0;
 
+/// Samples between two evaluations of a line's sine; between them it is rotated on.
+const ROTATED: usize = 64;
+/// Share of a sample by which the time base may be off to be regular.
+const REGULAR: f64 = 1e-3;
+
 /// cos and sin of a line.
 fn wave(hertz: f64) -> Fill {
     Rc::new(move |block, out| {
         let n = block.len();
-        for (k, t) in block.time.iter().enumerate() {
-            (out[n + k], out[k]) = (TAU * hertz * t).sin_cos();
+        let (cos, sin) = out.split_at_mut(n);
+        let first = block.time[0];
+        let step = (block.time[n - 1] - first) / (n - 1).max(1) as f64;
+        let regular = |(k, t): (usize, &f64)| (t - first - k as f64 * step).abs() < REGULAR * step;
+        if !block.time.iter().enumerate().all(regular) {
+            for (k, t) in block.time.iter().enumerate() {
+                (sin[k], cos[k]) = (TAU * hertz * t).sin_cos();
+            }
+            return;
+        }
+        let (sin_step, cos_step) = (TAU * hertz * step).sin_cos();
+        for from in (0..n).step_by(ROTATED) {
+            let (mut s, mut c) = (TAU * hertz * (first + from as f64 * step)).sin_cos();
+            for k in from..(from + ROTATED).min(n) {
+                (cos[k], sin[k]) = (c, s);
+                (c, s) = (c * cos_step - s * sin_step, s * cos_step + c * sin_step);
+            }
         }
     })
 }

@@ -32,14 +32,18 @@ pub(crate) fn candidates(
 
 /// Sums of values times exp(−i order φ), for orders 0 … `ORDERS` of the revolution: cos parts, then sin parts.
 pub(crate) fn orders(phi: &[f64], values: &[f64]) -> Vec<[f64; 2]> {
+    /// Samples that are turned together.
+    const TOGETHER: usize = 256;
     let mut sums = vec![[0.0; 2]; ORDERS + 1];
-    for (p, v) in phi.iter().zip(values) {
-        let (sin, cos) = p.sin_cos();
-        let (mut c, mut s) = (*v, 0.0);
+    for (phi, values) in phi.chunks(TOGETHER).zip(values.chunks(TOGETHER)) {
+        let turn: Vec<(f64, f64)> = phi.iter().map(|p| p.sin_cos()).collect();
+        let (mut c, mut s) = (values.to_vec(), vec![0.0; values.len()]);
         for sum in &mut sums {
-            sum[0] += c;
-            sum[1] += s;
-            (c, s) = (c * cos - s * sin, s * cos + c * sin);
+            sum[0] += c.iter().sum::<f64>();
+            sum[1] += s.iter().sum::<f64>();
+            for ((c, s), (sin, cos)) in c.iter_mut().zip(&mut s).zip(&turn) {
+                (*c, *s) = (*c * cos - *s * sin, *s * cos + *c * sin);
+            }
         }
     }
     sums
@@ -80,7 +84,12 @@ fn cogging(
         positive: false,
         chip: Chip::NotASensorError,
         parameters: harmonic(order, "amplitude", "rad"),
-        evidence: Rc::new(move |p| format!("the axis really moves unevenly, {order} times per revolution by {:.3e} rad of a scale period, without any change of the radius", p[1].value)),
+        evidence: Rc::new(move |p| {
+            format!(
+                "the axis really moves unevenly, {order} times per revolution by {:.3e} rad of a scale period, without any change of the radius",
+                p[1].value
+            )
+        }),
     })
 }
 

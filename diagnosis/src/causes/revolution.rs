@@ -99,4 +99,3 @@ pub(super) fn harmonic(order: u32, name: &'static str, unit: &'static str) -> cr
         ]
     })
 }
-

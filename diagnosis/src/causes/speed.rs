@@ -38,11 +38,11 @@ fn reverses(context: &Context) -> bool {
 
 /// What a first-order low pass of time constant `tau` takes from a channel, over `tau`.
 fn low_pass(block: &Block, which: usize, tau: f64) -> Vec<f64> {
-    let (u, slope) = (block.normalised(), block.derivatives());
+    let (u, slope) = (block.u[which], block.slope[which]);
     (0..block.len())
         .map(|k| {
             let w = block.speed[k] * tau;
-            let lost = -w * slope[which][k] - w * w * u[which][k];
+            let lost = -w * slope[k] - w * w * u[k];
             lost / (1.0 + w * w) / tau
         })
         .collect()
@@ -76,9 +76,8 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
     let (zero, one_) = (Trig::constant(0.0), Trig::constant(1.0));
     let scaled = |shape: Shape, by: f64| Shape(shape.0.iter().map(|(i, x)| (*i, x * by)).collect());
     // The speed times a change of one channel.
-    let times = |which: usize, change: &Trig| {
-        scaled(speed.shape(ODD, &channel(beta, which, change)), top)
-    };
+    let times =
+        |which: usize, change: &Trig| scaled(speed.shape(ODD, &channel(beta, which, change)), top);
     let slope = derivatives(beta);
     let one = |name,
                shape: Shape,
@@ -153,9 +152,11 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
                     },
                 );
                 candidate.trials = 10.0;
-                candidate.refine = Some(Rc::new(move |block: &Block, inner: &[f64], c: &mut [f64], s: &mut [f64]| {
-                    block.channel(which, &low_pass(block, which, inner[0]), c, s);
-                }));
+                candidate.refine = Some(Rc::new(
+                    move |block: &Block, inner: &[f64], c: &mut [f64], s: &mut [f64]| {
+                        block.channel(which, &low_pass(block, which, inner[0]), c, s);
+                    },
+                ));
                 list.push(candidate);
             }
         }
@@ -211,7 +212,7 @@ fn slow(block: &Block, which: usize, rate: f64, state: &RefCell<(usize, f64)>) -
         *state = (block.start, 0.0);
     }
     let mut now = state.1;
-    let values = block.normalised()[which]
+    let values = block.u[which]
         .iter()
         .map(|v| {
             now += rate * (v - now);
