@@ -49,10 +49,8 @@ fn main() -> ExitCode {
 fn run(arguments: &Arguments) -> Result<()> {
     let temporary = tempfile::tempdir()?;
     let folder = arguments.truths.as_deref().unwrap_or(temporary.path());
-    for folder in [Some(folder), arguments.recordings.as_deref()] {
-        if let Some(folder) = folder {
-            std::fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
-        }
+    for folder in std::iter::once(folder).chain(arguments.recordings.as_deref()) {
+        std::fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
     }
     let bar = ProgressBar::new(arguments.cases).with_style(ProgressStyle::with_template(
         "{bar:40} {pos}/{len} {elapsed} ({eta} left)",

@@ -12,10 +12,11 @@ pub(crate) fn wave(
     variance: impl Fn(usize) -> f64,
 ) -> Vec<f64> {
     let mut bins = vec![Complex::new(0.0, 0.0); length];
-    for j in 1..lines.min(length / 2) {
+    let filled = lines.min(length / 2);
+    for (j, bin) in bins.iter_mut().enumerate().take(filled).skip(1) {
         let size = variance(j).sqrt();
         let (re, im): (f64, f64) = (StandardNormal.sample(random), StandardNormal.sample(random));
-        bins[j] = Complex::new(re * size, im * size);
+        *bin = Complex::new(re * size, im * size);
     }
     // Real part of an analytic signal: each line has the variance asked for.
     FftPlanner::new()

@@ -177,12 +177,12 @@ fn splines(world: &World) -> Vec<Vec<f64>> {
         .unwrap_or(&INTERVALS[INTERVALS.len() - 1]);
     let n = world.samples;
     let mut all = vec![vec![0.0; n]; few + 3];
-    for k in 0..n {
+    (0..n).for_each(|k| {
         let (first, values) = basis(k as f64 / n as f64, few);
-        for (j, value) in values.iter().enumerate() {
-            all[first + j][k] = *value;
+        for (column, value) in all[first..].iter_mut().zip(values) {
+            column[k] = value;
         }
-    }
+    });
     all
 }
 
