@@ -44,12 +44,12 @@ impl Effect for Jitter {
     }
     fn noise_snr(&self, m: f64, world: &World) -> Option<f64> {
         let white = (world.sigma() / world.mean_amplitude()).powi(2);
-        let mut variances = vec![white; world.samples];
-        for k in 0..world.samples {
+        // At one speed it is noise along the motion like any other: only what changes with the speed tells.
+        let along = (0..world.samples).map(|k| {
             let speed = world.motion.at(k as f64 / world.rate).speed;
-            variances.push(white + (m * speed).powi(2));
-        }
-        Some(unequal(&variances))
+            white + (m * speed).powi(2)
+        });
+        Some(unequal(&along.collect::<Vec<f64>>()))
     }
     fn parameters(&self, m: f64, _world: &World) -> Vec<(&'static str, f64, bool)> {
         vec![("rms_s", m, false)]

@@ -65,10 +65,25 @@ pub(crate) fn gain(draw: &mut Draw) -> Box<dyn Effect> {
     .boxed()
 }
 
-/// An offset with the sign of the speed; wild: it takes some way to turn over.
+/// Points in time at which the last direction is remembered.
+const POINTS: usize = 2000;
+
+/// An offset with the sign of the speed, the last one at standstill; wild: it takes some way to turn over.
 pub(crate) fn hysteresis(draw: &mut Draw) -> Box<dyn Effect> {
     let (shares, wild) = (super::statics::shares(draw), draw.wild);
     let seconds = draw.world.seconds();
+    // A magnet or a spring at rest stays on the side that it came to.
+    let mut side = 1.0;
+    let last: Vec<f64> = (0..=POINTS)
+        .map(|k| {
+            let t = seconds * k as f64 / POINTS as f64;
+            let speed = draw.world.motion.at(t).speed;
+            if speed != 0.0 {
+                side = speed.signum();
+            }
+            side
+        })
+        .collect();
     let peak = (0..200).fold(0.0f64, |peak, k| {
         let state = draw.world.motion.at(seconds * f64::from(k) / 200.0);
         peak.max(state.speed.abs())
@@ -77,7 +92,8 @@ pub(crate) fn hysteresis(draw: &mut Draw) -> Box<dyn Effect> {
         let side = if wild {
             (at.speed / (0.05 * peak)).tanh()
         } else if at.speed == 0.0 {
-            0.0
+            let point = (at.t / seconds * POINTS as f64).clamp(0.0, POINTS as f64);
+            last[point as usize]
         } else {
             at.speed.signum()
         };
