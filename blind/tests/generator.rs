@@ -3,9 +3,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use nonius_blind::{Case, Kind, names, seal, stranger_names};
+use nonius_blind::{Case, Kind, Truth, names, seal, stranger_names};
+use rayon::prelude::*;
 
-const SAMPLES: usize = 6000;
+const SAMPLES: usize = 5000;
 const CHOSEN: [&str; 4] = [
     "stuck_bit",
     "coarse_quantisation",
@@ -20,11 +21,18 @@ const ROUND: u64 = 240;
 fn every_name_has_the_snr_asked_for() {
     let mut seen = BTreeSet::new();
     let mut kinds = BTreeMap::<Kind, usize>::new();
-    for seed in 0..ROUND {
+    let draw = |seed| {
         let case = Case::draw(seed, SAMPLES).unwrap_or_else(|e| panic!("{e}"));
         assert_eq!(case.rows.len(), SAMPLES);
-        *kinds.entry(case.truth.kind).or_default() += 1;
-        for hidden in &case.truth.hidden {
+        case.truth
+    };
+    let truths: Vec<Truth> = (0..ROUND).into_par_iter().map(draw).collect();
+    for Truth {
+        seed, kind, hidden, ..
+    } in &truths
+    {
+        *kinds.entry(*kind).or_default() += 1;
+        for hidden in hidden {
             seen.insert(hidden.name.clone());
             // A bit or a place can only be chosen, not scaled.
             if !CHOSEN.contains(&hidden.name.as_str()) {

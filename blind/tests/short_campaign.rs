@@ -6,7 +6,7 @@
 use nonius_blind::{Case, Kind, Score, Summary, page, seal, verdict};
 use rayon::prelude::*;
 
-const SEEDS: std::ops::Range<u64> = 40_000..40_080;
+const SEEDS: std::ops::Range<u64> = 40_000..40_060;
 const SAMPLES: usize = 10_000;
 
 #[test]
@@ -34,7 +34,7 @@ fn short_campaign() {
     assert_eq!(all.motion_blamed().hits, 0, "motion called a sensor error");
     // Those that are not: no worse than they are, with room for the few cases.
     let (found, wrong) = (all.group(Kind::One), all.wrong());
-    assert!(found.of >= 15, "too few cases to say anything: {found}");
+    assert!(found.of >= 12, "too few cases to say anything: {found}");
     assert!(found.fraction() >= 0.6, "found {found}");
     assert!(wrong.fraction() <= 0.2, "wrong {wrong}");
     let imagined = all.imagined_motion();
