@@ -1,8 +1,10 @@
 //! A cause that may be in a recording: its shapes, how many were tried, what to say about it.
 
-use crate::column::Shape;
-use crate::context::Context;
+use std::rc::Rc;
+
+use crate::block::Block;
 use crate::finding::{Chip, Parameter};
+use crate::library::Shape;
 
 /// Where a cause lives; what no cause of a domain explains is measured with a generic basis of that domain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -31,14 +33,15 @@ pub(crate) struct Estimate<'a> {
     pub error: &'a [f64],
 }
 
-/// Makes shapes of amounts.
-pub(crate) type Refine = Box<dyn Fn(&Context, &[f64]) -> Vec<Shape>>;
+/// Makes the changes of the corrected pair of inner parameters.
+pub(crate) type Exact = Rc<dyn Fn(&Block, &[f64], &mut [f64], &mut [f64])>;
 /// Makes parameters of an estimate.
-pub(crate) type Reads = Box<dyn Fn(&Estimate) -> Vec<Parameter>>;
+pub(crate) type Reads = Rc<dyn Fn(&Estimate) -> Vec<Parameter>>;
 /// Makes a sentence of parameters.
-pub(crate) type Says = Box<dyn Fn(&[Parameter]) -> String>;
+pub(crate) type Says = Rc<dyn Fn(&[Parameter]) -> String>;
 
 /// A cause with one choice of its discrete parameters.
+#[derive(Clone)]
 pub(crate) struct Candidate {
     /// Name of the contract.
     pub name: &'static str,
@@ -54,55 +57,18 @@ pub(crate) struct Candidate {
     pub positive: bool,
     /// What the chip can do.
     pub chip: Chip,
-    /// The shapes where the first estimate says the cause is, if they change with its size.
-    pub refine: Option<Refine>,
+    /// The change of the pair at an amount of one, given that the amount is about so large, where the shape changes with
+    /// its size.
+    pub refine: Option<Exact>,
     /// Parameters from the estimate.
     pub parameters: Reads,
     /// The middle of the sentence: what was seen, from the parameters.
     pub evidence: Says,
 }
 
-/// A change of the raw channels, in fractions of their amplitudes, as a change of the corrected pair.
-pub(crate) fn raw(context: &Context, cos: Vec<f64>, sin: Vec<f64>) -> Shape {
-    let (tan, secant) = (context.ellipse.beta.tan(), 1.0 / context.ellipse.beta.cos());
-    let s = cos.iter().zip(&sin).map(|(c, s)| s * secant + c * tan);
-    Shape {
-        s: s.collect(),
-        c: cos,
-    }
-}
-
-/// A change of one raw channel.
-pub(crate) fn channel(context: &Context, which: usize, change: Vec<f64>) -> Shape {
-    let zero = vec![0.0; change.len()];
-    if which == 0 {
-        raw(context, change, zero)
-    } else {
-        raw(context, zero, change)
-    }
-}
-
-/// Normalised raw channels: cos α and sin(α − β).
-pub(crate) fn normalised(context: &Context) -> [Vec<f64>; 2] {
-    let beta = context.ellipse.beta;
-    [
-        context.cos.clone(),
-        context.alpha.iter().map(|a| (a - beta).sin()).collect(),
-    ]
-}
-
-/// Their derivatives by α.
-pub(crate) fn derivatives(context: &Context) -> [Vec<f64>; 2] {
-    let beta = context.ellipse.beta;
-    [
-        context.sin.iter().map(|s| -s).collect(),
-        context.alpha.iter().map(|a| (a - beta).cos()).collect(),
-    ]
-}
-
 /// One parameter per shape, with the same unit.
 pub(crate) fn each(names: &'static [&'static str], unit: &'static str) -> Reads {
-    Box::new(move |e| {
+    Rc::new(move |e| {
         let list = names.iter().zip(e.x).zip(e.error);
         list.map(|((name, x), error)| Parameter::measured(name, *x, *error, unit))
             .collect()

@@ -3,16 +3,12 @@
 use std::f64::consts::TAU;
 
 use nonius_calibration::{Ellipse, Method, Options, calibrate};
-use nonius_recording::Recording;
+use nonius_recording::{AdcPair, Recording};
 
-use crate::column::Shape;
 use crate::spline::Spline;
 
-/// Finest knot spacing, in samples.
-const FINEST: f64 = 6.0;
-/// Knots stand so much closer than the likelihood asks for: what the motion leaves behind must be far below the noise,
-/// not just not worth another knot.
-const CLOSER: f64 = 2.0;
+/// Most samples that the first ellipse is fitted to; the model of all samples has the five parameters again.
+const FIRST: usize = 8192;
 
 /// The recording, corrected, with everything that shapes are made of. One value per sample.
 #[derive(Clone, Debug)]
@@ -52,6 +48,8 @@ pub struct Context {
     pub codes: [Vec<i64>; 2],
     /// Bits of the ADC.
     pub bits: u32,
+    /// Codes and what they stand for.
+    pub adc: AdcPair,
     /// Scale periods per revolution.
     pub periods_per_revolution: Option<u32>,
     /// The motion that is taken off the angle; none with a reference.
@@ -81,9 +79,10 @@ impl Context {
     /// # Errors
     /// Where no ellipse can be fitted.
     pub fn new(recording: &Recording, weight: Vec<f64>) -> Result<Self, ContextError> {
+        let every = weight.len().div_ceil(FIRST).max(1);
         let kept = |values: &[f64]| -> Vec<f64> {
             let pairs = values.iter().zip(&weight).filter(|(_, w)| **w > 0.0);
-            pairs.map(|(v, _)| *v).collect()
+            pairs.map(|(v, _)| *v).step_by(every).collect()
         };
         let fit = calibrate(
             &kept(&recording.cos),
@@ -115,6 +114,7 @@ impl Context {
             weight,
             codes: [codes.0, codes.1],
             bits: recording.metadata.adc.cos.bits,
+            adc: recording.metadata.adc,
             periods_per_revolution: recording.metadata.periods_per_revolution,
             spline: None,
         };
@@ -143,7 +143,9 @@ impl Context {
         self.measured = unwrapped(angle);
         (self.c, self.s) = (c, s);
         if self.spline.is_none() {
-            self.spline = Some(self.choose_spline());
+            let per = self.periods_per_revolution;
+            let spacing = crate::knots::spacing(&self.measured, &self.weight, per);
+            self.spline = Some(Spline::new(n, spacing, &self.weight));
         }
         if let Some(spline) = &self.spline {
             let fit = spline.fit(&self.measured, &self.weight);
@@ -203,125 +205,6 @@ impl Context {
             (None, Some(spline)) => spline.residual(&self.measured, &self.weight),
             (None, None) => vec![0.0; self.samples()],
         }
-    }
-
-    /// What of a tangential change can be seen.
-    #[must_use]
-    pub fn seen(&self, change: &[f64]) -> Vec<f64> {
-        match (&self.against_reference, &self.spline) {
-            (Some(_), _) => {
-                let total: f64 = self.weight.iter().sum();
-                let mean = change
-                    .iter()
-                    .zip(&self.weight)
-                    .map(|(d, w)| d * w)
-                    .sum::<f64>();
-                let mean = mean / total.max(1.0);
-                change
-                    .iter()
-                    .zip(&self.weight)
-                    .map(|(d, w)| (d - mean) * w)
-                    .collect()
-            }
-            (None, Some(spline)) => spline.residual(change, &self.weight),
-            (None, None) => vec![0.0; self.samples()],
-        }
-    }
-
-    /// The five parameters as shapes.
-    #[must_use]
-    pub fn parameters(&self) -> Vec<Shape> {
-        let n = self.samples();
-        let (one, zero) = (vec![1.0; n], vec![0.0; n]);
-        let shape = |c: &[f64], s: &[f64]| Shape {
-            c: c.to_vec(),
-            s: s.to_vec(),
-        };
-        vec![
-            shape(&self.cos, &zero),
-            shape(&one, &zero),
-            shape(&zero, &self.sin),
-            shape(&zero, &one),
-            shape(&zero, &self.cos),
-        ]
-    }
-
-    /// `values` without their strongest line in time and, where the revolution is known, in its angle: real vibration and
-    /// cogging are no reason for more knots.
-    fn without_lines(&self, values: &[f64], spline: &Spline) -> Vec<f64> {
-        let left = crate::lines::without_strongest(values);
-        let Some(per) = self.periods_per_revolution else {
-            return left;
-        };
-        let waves = |order: u32| -> Vec<Vec<f64>> {
-            let order = f64::from(order) / f64::from(per);
-            let wave = |f: fn(f64) -> f64| -> Vec<f64> {
-                self.measured.iter().map(|a| f(order * a)).collect()
-            };
-            vec![wave(f64::cos), wave(f64::sin)]
-        };
-        let power = |order: &u32| -> f64 {
-            let dot = |w: &[f64]| w.iter().zip(&left).map(|(a, b)| a * b).sum::<f64>();
-            waves(*order).iter().map(|w| dot(w).powi(2)).sum()
-        };
-        let best = (1..=64u32)
-            .filter(|o| o % per != 0)
-            .map(|o| (power(&o), o))
-            .max_by(|a, b| a.0.total_cmp(&b.0));
-        let Some((_, order)) = best else { return left };
-        let seen: Vec<Vec<f64>> = waves(order)
-            .iter()
-            .map(|w| spline.residual(w, &self.weight))
-            .collect();
-        crate::solve::without(&left, &seen)
-    }
-
-    /// The knot spacing whose spline explains the angle best for its number of coefficients, with what repeats with the
-    /// period taken off first.
-    fn choose_spline(&self) -> Spline {
-        let n = self.samples();
-        let mut spacing = (n as f64 / 2.0).max(FINEST);
-        let mut best: Option<(f64, Spline)> = None;
-        let effective: f64 = self.weight.iter().sum();
-        let cyclic: Vec<Vec<f64>> = (1..=4)
-            .flat_map(|order| {
-                let order = f64::from(order);
-                let wave = move |f: fn(f64) -> f64| {
-                    self.measured
-                        .iter()
-                        .map(|a| f(order * a))
-                        .collect::<Vec<f64>>()
-                };
-                [wave(f64::cos), wave(f64::sin)]
-            })
-            .collect();
-        let mut worse = 0;
-        while spacing >= FINEST {
-            let spline = Spline::new(n, spacing, &self.weight);
-            let residual = spline.residual(&self.measured, &self.weight);
-            let shapes: Vec<Vec<f64>> = cyclic
-                .iter()
-                .map(|w| spline.residual(w, &self.weight))
-                .collect();
-            let left = self.without_lines(&crate::solve::without(&residual, &shapes), &spline);
-            let power: f64 = left.iter().map(|r| r * r).sum();
-            let count = spline.count() as f64;
-            let score = effective * (power / effective).max(1e-300).ln() + count * effective.ln();
-            if best.as_ref().is_none_or(|b| score < b.0) {
-                best = Some((score, spline));
-                worse = 0;
-            } else {
-                worse += 1;
-                if worse > 6 {
-                    break;
-                }
-            }
-            spacing /= 1.5;
-        }
-        best.map_or_else(
-            || Spline::new(n, n as f64, &self.weight),
-            |b| Spline::new(n, (b.1.spacing() / CLOSER).max(FINEST), &self.weight),
-        )
     }
 }
 

@@ -3,17 +3,15 @@
 use nonius_recording::Recording;
 use serde::Serialize;
 
+use crate::causes::Catalogue;
 use crate::checks;
 use crate::context::{Context, ContextError, unwrapped};
 use crate::finding::{Finding, Parameter};
-use crate::generic;
+use crate::library::Row;
 use crate::model::{System, above_motion};
 use crate::noise;
 use crate::repair::repair;
 use crate::select::select;
-
-/// Most samples that are searched for causes; positions are made of all.
-const MOST: usize = 200_000;
 
 /// The sensor with its five fitted parameters and white noise.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -90,38 +88,31 @@ pub fn diagnose(recording: &Recording) -> Result<Diagnosis, ContextError> {
     let checked = checks::check(recording);
     let repaired = repair(recording, &checked.weight, &checked.gaps);
     let recording = &repaired.recording;
-    let mut context = Context::new(recording, repaired.weight.clone())?;
-    let mut notes = recording.notes.clone();
-    let whole = context.samples();
-    if whole > MOST {
-        notes.push(format!(
-            "causes were searched in the first {MOST} of {whole} samples"
-        ));
-    }
-    let first = limited(&context, recording);
-    let reference = recording
-        .reference_rad
-        .as_ref()
-        .map(|r| &r[..first.samples()]);
-    let motion = reference.map(|r| above_motion(&first, &unwrapped(r.to_vec())));
-    let system = System::new(&first, motion, &generic::saturated(&first));
-    let selection = select(&first, &system);
+    let context = Context::new(recording, repaired.weight.clone())?;
+    let notes = recording.notes.clone();
+    let reference = recording.reference_rad.as_ref();
+    let motion = reference.map(|r| above_motion(&context, &unwrapped(r.clone())));
+    let mut catalogue = Catalogue::new(&context, motion.is_some());
+    let mut system = System::new(&context, motion, &mut catalogue);
+    let selection = select(&context, &mut system, &catalogue);
+    let all = [selection.base.shapes.as_slice(), &selection.fit.shapes].concat();
+    let halves = system.halves(&all);
     let mut findings = checked.findings;
-    let named = selection.findings(&system);
-    let left = selection.fit.left(&system);
+    let named = selection.findings(&system, &halves);
+    let left = system.residual(&selection.fit);
     // Only what is noise can be noise of a kind.
     let noisy = if selection.unnamed.is_empty() {
-        noise::findings(&first, &system.residual(&left))
+        noise::findings(&context, &left)
     } else {
         vec![]
     };
     let (held_before, held_after) = (
-        selection.base.held_out(&system),
-        selection.fit.held_out(&system),
+        halves.held_out(&selection.base.shapes),
+        halves.held_out(&selection.fit.shapes),
     );
     let (position_before, position_after) = (
-        selection.base.position_error(&system),
-        selection.fit.position_error(&system),
+        halves.position_error(&selection.base),
+        halves.position_error(&selection.fit),
     );
     for finding in &mut findings {
         finding.gain.held_out_residual_rms_before = held_before;
@@ -157,39 +148,30 @@ pub fn diagnose(recording: &Recording) -> Result<Diagnosis, ContextError> {
             signature.join("; ")
         },
     };
-    let n = first.samples();
-    let split = |left: &[f64]| (left[..n].to_vec(), left[n..2 * n].to_vec());
-    let residuals = [split(&selection.base.left(&system)), split(&left)];
+    let was = system.residual(&selection.base);
+    let residuals = [(was.radial, was.tangential), (left.radial, left.tangential)];
     let simulation = simulation(
         &context,
         &system,
         held_before,
-        &selection.base,
+        halves.rms(&selection.base),
         position_before,
     );
     let extended = Extended {
-        residual_rms: selection.fit.rms(&system),
+        residual_rms: halves.rms(&selection.fit),
         held_out_residual_rms: held_after,
         position_error_rms_rad: position_after,
     };
-    // The corrected pair, by everything that is no motion.
-    let mut change = vec![0.0; n];
-    let tangential = selection.sensor_shapes(&first);
-    for (shape, x) in tangential {
-        let (_, along) = shape.rotated(&first.cos, &first.sin);
-        for (c, a) in change.iter_mut().zip(along) {
-            *c += x * a;
-        }
-    }
-    let positions = (0..whole)
+    // The angle, less what everything that is no motion does to it.
+    let change = system
+        .samples
+        .sum(&selection.sensor_amounts(), Row::Tangential);
+    let positions = (0..context.samples())
         .filter(|k| repaired.original[*k])
-        .map(|k| {
-            let off = change.get(k).copied().unwrap_or(0.0);
-            (context.measured[k] - off) / std::f64::consts::TAU
-        })
+        .map(|k| (context.measured[k] - change[k]) / std::f64::consts::TAU)
         .collect();
     let periods_travelled = travelled(&context);
-    context.phi = first.phi.clone();
+    drop(system);
     Ok(Diagnosis {
         simulation,
         findings,
@@ -197,41 +179,17 @@ pub fn diagnose(recording: &Recording) -> Result<Diagnosis, ContextError> {
         extended,
         positions,
         periods_travelled,
-        context: first.clone(),
+        context,
         residuals,
         notes,
     })
-}
-
-/// The first samples of a context, as many as are searched; with the reference.
-fn limited(context: &Context, recording: &Recording) -> Context {
-    let n = context.samples().min(MOST);
-    let mut part = context.clone();
-    part.time.truncate(n);
-    part.weight.truncate(n);
-    for values in &mut part.raw {
-        values.truncate(n);
-    }
-    for codes in &mut part.codes {
-        codes.truncate(n);
-    }
-    if let Some(t) = &mut part.temperature {
-        t.truncate(n);
-    }
-    if n < context.samples() {
-        part.spline = None;
-    }
-    let (c, s) = (context.c[..n].to_vec(), context.s[..n].to_vec());
-    let reference = recording.reference_rad.as_ref().map(|r| &r[..n]);
-    part.set_pair(c, s, reference);
-    part
 }
 
 fn simulation(
     context: &Context,
     system: &System,
     held_out: f64,
-    base: &crate::model::Fit,
+    rms: f64,
     position: Option<f64>,
 ) -> Simulation {
     let e = context.ellipse;
@@ -265,7 +223,7 @@ fn simulation(
                 parameters: vec![p("rms", noise, noise / (2.0 * n).sqrt(), "amplitude")],
             },
         ],
-        residual_rms: base.rms(system),
+        residual_rms: rms,
         held_out_residual_rms: held_out,
         position_error_rms_rad: position,
     }

@@ -7,24 +7,29 @@
 
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
+mod block;
 mod cause;
 mod causes;
 mod checks;
-mod column;
 mod context;
 mod diagnose;
 mod finding;
-mod generic;
+mod knots;
+mod library;
 mod lines;
 mod model;
 mod noise;
+mod part;
 mod repair;
 mod report;
 mod select;
+mod selection;
 mod sensor;
 mod solve;
 mod spline;
 mod statistics;
+mod sweep;
+mod trig;
 mod whiten;
 
 pub use context::{Context, ContextError};
@@ -32,7 +37,3 @@ pub use diagnose::{Diagnosis, Extended, Simulation, Unexplained, diagnose};
 pub use finding::{Chip, Finding, Gain, Parameter};
 pub use report::report;
 pub use sensor::sensor_toml;
-
-fn causes_time(context: &Context, degree: usize) -> Vec<Vec<f64>> {
-    causes::polynomials(context, degree)
-}

@@ -17,9 +17,30 @@ pub(crate) fn spectrum(values: &[f64]) -> (Vec<f64>, usize) {
     (power.collect(), length)
 }
 
-/// The same of complex values (a pair); frequencies below zero come second.
+/// The spectra of two real signals by one transform.
+pub(crate) fn two_spectra(a: &[f64], b: &[f64]) -> ([Vec<f64>; 2], usize) {
+    let length = (a.len() * 2).next_power_of_two();
+    let pairs = a.iter().zip(b);
+    let mut buffer: Vec<Complex<f64>> = pairs.map(|(a, b)| Complex::new(*a, *b)).collect();
+    buffer.resize(length, Complex::new(0.0, 0.0));
+    FftPlanner::new()
+        .plan_fft_forward(length)
+        .process(&mut buffer);
+    // Of real signals, the transform at −f is the conjugate of that at f.
+    let parts = (0..=length / 2).map(|k| {
+        let (now, mirrored) = (buffer[k], buffer[(length - k) % length].conj());
+        (
+            0.25 * (now + mirrored).norm_sqr(),
+            0.25 * (now - mirrored).norm_sqr(),
+        )
+    });
+    let (first, second) = parts.unzip();
+    ([first, second], length)
+}
+
+/// The sum of the spectra of two signals.
 pub(crate) fn pair_spectrum(a: &[f64], b: &[f64]) -> (Vec<f64>, usize) {
-    let ((x, length), (y, _)) = (spectrum(a), spectrum(b));
+    let ([x, y], length) = two_spectra(a, b);
     (x.iter().zip(&y).map(|(x, y)| x + y).collect(), length)
 }
 

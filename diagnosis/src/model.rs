@@ -1,9 +1,16 @@
-//! Residuals as data, shapes as columns, both whitened: the linear model of a recording.
+//! The linear model of a recording: sums of products of every function with every other, and fits made of them alone.
 
-use crate::column::Shape;
+use nalgebra::{DMatrix, DVector};
+
+use crate::causes::Catalogue;
 use crate::context::Context;
+use crate::library::{ROWS, Row, Shape};
 use crate::solve::{Normal, Solution};
+use crate::sweep::Samples;
 use crate::whiten::Whitener;
+
+/// Share of a function's square below which it is a rounding error.
+const NOTHING: f64 = 1e-18;
 
 /// What the model so far leaves of the recording.
 #[derive(Clone, Debug)]
@@ -12,127 +19,321 @@ pub(crate) struct Residual {
     pub radial: Vec<f64>,
     /// Along the circle, in radians: above the motion, or against the reference.
     pub tangential: Vec<f64>,
-    /// What moves faster than the spline, in radians: where real vibration shows.
-    pub motion: Vec<f64>,
+    /// What moves faster than the spline, in radians: where real vibration shows; `None` where it is the tangential
+    /// residual.
+    pub motion: Option<Vec<f64>>,
 }
 
-/// A column in the plain data and whitened.
-#[derive(Clone, Debug)]
-pub(crate) struct Column {
-    pub(crate) plain: Vec<f64>,
-    pub(crate) white: Vec<f64>,
+impl Residual {
+    /// Where real vibration shows.
+    pub(crate) fn fast(&self) -> &[f64] {
+        self.motion.as_deref().unwrap_or(&self.tangential)
+    }
 }
 
-/// Data and whiteners of a context. Blocks: radial, tangential and, with a reference, real motion.
+/// Sums of products of one pass, row by row: atoms in the order asked for, then the data.
+struct Moments(pub(crate) [DMatrix<f64>; 3]);
+
+/// Data, functions and sums of a recording.
 pub(crate) struct System<'a> {
     pub(crate) context: &'a Context,
-    pub(crate) data: Column,
-    whiteners: Vec<Whitener>,
-    motion: Option<Vec<f64>>,
+    pub(crate) samples: Samples<'a>,
+    /// Products of all atoms, whitened.
+    pub(crate) total: Normal,
+}
+
+/// The sums of either half of interleaved blocks, for some atoms only.
+pub(crate) struct Halves {
+    /// Where each atom stands in the sums.
+    atoms: Vec<usize>,
+    white: [Normal; 2],
+    /// Plain, the rows apart.
+    plain: [[Normal; 3]; 2],
+    /// Samples that count, in each half.
+    counts: [f64; 2],
+    against: bool,
+}
+
+/// Shapes in the model, and their amounts.
+#[derive(Clone)]
+pub(crate) struct Fit {
+    pub(crate) shapes: Vec<Shape>,
+    pub(crate) solution: Solution,
 }
 
 impl<'a> System<'a> {
-    /// Whitens with what is left when everything that any cause could explain is taken off.
-    pub(crate) fn new(context: &'a Context, motion: Option<Vec<f64>>, saturated: &[Shape]) -> Self {
-        let mut plain = context.radial();
-        plain.extend(context.tangential());
-        plain.extend(motion.iter().flatten());
-        let blocks = 2 + usize::from(motion.is_some());
+    /// Whitens with what is left when everything that any cause could explain is taken off; `motion` is what of a
+    /// reference's motion the spline does not follow.
+    pub(crate) fn new(
+        context: &'a Context,
+        motion: Option<Vec<f64>>,
+        catalogue: &mut Catalogue,
+    ) -> Self {
+        let data = [
+            context.radial(),
+            context.tangential(),
+            motion.unwrap_or_default(),
+        ];
+        let samples = Samples::new(context, std::mem::take(&mut catalogue.library), data);
         let mut this = Self {
             context,
-            data: Column {
-                white: plain.clone(),
-                plain,
-            },
-            whiteners: vec![Whitener::default(); blocks],
-            motion,
+            samples,
+            total: Normal::new(DMatrix::zeros(0, 0), DVector::zeros(0), 0.0),
         };
-        let n = context.samples();
-        for (block, whitener) in this.whiteners.iter_mut().enumerate() {
-            // White, of the size of the data: good enough to fit everything once.
-            let part = &this.data.plain[block * n..(block + 1) * n];
-            let power = part.iter().map(|v| v * v).sum::<f64>() / n as f64;
+        let atoms: Vec<usize> = (0..this.samples.library.atoms.len()).collect();
+        for (whitener, data) in this.samples.whiteners.iter_mut().zip(&this.samples.data) {
+            let power = data.iter().map(|v| v * v).sum::<f64>() / data.len().max(1) as f64;
             whitener.sigma = power.sqrt().max(1e-12);
         }
-        let columns: Vec<Vec<f64>> = saturated
+        let plain = this.moments(&atoms);
+        this.total = this.without_nothing(this.normal(&plain, &atoms, true), &atoms);
+        let broad: Vec<Shape> = catalogue
+            .broad
             .iter()
-            .map(|s| this.column(s, false).plain)
+            .map(|i| Shape(vec![(*i, 1.0)]))
             .collect();
-        let left = crate::solve::without(&this.data.plain, &columns);
-        for block in 0..blocks {
-            let part = flattened(&left[block * n..(block + 1) * n]);
-            let gone = match (&context.spline, block) {
-                (_, 0) => 0.0,
-                (_, 1) if context.against_reference.is_some() => 0.0,
+        let x = this.total.of(&broad).solve().x;
+        let amounts: Vec<(usize, f64)> = catalogue.broad.iter().copied().zip(x).collect();
+        let left = this.samples.left(&amounts);
+        for (row, left) in ROWS.iter().zip(&left).filter(|(_, l)| !l.is_empty()) {
+            let gone = match (&context.spline, row) {
+                (_, Row::Radial) => 0.0,
+                (_, Row::Tangential) if context.against_reference.is_some() => 0.0,
                 (Some(spline), _) => 0.7 / spline.spacing(),
                 (None, _) => 0.0,
             };
-            this.whiteners[block] = Whitener::of(&part, gone);
+            this.samples.whiteners[*row as usize] = Whitener::of(left, gone);
         }
         // A reference without noise says nothing about how well a spline follows real motion.
-        let least = 0.05 * this.whiteners[0].sigma;
-        for whitener in &mut this.whiteners {
+        let least = 0.05 * this.samples.whiteners[0].sigma;
+        for whitener in &mut this.samples.whiteners {
             whitener.sigma = whitener.sigma.max(least);
         }
-        this.data.white = this.whitened(&this.data.plain);
+        // White noise changes the scale of a row only.
+        let white = this.samples.whiteners.iter().all(Whitener::is_white);
+        let moments = if white { plain } else { this.moments(&atoms) };
+        this.total = this.without_nothing(this.normal(&moments, &atoms, true), &atoms);
         this
     }
 
-    fn whitened(&self, plain: &[f64]) -> Vec<f64> {
-        let n = self.context.samples();
-        let mut all = Vec::with_capacity(plain.len());
-        for (block, whitener) in self.whiteners.iter().enumerate() {
-            all.extend(whitener.apply(&plain[block * n..(block + 1) * n]));
+    fn moments(&self, atoms: &[usize]) -> Moments {
+        let mut sums = self.empty(atoms);
+        self.samples.pass(atoms, &mut |_, parts| {
+            for (part, sum) in parts.iter().zip(&mut sums.0) {
+                part.add_products(true, 0, sum);
+            }
+        });
+        sums
+    }
+
+    fn empty(&self, atoms: &[usize]) -> Moments {
+        Moments(ROWS.map(|row| {
+            let count = self.in_row(atoms, row).count();
+            DMatrix::zeros(count + 1, count + 1)
+        }))
+    }
+
+    fn in_row<'b>(&'b self, atoms: &'b [usize], row: Row) -> impl Iterator<Item = usize> + 'b {
+        let of =
+            move |(i, a): (usize, &usize)| (self.samples.library.atoms[*a].row == row).then_some(i);
+        atoms.iter().enumerate().filter_map(of)
+    }
+
+    /// Normal equations of atoms, in units of the noise or plain.
+    fn normal(&self, moments: &Moments, atoms: &[usize], white: bool) -> Normal {
+        let mut list = moments.0.iter().zip(ROWS).zip(&self.samples.whiteners);
+        let m = atoms.len();
+        let (mut gram, mut right) = (DMatrix::zeros(m, m), DVector::zeros(m));
+        let mut power = 0.0;
+        for ((sums, row), whitener) in &mut list {
+            let scale = if white { whitener.sigma.powi(-2) } else { 1.0 };
+            let own: Vec<usize> = self.in_row(atoms, row).collect();
+            let last = own.len();
+            for (j, b) in own.iter().enumerate() {
+                for (i, a) in own[..=j].iter().enumerate() {
+                    gram[(*a, *b)] = sums[(i, j)] * scale;
+                    gram[(*b, *a)] = sums[(i, j)] * scale;
+                }
+                right[*b] = sums[(j, last)] * scale;
+            }
+            power += sums[(last, last)] * scale;
         }
-        all
+        Normal::new(gram, right, power)
+    }
+
+    /// What follows the motion wholly leaves rounding errors, and they explain nothing.
+    fn without_nothing(&self, mut total: Normal, atoms: &[usize]) -> Normal {
+        for (i, number) in atoms.iter().enumerate() {
+            let atom = self.samples.library.atoms[*number];
+            let scale = self.samples.whiteners[atom.row as usize].sigma.powi(-2);
+            if total.gram[(i, i)] < NOTHING * scale * self.samples.squares[*number] {
+                total.gram.row_mut(i).fill(0.0);
+                total.gram.column_mut(i).fill(0.0);
+                total.right[i] = 0.0;
+            }
+        }
+        Normal::new(total.gram, total.right, total.power)
+    }
+
+    /// Takes atoms in that the library has got since.
+    pub(crate) fn extend(&mut self) {
+        let known = self.total.right.len();
+        let atoms: Vec<usize> = (0..self.samples.library.atoms.len()).collect();
+        if atoms.len() == known {
+            return;
+        }
+        self.samples.take_motion_off();
+        let fresh = ROWS.map(|row| self.in_row(&atoms[..known], row).count());
+        let mut sums = self.empty(&atoms);
+        self.samples.pass(&atoms, &mut |_, parts| {
+            for ((part, sum), fresh) in parts.iter().zip(&mut sums.0).zip(fresh) {
+                part.add_products(true, fresh, sum);
+            }
+        });
+        let mut total = self.normal(&sums, &atoms, true);
+        // What was known stays.
+        let mut block = total.gram.view_mut((0, 0), (known, known));
+        block.copy_from(&self.total.gram);
+        self.total = self.without_nothing(total, &atoms);
+    }
+
+    /// Normal equations of some atoms, of new ones that no pass has seen yet too, and those atoms: cheaper than to take
+    /// the new ones in against every function.
+    pub(crate) fn among(&mut self, atoms: &[usize]) -> Normal {
+        self.samples.take_motion_off();
+        let moments = self.moments(atoms);
+        self.without_nothing(self.normal(&moments, atoms, true), atoms)
+    }
+
+    /// Leaves atoms out; the new number of each.
+    pub(crate) fn retain(&mut self, keep: impl Fn(usize) -> bool) -> Vec<Option<usize>> {
+        let map = self.samples.retain(keep);
+        // Some may not have been taken in yet.
+        let known = self.total.right.len();
+        let kept: Vec<usize> = (0..known).filter(|i| map[*i].is_some()).collect();
+        let gram = self.total.gram.select_rows(&kept).select_columns(&kept);
+        let right = self.total.right.select_rows(&kept);
+        self.total = Normal::new(gram, right, self.total.power);
+        map
     }
 
     /// Rms of the unpredictable part of the radial residual.
     pub(crate) fn noise(&self) -> f64 {
-        self.whiteners[0].sigma
+        self.samples.whiteners[0].sigma
     }
 
-    /// A shape as a column; `motion` shapes are real motion.
-    pub(crate) fn column(&self, shape: &Shape, motion: bool) -> Column {
-        let context = self.context;
-        let (mut plain, tangential) = shape.rotated(&context.cos, &context.sin);
-        for (r, w) in plain.iter_mut().zip(&context.weight) {
-            *r *= w;
-        }
-        let n = plain.len();
-        match (&self.motion, motion) {
-            (Some(_), true) => {
-                plain.iter_mut().for_each(|r| *r = 0.0);
-                plain.extend(std::iter::repeat_n(0.0, n));
-                plain.extend(above_motion(context, &tangential));
-            }
-            (Some(_), false) => {
-                plain.extend(context.seen(&tangential));
-                plain.extend(std::iter::repeat_n(0.0, n));
-            }
-            (None, _) => plain.extend(context.seen(&tangential)),
-        }
-        Column {
-            white: self.whitened(&plain),
-            plain,
-        }
+    /// The shapes' best amounts.
+    pub(crate) fn fit(&self, shapes: Vec<Shape>) -> Fit {
+        let solution = self.total.of(&shapes).solve();
+        Fit { shapes, solution }
     }
 
-    /// Splits plain values into blocks.
-    pub(crate) fn residual(&self, left: &[f64]) -> Residual {
-        let n = self.context.samples();
-        let radial = left[..n].to_vec();
-        let tangential = left[n..2 * n].to_vec();
-        let motion = match self.motion {
-            Some(_) => left[2 * n..].to_vec(),
-            None => tangential.clone(),
-        };
+    /// What a fit leaves.
+    pub(crate) fn residual(&self, fit: &Fit) -> Residual {
+        let [radial, tangential, motion] = self.samples.left(&fit.amounts());
         Residual {
             radial,
             tangential,
-            motion,
+            motion: (!motion.is_empty()).then_some(motion),
         }
     }
+
+    /// The sums of either half, for all that some fits are made of.
+    pub(crate) fn halves(&self, shapes: &[Shape]) -> Halves {
+        let atoms = atoms_of(shapes);
+        let make = || self.empty(&atoms);
+        let (mut white, mut plain) = ([make(), make()], [make(), make()]);
+        self.samples.pass(&atoms, &mut |half, parts| {
+            for (row, part) in parts.iter().enumerate() {
+                part.add_products(true, 0, &mut white[half].0[row]);
+                part.add_products(false, 0, &mut plain[half].0[row]);
+            }
+        });
+        let only = |moments: &Moments, row: usize| {
+            let mut one = self.empty(&atoms);
+            one.0[row].copy_from(&moments.0[row]);
+            self.normal(&one, &atoms, false)
+        };
+        Halves {
+            white: white.map(|m| self.normal(&m, &atoms, true)),
+            plain: plain.map(|m| [0, 1, 2].map(|row| only(&m, row))),
+            counts: self.samples.counts(),
+            against: self.context.against_reference.is_some(),
+            atoms,
+        }
+    }
+}
+
+impl Halves {
+    fn mapped(&self, shapes: &[Shape]) -> Vec<Shape> {
+        shapes.iter().map(|s| s.among(&self.atoms)).collect()
+    }
+
+    fn left(&self, half: usize, row: usize, shapes: &[Shape], x: &[f64]) -> f64 {
+        let normal = self.plain[half][row].of(shapes);
+        let x = DVector::from_column_slice(x);
+        normal.power - 2.0 * normal.right.dot(&x) + (&normal.gram * &x).dot(&x)
+    }
+
+    /// Rms of radial and tangential residual together, on blocks that were not fitted.
+    pub(crate) fn held_out(&self, shapes: &[Shape]) -> f64 {
+        let shapes = self.mapped(shapes);
+        let mut sum = 0.0;
+        for half in 0..2 {
+            let x = self.white[half].of(&shapes).solve().x;
+            sum += (0..2)
+                .map(|row| self.left(1 - half, row, &shapes, &x))
+                .sum::<f64>();
+        }
+        let count = 2.0 * (self.counts[0] + self.counts[1]);
+        (sum.max(0.0) / count.max(1.0)).sqrt()
+    }
+
+    /// Rms of radial and tangential residual together.
+    pub(crate) fn rms(&self, fit: &Fit) -> f64 {
+        let sum = self.square(fit, 0) + self.square(fit, 1);
+        let count = 2.0 * (self.counts[0] + self.counts[1]);
+        (sum.max(0.0) / count.max(1.0)).sqrt()
+    }
+
+    /// Position error against the reference, rms in radians.
+    pub(crate) fn position_error(&self, fit: &Fit) -> Option<f64> {
+        let count = self.counts[0] + self.counts[1];
+        self.against
+            .then(|| (self.square(fit, 1).max(0.0) / count.max(1.0)).sqrt())
+    }
+
+    fn square(&self, fit: &Fit, row: usize) -> f64 {
+        let shapes = self.mapped(&fit.shapes);
+        (0..2)
+            .map(|half| self.left(half, row, &shapes, &fit.solution.x))
+            .sum()
+    }
+}
+
+impl Fit {
+    /// How much of each atom is in it.
+    pub(crate) fn amounts(&self) -> Vec<(usize, f64)> {
+        amounts(&self.shapes, &self.solution.x)
+    }
+}
+
+/// The atoms of shapes, in the order of their numbers.
+pub(crate) fn atoms_of(shapes: &[Shape]) -> Vec<usize> {
+    let all = shapes.iter().flat_map(|s| s.0.iter().map(|p| p.0));
+    let set: std::collections::BTreeSet<usize> = all.collect();
+    set.into_iter().collect()
+}
+
+/// How much of each atom is in a sum of shapes.
+pub(crate) fn amounts(shapes: &[Shape], x: &[f64]) -> Vec<(usize, f64)> {
+    let mut sums = std::collections::BTreeMap::new();
+    for (shape, x) in shapes.iter().zip(x) {
+        for (atom, share) in &shape.0 {
+            *sums.entry(*atom).or_insert(0.0) += share * x;
+        }
+    }
+    sums.into_iter().collect()
 }
 
 /// What of an angle the spline does not follow.
@@ -141,131 +342,4 @@ pub(crate) fn above_motion(context: &Context, angle: &[f64]) -> Vec<f64> {
         Some(spline) => spline.residual(angle, &context.weight),
         None => vec![0.0; angle.len()],
     }
-}
-
-/// Values without what sticks out of their spectrum: lines are no noise.
-fn flattened(values: &[f64]) -> Vec<f64> {
-    let mut left = values.to_vec();
-    for _ in 0..3 {
-        left = crate::lines::without_strongest(&left);
-    }
-    left
-}
-
-/// The columns that are in the model, and their solution.
-#[derive(Clone)]
-pub(crate) struct Fit {
-    pub(crate) columns: Vec<Column>,
-    whites: Vec<Vec<f64>>,
-    normal: Normal,
-    pub(crate) solution: Solution,
-}
-
-impl Fit {
-    pub(crate) fn new(system: &System, columns: Vec<Column>) -> Self {
-        let whites: Vec<Vec<f64>> = columns.iter().map(|c| c.white.clone()).collect();
-        let normal = Normal::of(&system.data.white, &whites);
-        let solution = normal.solve();
-        Self {
-            columns,
-            whites,
-            normal,
-            solution,
-        }
-    }
-
-    /// The solution with more columns.
-    pub(crate) fn with(&self, system: &System, more: &[Column]) -> Solution {
-        let whites: Vec<Vec<f64>> = more.iter().map(|c| c.white.clone()).collect();
-        self.normal
-            .extended(&system.data.white, &self.whites, &whites)
-            .solve()
-    }
-
-    /// More columns for good.
-    pub(crate) fn extended(&self, system: &System, more: Vec<Column>) -> Self {
-        let mut whites = self.whites.clone();
-        let fresh: Vec<Vec<f64>> = more.iter().map(|c| c.white.clone()).collect();
-        let normal = self
-            .normal
-            .extended(&system.data.white, &self.whites, &fresh);
-        whites.extend(fresh);
-        let mut columns = self.columns.clone();
-        columns.extend(more);
-        let solution = normal.solve();
-        Self {
-            columns,
-            whites,
-            normal,
-            solution,
-        }
-    }
-
-    /// What is left of the plain data.
-    pub(crate) fn left(&self, system: &System) -> Vec<f64> {
-        let mut left = system.data.plain.clone();
-        for (column, x) in self.columns.iter().zip(&self.solution.x) {
-            for (l, p) in left.iter_mut().zip(&column.plain) {
-                *l -= x * p;
-            }
-        }
-        left
-    }
-
-    /// Rms of radial and tangential residual together.
-    pub(crate) fn rms(&self, system: &System) -> f64 {
-        let left = self.left(system);
-        let n = system.context.samples();
-        rms_of(&left[..2 * n], &system.context.weight)
-    }
-
-    /// The same on interleaved blocks that were not fitted.
-    pub(crate) fn held_out(&self, system: &System) -> f64 {
-        const BLOCKS: usize = 20;
-        let n = system.context.samples();
-        let block = n.div_ceil(BLOCKS).max(1);
-        let (mut sum, mut count) = (0.0, 0.0);
-        for half in 0..2 {
-            let fits = |row: usize| (row % n) / block % 2 == half;
-            let masked = |v: &[f64]| -> Vec<f64> {
-                v.iter()
-                    .enumerate()
-                    .map(|(k, x)| if fits(k) { *x } else { 0.0 })
-                    .collect()
-            };
-            let columns: Vec<Vec<f64>> = self.whites.iter().map(|c| masked(c)).collect();
-            let x = Normal::of(&masked(&system.data.white), &columns).solve().x;
-            for row in (0..2 * n).filter(|row| !fits(*row)) {
-                let weight = system.context.weight[row % n];
-                let model: f64 = self
-                    .columns
-                    .iter()
-                    .zip(&x)
-                    .map(|(c, x)| c.plain[row] * x)
-                    .sum();
-                sum += weight * (system.data.plain[row] - model).powi(2);
-                count += weight;
-            }
-        }
-        (sum / f64::max(count, 1.0)).sqrt()
-    }
-
-    /// Position error against the reference, rms in radians.
-    pub(crate) fn position_error(&self, system: &System) -> Option<f64> {
-        system.context.against_reference.as_ref()?;
-        let n = system.context.samples();
-        let left = self.left(system);
-        let tangential = &left[n..2 * n];
-        let weight: f64 = system.context.weight.iter().sum();
-        let mean = tangential.iter().sum::<f64>() / weight.max(1.0);
-        let pairs = tangential.iter().zip(&system.context.weight);
-        let sum: f64 = pairs.map(|(t, w)| w * (t - mean).powi(2)).sum();
-        Some((sum / weight.max(1.0)).sqrt())
-    }
-}
-
-fn rms_of(left: &[f64], weight: &[f64]) -> f64 {
-    let sum: f64 = left.iter().map(|v| v * v).sum();
-    let count: f64 = 2.0 * weight.iter().sum::<f64>();
-    (sum / count.max(1.0)).sqrt()
 }

@@ -61,13 +61,12 @@ pub(crate) fn findings(context: &Context, residual: &Residual) -> Vec<Finding> {
             rows(&|k| (0.0, (context.speed[k] / top).powi(2))),
         ),
     ];
-    let plain = Normal::of(&values, &base);
-    let before = plain.solve();
+    let before = Normal::of_columns(&values, &base).solve();
     let mut list = vec![];
     for (name, shape) in shapes {
-        let solution = plain
-            .extended(&values, &base, std::slice::from_ref(&shape))
-            .solve();
+        let mut columns = base.clone();
+        columns.push(shape);
+        let solution = Normal::of_columns(&values, &columns).solve();
         let gain = 0.5 * (solution.explained - before.explained);
         let freedom = solution.rank.saturating_sub(before.rank);
         let (x, error) = (solution.x[3], solution.covariance[(3, 3)].sqrt());

@@ -1,70 +1,69 @@
 //! Which causes are in a recording: the one that explains most first, rivals named, unknown shapes left unnamed.
 
-use crate::cause::{Candidate, Domain, Estimate};
-use crate::causes;
+use crate::cause::{Candidate, Domain};
+use crate::causes::{self, Catalogue};
 use crate::context::Context;
-use crate::finding::{Finding, Gain};
-use crate::generic;
-use crate::model::{Column, Fit, System};
+use crate::library::Shape;
+use crate::model::{Fit, System, atoms_of};
+use crate::selection::{Accepted, Selection, Unnamed};
+use crate::solve::Normal;
 use crate::statistics::{after_trials, log_tail};
 
 /// Global probability below which a cause is shown.
-const SHOWN: f64 = 3e-4;
+pub(crate) const SHOWN: f64 = 3e-4;
 /// Kinds of cause that are tried.
-const KINDS: f64 = 22.0;
+pub(crate) const KINDS: f64 = 22.0;
 /// A cause must hold this share of what a generic basis of its domain explains.
 const HOLDS: f64 = 0.75;
 /// Most causes of one recording.
 const MOST: usize = 8;
+/// Share of the best gain below which another cause is no rival.
+const RIVALS: f64 = 0.6;
 /// A cause that adds less than this probability says nothing new.
 const NOTHING_NEW: f64 = 1e-3;
 
-/// A cause that was accepted, and where its columns are.
-pub(crate) struct Accepted {
-    pub(crate) candidate: Candidate,
-    first: usize,
-    confounded: Vec<String>,
-}
-
-/// What cannot be named.
-#[derive(Clone, Debug)]
-pub(crate) struct Unnamed {
-    pub(crate) log_p: f64,
-    pub(crate) signature: String,
-}
-
-/// The end of the selection.
-pub(crate) struct Selection {
-    pub(crate) fit: Fit,
-    pub(crate) base: Fit,
-    pub(crate) accepted: Vec<Accepted>,
-    pub(crate) unnamed: Vec<Unnamed>,
-}
-
 struct Scored {
     candidate: Candidate,
-    columns: Vec<Column>,
     gain: f64,
     freedom: usize,
     log_p: f64,
 }
 
-fn score(system: &System, fit: &Fit, candidate: Candidate) -> Option<Scored> {
-    let columns: Vec<Column> = candidate
-        .shapes
-        .iter()
-        .map(|s| system.column(s, candidate.motion))
-        .collect();
-    let solution = fit.with(system, &columns);
-    let gain = 0.5 * (solution.explained - fit.solution.explained);
-    let freedom = solution.rank.saturating_sub(fit.solution.rank);
+/// The normal equations with the fit taken off, and how much it explains.
+struct Beside<'a> {
+    whole: &'a Normal,
+    rest: Normal,
+}
+
+impl<'a> Beside<'a> {
+    fn new(whole: &'a Normal, shapes: &[Shape]) -> Self {
+        Self {
+            whole,
+            rest: whole.deflated(shapes),
+        }
+    }
+
+    /// What shapes explain beside the fit, and how many numbers they have for it.
+    fn gain(&self, shapes: &[Shape]) -> (f64, usize) {
+        let solution = self.rest.solve_beside(self.whole, shapes);
+        (solution.gain(), solution.rank)
+    }
+}
+
+/// Shapes of one list, then of the other.
+fn both(a: &[Shape], b: &[Shape]) -> Vec<Shape> {
+    a.iter().chain(b).cloned().collect()
+}
+
+fn score(beside: &Beside, candidate: Candidate) -> Option<Scored> {
+    let solution = beside.rest.solve_beside(beside.whole, &candidate.shapes);
+    let (gain, freedom) = (solution.gain(), solution.rank);
     if freedom == 0 || !gain.is_finite() {
         return None;
     }
-    let own = &solution.x[fit.columns.len()..];
-    let first = fit.columns.len();
+    let own = &solution.x;
     let below_zero = |(i, x): (usize, &f64)| {
-        let error = solution.covariance[(first + i, first + i)].sqrt();
+        let error = solution.covariance[(i, i)].sqrt();
         *x < -4.0 * error
     };
     let most = own.iter().copied().fold(f64::MIN, f64::max);
@@ -74,37 +73,76 @@ fn score(system: &System, fit: &Fit, candidate: Candidate) -> Option<Scored> {
     let log_p = after_trials(log_tail(2.0 * gain, freedom), candidate.trials * KINDS);
     Some(Scored {
         candidate,
-        columns,
         gain,
         freedom,
         log_p,
     })
 }
 
+/// Of candidates with functions of their own, those that explain something, or could rival a gain of `most`.
+fn worth(system: &mut System, fit: &Fit, list: Vec<Candidate>, most: f64) -> Vec<Scored> {
+    let all = list.iter().flat_map(|c| &c.shapes).chain(&fit.shapes);
+    let atoms = atoms_of(&all.cloned().collect::<Vec<_>>());
+    let whole = system.among(&atoms);
+    let among =
+        |shapes: &[Shape]| -> Vec<Shape> { shapes.iter().map(|s| s.among(&atoms)).collect() };
+    let beside = Beside::new(&whole, &among(&fit.shapes));
+    let mut scored: Vec<Scored> = list
+        .into_iter()
+        .filter_map(|mut candidate| {
+            let own = std::mem::take(&mut candidate.shapes);
+            candidate.shapes = among(&own);
+            let mut scored = score(&beside, candidate)?;
+            scored.candidate.shapes = own;
+            Some(scored)
+        })
+        .collect();
+    let most = scored.iter().map(|s| s.gain).fold(most, f64::max);
+    scored.retain(|s| s.log_p < SHOWN.ln() && s.gain > RIVALS * most);
+    scored
+}
+
+/// Takes the functions of these candidates in, and drops those of all others.
+fn take_in(system: &mut System, fixed: usize, fit: &Fit, mut list: Vec<Scored>) -> Vec<Scored> {
+    let own = list.iter().flat_map(|s| &s.candidate.shapes);
+    let used = atoms_of(&own.chain(&fit.shapes).cloned().collect::<Vec<_>>());
+    // What the fit has stands before what is new, so that its numbers stay.
+    let map = system.retain(|i| i < fixed || used.binary_search(&i).is_ok());
+    for shape in list.iter_mut().flat_map(|s| &mut s.candidate.shapes) {
+        *shape = shape.mapped(&map);
+    }
+    system.extend();
+    list
+}
+
 /// Accepts causes one after the other.
-pub(crate) fn select(context: &Context, system: &System) -> Selection {
-    let parameters = context.parameters();
-    let columns = parameters.iter().map(|s| system.column(s, false)).collect();
-    let base = Fit::new(system, columns);
+pub(crate) fn select(context: &Context, system: &mut System, catalogue: &Catalogue) -> Selection {
+    let base = system.fit(catalogue.parameters.clone());
     let mut fit = base.clone();
     let mut accepted: Vec<Accepted> = vec![];
     let mut unnamed: Vec<Unnamed> = vec![];
     let mut closed: Vec<Domain> = vec![];
     let mut refused: Vec<&'static str> = vec![];
+    let fixed = system.samples.library.atoms.len();
     while accepted.len() + unnamed.len() < MOST {
-        let residual = system.residual(&fit.left(system));
-        let mut scored: Vec<Scored> = causes::all(context, &residual)
-            .into_iter()
-            .filter(|c| !closed.contains(&c.domain) && !refused.contains(&c.name))
-            .filter_map(|c| score(system, &fit, c))
-            .collect();
+        let residual = system.residual(&fit);
+        let shown = causes::shown(context, &residual, &mut system.samples.library);
+        let open = |c: &Candidate| !closed.contains(&c.domain) && !refused.contains(&c.name);
+        let beside = Beside::new(&system.total, &fit.shapes);
+        let known = catalogue.candidates.iter().filter(|c| open(c));
+        let mut scored: Vec<Scored> = known.filter_map(|c| score(&beside, c.clone())).collect();
+        let most = scored.iter().map(|s| s.gain).fold(0.0, f64::max);
+        let worth = worth(system, &fit, shown.into_iter().filter(open).collect(), most);
+        scored.extend(take_in(system, fixed, &fit, worth));
         scored.sort_by(|a, b| a.log_p.total_cmp(&b.log_p));
         if scored.is_empty() || scored[0].log_p > SHOWN.ln() {
             break;
         }
-        let best = refined(context, system, &fit, scored.remove(0));
-        let rivals = rivals(system, &fit, &best, &scored);
-        let held = holds(context, system, &fit, &best, &scored);
+        let best = scored.remove(0);
+        let best = refined(system, &fit, best);
+        let beside = Beside::new(&system.total, &fit.shapes);
+        let rivals = rivals(&beside, &best, &scored);
+        let held = holds(system, catalogue, &fit, &best, &scored);
         if rivals.len() > 1 || held < HOLDS {
             let nearest = best.candidate.name.replace('_', " ");
             let why = if held < HOLDS {
@@ -123,29 +161,27 @@ pub(crate) fn select(context: &Context, system: &System) -> Selection {
                 ),
             });
             closed.push(best.candidate.domain);
-            let mut shapes: Vec<Column> = generic::basis(context, best.candidate.domain)
-                .iter()
-                .map(|s| system.column(s, false))
-                .collect();
-            shapes.extend(best.columns);
-            fit = fit.extended(system, shapes);
-            continue;
+            let generic = both(&fit.shapes, catalogue.basis(best.candidate.domain));
+            fit = system.fit(both(&generic, &best.candidate.shapes));
+        } else {
+            let shapes = both(&fit.shapes, &best.candidate.shapes);
+            let halves = system.halves(&shapes);
+            // What does not hold on data that was not fitted is no cause.
+            if halves.held_out(&shapes) > halves.held_out(&fit.shapes) * 1.01 {
+                refused.push(best.candidate.name);
+            } else {
+                accepted.push(Accepted {
+                    candidate: best.candidate,
+                    first: fit.shapes.len(),
+                    confounded: rivals,
+                });
+                fit = system.fit(shapes);
+            }
         }
-        let first = fit.columns.len();
-        let extended = fit.extended(system, best.columns);
-        // What does not hold on data that was not fitted is no cause.
-        if extended.held_out(system) > fit.held_out(system) * 1.01 {
-            refused.push(best.candidate.name);
-            continue;
-        }
-        fit = extended;
-        accepted.push(Accepted {
-            candidate: best.candidate,
-            first,
-            confounded: rivals,
-        });
+        keep_used(system, fixed, &mut fit, &mut accepted);
     }
-    unnamed.extend(leftover(context, system, &fit, &closed));
+    unnamed.extend(leftover(system, catalogue, &fit, &closed));
+    keep_used(system, fixed, &mut fit, &mut accepted);
     Selection {
         fit,
         base,
@@ -154,24 +190,41 @@ pub(crate) fn select(context: &Context, system: &System) -> Selection {
     }
 }
 
+/// Drops the functions that were only tried.
+fn keep_used(system: &mut System, fixed: usize, fit: &mut Fit, accepted: &mut [Accepted]) {
+    let used = atoms_of(&fit.shapes);
+    let map = system.retain(|i| i < fixed || used.binary_search(&i).is_ok());
+    for shape in &mut fit.shapes {
+        *shape = shape.mapped(&map);
+    }
+    for one in accepted {
+        let count = one.candidate.shapes.len();
+        one.candidate.shapes = fit.shapes[one.first..one.first + count].to_vec();
+    }
+}
+
 /// The same cause with the shapes of its own size.
-fn refined(context: &Context, system: &System, fit: &Fit, mut best: Scored) -> Scored {
+fn refined(system: &mut System, fit: &Fit, mut best: Scored) -> Scored {
+    let Some(refine) = best.candidate.refine.clone() else {
+        return best;
+    };
     for _ in 0..3 {
-        let Some(refine) = &best.candidate.refine else {
-            break;
-        };
-        let solution = fit.with(system, &best.columns);
-        let own = &solution.x[fit.columns.len()..];
+        let beside = Beside::new(&system.total, &fit.shapes);
+        let own = beside
+            .rest
+            .solve_beside(beside.whole, &best.candidate.shapes)
+            .x;
         if own.iter().any(|x| !x.is_finite() || *x <= 0.0) {
             break;
         }
-        best.candidate.shapes = refine(context, own);
-        let shapes = best.candidate.shapes.iter();
-        best.columns = shapes
-            .map(|s| system.column(s, best.candidate.motion))
-            .collect();
-        let solution = fit.with(system, &best.columns);
-        best.gain = 0.5 * (solution.explained - fit.solution.explained);
+        let refine = refine.clone();
+        let fill = move |block: &crate::block::Block, c: &mut [f64], s: &mut [f64]| {
+            refine(block, &own, c, s);
+        };
+        best.candidate.shapes = vec![system.samples.library.pair(fill)];
+        system.extend();
+        let beside = Beside::new(&system.total, &fit.shapes);
+        best.gain = beside.gain(&best.candidate.shapes).0;
         let log_p = log_tail(2.0 * best.gain, best.freedom);
         best.log_p = after_trials(log_p, best.candidate.trials * KINDS);
     }
@@ -179,7 +232,7 @@ fn refined(context: &Context, system: &System, fit: &Fit, mut best: Scored) -> S
 }
 
 /// Causes of other names to which the best adds nothing, and that need no more parameters.
-fn rivals(system: &System, fit: &Fit, best: &Scored, others: &[Scored]) -> Vec<String> {
+fn rivals(beside: &Beside, best: &Scored, others: &[Scored]) -> Vec<String> {
     let mut names: Vec<String> = vec![];
     for other in others {
         let name = other.candidate.name;
@@ -187,13 +240,12 @@ fn rivals(system: &System, fit: &Fit, best: &Scored, others: &[Scored]) -> Vec<S
             continue;
         }
         // Far behind, or bought with more parameters: no rival.
-        if other.gain < 0.6 * best.gain || other.freedom > best.freedom + 1 {
+        if other.gain < RIVALS * best.gain || other.freedom > best.freedom + 1 {
             continue;
         }
-        let with_other = fit.extended(system, other.columns.clone());
-        let together = with_other.with(system, &best.columns);
-        let adds = 0.5 * (together.explained - with_other.solution.explained);
-        let freedom = together.rank.saturating_sub(with_other.solution.rank);
+        let together = both(&other.candidate.shapes, &best.candidate.shapes);
+        let (gain, rank) = beside.gain(&together);
+        let (adds, freedom) = (gain - other.gain, rank.saturating_sub(other.freedom));
         if freedom == 0 || log_tail(2.0 * adds, freedom) > NOTHING_NEW.ln() {
             names.push(name.to_owned());
         }
@@ -203,67 +255,61 @@ fn rivals(system: &System, fit: &Fit, best: &Scored, others: &[Scored]) -> Vec<S
 
 /// Share of what a generic basis of the domain explains that named shapes hold: the best one, and others of the catalogue
 /// that stand beside it.
-fn holds(context: &Context, system: &System, fit: &Fit, best: &Scored, others: &[Scored]) -> f64 {
-    let shapes = generic::basis(context, best.candidate.domain);
-    if shapes.is_empty() {
+fn holds(
+    system: &System,
+    catalogue: &Catalogue,
+    fit: &Fit,
+    best: &Scored,
+    others: &[Scored],
+) -> f64 {
+    let basis = catalogue.basis(best.candidate.domain);
+    if basis.is_empty() {
         return 1.0;
     }
-    let columns: Vec<Column> = shapes.iter().map(|s| system.column(s, false)).collect();
-    let mut named = fit.extended(system, best.columns.clone());
+    let mut named = both(&fit.shapes, &best.candidate.shapes);
+    let mut held = best.gain;
+    let mut beside = Beside::new(&system.total, &named);
     for _ in 0..3 {
-        let beside = others
+        let next = others
             .iter()
             .filter(|o| o.candidate.domain == best.candidate.domain)
             .filter_map(|o| {
-                let solution = named.with(system, &o.columns);
-                let gain = 0.5 * (solution.explained - named.solution.explained);
-                let freedom = solution.rank.saturating_sub(named.solution.rank);
+                let (gain, freedom) = beside.gain(&o.candidate.shapes);
                 let log_p = after_trials(log_tail(2.0 * gain, freedom), o.candidate.trials * KINDS);
-                (freedom > 0 && log_p < SHOWN.ln()).then_some((log_p, o))
+                (freedom > 0 && log_p < SHOWN.ln()).then_some((log_p, gain, o))
             })
             .min_by(|a, b| a.0.total_cmp(&b.0));
-        let Some((_, other)) = beside else { break };
-        named = named.extended(system, other.columns.clone());
+        let Some((_, gain, other)) = next else { break };
+        named.extend(other.candidate.shapes.iter().cloned());
+        held += gain;
+        beside = Beside::new(&system.total, &named);
     }
-    let more = named.with(system, &columns);
-    let beyond = 0.5 * (more.explained - named.solution.explained);
-    let freedom = more.rank.saturating_sub(named.solution.rank);
+    let (beyond, freedom) = beside.gain(basis);
     // What as many free numbers explain of noise alone does not count against it.
     let spread = (2.0 * freedom as f64).sqrt();
     let beyond = (beyond - freedom as f64 / 2.0 - 2.0 * spread).max(0.0);
-    let held = 0.5 * (named.solution.explained - fit.solution.explained);
     held / (held + beyond)
 }
 
 /// Domains in which something significant is left that no cause was found for.
-fn leftover(context: &Context, system: &System, fit: &Fit, closed: &[Domain]) -> Vec<Unnamed> {
-    let mut list = vec![];
-    for domain in [
+fn leftover(system: &System, catalogue: &Catalogue, fit: &Fit, closed: &[Domain]) -> Vec<Unnamed> {
+    let beside = Beside::new(&system.total, &fit.shapes);
+    let open = [
         Domain::Angle,
         Domain::Speed,
         Domain::Time,
         Domain::Revolution,
-    ] {
-        if closed.contains(&domain) {
-            continue;
-        }
-        let shapes = generic::basis(context, domain);
-        if shapes.is_empty() {
-            continue;
-        }
-        let columns: Vec<Column> = shapes.iter().map(|s| system.column(s, false)).collect();
-        let solution = fit.with(system, &columns);
-        let gain = 0.5 * (solution.explained - fit.solution.explained);
-        let freedom = solution.rank.saturating_sub(fit.solution.rank);
+    ];
+    let tell = |domain: Domain| {
+        let (gain, freedom) = beside.gain(catalogue.basis(domain));
         let log_p = after_trials(log_tail(2.0 * gain, freedom), 40.0);
-        if log_p < SHOWN.ln() {
-            list.push(Unnamed {
-                log_p,
-                signature: format!("{}; it looks like no cause of the catalogue", lives(domain)),
-            });
-        }
-    }
-    list
+        (log_p < SHOWN.ln()).then(|| Unnamed {
+            log_p,
+            signature: format!("{}; it looks like no cause of the catalogue", lives(domain)),
+        })
+    };
+    let left = open.into_iter().filter(|d| !closed.contains(d));
+    left.filter_map(tell).collect()
 }
 
 fn lives(domain: Domain) -> &'static str {
@@ -275,77 +321,5 @@ fn lives(domain: Domain) -> &'static str {
         Domain::Line => "something stands at a fixed frequency",
         Domain::Revolution => "something repeats with the revolution",
         Domain::Motion => "something moves that the motion's spline does not follow",
-    }
-}
-
-impl Selection {
-    /// The findings, the one that explains most first.
-    pub(crate) fn findings(&self, system: &System) -> Vec<Finding> {
-        let mut list = vec![];
-        for (i, accepted) in self.accepted.iter().enumerate() {
-            let count = accepted.candidate.shapes.len();
-            let range = accepted.first..accepted.first + count;
-            let error: Vec<f64> = range
-                .clone()
-                .map(|k| self.fit.solution.covariance[(k, k)].sqrt())
-                .collect();
-            let parameters = (accepted.candidate.parameters)(&Estimate {
-                x: &self.fit.solution.x[range.clone()],
-                error: &error,
-            });
-            let without: Vec<Column> = self
-                .fit
-                .columns
-                .iter()
-                .enumerate()
-                .filter(|(k, _)| !range.contains(k))
-                .map(|(_, c)| c.clone())
-                .collect();
-            let without = Fit::new(system, without);
-            // What the others explain as well in the end is no finding of its own.
-            let gain = 0.5 * (self.fit.solution.explained - without.solution.explained);
-            let freedom = self.fit.solution.rank.saturating_sub(without.solution.rank);
-            let trials = accepted.candidate.trials * KINDS;
-            let log_p = after_trials(log_tail(2.0 * gain, freedom), trials);
-            if freedom == 0 || log_p > SHOWN.ln() {
-                continue;
-            }
-            let p_value = log_p.exp();
-            let seen = (accepted.candidate.evidence)(&parameters);
-            list.push(Finding {
-                cause: accepted.candidate.name.into(),
-                confounded_with: accepted.confounded.clone(),
-                p_value,
-                evidence: format!("{seen}; it raises the log-likelihood by {gain:.1}"),
-                parameters,
-                gain: Gain {
-                    held_out_residual_rms_before: without.held_out(system),
-                    held_out_residual_rms_after: self.fit.held_out(system),
-                    position_error_rms_before_rad: without.position_error(system),
-                    position_error_rms_after_rad: self.fit.position_error(system),
-                },
-                chip: accepted.candidate.chip,
-                weight: gain - i as f64 * 1e-9,
-            });
-        }
-        list.sort_by(|a, b| b.weight.total_cmp(&a.weight));
-        list
-    }
-}
-
-impl Selection {
-    /// The five parameters and every accepted cause that is no motion, with their amounts.
-    pub(crate) fn sensor_shapes(&self, context: &Context) -> Vec<(crate::column::Shape, f64)> {
-        let x = &self.fit.solution.x;
-        let mut list: Vec<_> = context
-            .parameters()
-            .into_iter()
-            .zip(x.iter().copied())
-            .collect();
-        for accepted in self.accepted.iter().filter(|a| !a.candidate.motion) {
-            let amounts = x[accepted.first..].iter().copied();
-            list.extend(accepted.candidate.shapes.iter().cloned().zip(amounts));
-        }
-        list
     }
 }

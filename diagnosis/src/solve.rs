@@ -1,14 +1,30 @@
-//! Least squares on whitened columns.
+//! Least squares on sums of products.
 
 use nalgebra::{DMatrix, DVector};
 
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
+use crate::library::Shape;
+
+/// Directions with less than this share of a column's own square are combinations of others.
+const DEPENDENT: f64 = 1e-8;
+
+/// The sum of products; in several sums, so that no addition waits for the last one.
+pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    const SUMS: usize = 8;
+    let mut sums = [0.0; SUMS];
+    let (left, right) = (a.chunks_exact(SUMS), b.chunks_exact(SUMS));
+    let rest = left.remainder().iter().zip(right.remainder());
+    let rest: f64 = rest.map(|(a, b)| a * b).sum();
+    for (a, b) in left.zip(right) {
+        for i in 0..SUMS {
+            sums[i] += a[i] * b[i];
+        }
+    }
+    sums.iter().sum::<f64>() + rest
 }
 
 /// `values` without their projection on `shapes`.
 pub(crate) fn without(values: &[f64], shapes: &[Vec<f64>]) -> Vec<f64> {
-    let solution = Normal::of(values, shapes).solve();
+    let solution = Normal::of_columns(values, shapes).solve();
     let mut left = values.to_vec();
     for (shape, x) in shapes.iter().zip(&solution.x) {
         for (l, s) in left.iter_mut().zip(shape) {
@@ -21,8 +37,14 @@ pub(crate) fn without(values: &[f64], shapes: &[Vec<f64>]) -> Vec<f64> {
 /// Normal equations.
 #[derive(Clone, Debug)]
 pub(crate) struct Normal {
-    gram: DMatrix<f64>,
-    right: DVector<f64>,
+    /// Products of columns.
+    pub(crate) gram: DMatrix<f64>,
+    /// Products with the data.
+    pub(crate) right: DVector<f64>,
+    /// Square of the data.
+    pub(crate) power: f64,
+    /// Squares of the columns before anything was taken off them.
+    norms: DVector<f64>,
 }
 
 /// Their solution.
@@ -38,8 +60,24 @@ pub(crate) struct Solution {
     pub(crate) rank: usize,
 }
 
+impl Solution {
+    /// The gain in log-likelihood.
+    pub(crate) fn gain(&self) -> f64 {
+        0.5 * self.explained
+    }
+}
+
 impl Normal {
-    pub(crate) fn of(values: &[f64], columns: &[Vec<f64>]) -> Self {
+    pub(crate) fn new(gram: DMatrix<f64>, right: DVector<f64>, power: f64) -> Self {
+        Self {
+            norms: gram.diagonal(),
+            gram,
+            right,
+            power,
+        }
+    }
+
+    pub(crate) fn of_columns(values: &[f64], columns: &[Vec<f64>]) -> Self {
         let m = columns.len();
         let mut gram = DMatrix::zeros(m, m);
         let mut right = DVector::zeros(m);
@@ -51,35 +89,82 @@ impl Normal {
                 gram[(j, i)] = value;
             }
         }
-        Self { gram, right }
+        Self::new(gram, right, dot(values, values))
     }
 
-    /// These columns and more.
-    pub(crate) fn extended(&self, values: &[f64], columns: &[Vec<f64>], more: &[Vec<f64>]) -> Self {
-        let (m, k) = (columns.len(), more.len());
-        let mut gram = DMatrix::zeros(m + k, m + k);
-        gram.view_mut((0, 0), (m, m)).copy_from(&self.gram);
-        let mut right = DVector::zeros(m + k);
-        right.rows_mut(0, m).copy_from(&self.right);
-        for (i, column) in more.iter().enumerate() {
-            right[m + i] = dot(column, values);
-            for (j, other) in columns.iter().chain(&more[..=i]).enumerate() {
-                let value = dot(column, other);
-                gram[(m + i, j)] = value;
-                gram[(j, m + i)] = value;
+    /// The columns that shapes make of these.
+    pub(crate) fn of(&self, shapes: &[Shape]) -> Self {
+        let m = shapes.len();
+        let mut small = Self {
+            gram: DMatrix::zeros(m, m),
+            right: DVector::zeros(m),
+            power: self.power,
+            norms: DVector::zeros(m),
+        };
+        for (i, shape) in shapes.iter().enumerate() {
+            small.right[i] = shape.0.iter().map(|(a, x)| x * self.right[*a]).sum();
+            for (j, other) in shapes[..=i].iter().enumerate() {
+                let value = self.product(shape, other);
+                small.gram[(i, j)] = value;
+                small.gram[(j, i)] = value;
+            }
+            small.norms[i] = small.gram[(i, i)];
+        }
+        small
+    }
+
+    pub(crate) fn product(&self, a: &Shape, b: &Shape) -> f64 {
+        let row = |i: usize| -> f64 { b.0.iter().map(|(j, y)| y * self.gram[(i, *j)]).sum() };
+        a.0.iter().map(|(i, x)| x * row(*i)).sum()
+    }
+
+    /// The same columns and data with the projection on some shapes taken off; those as they were before.
+    pub(crate) fn deflated(&self, shapes: &[Shape]) -> Self {
+        let solution = self.of(shapes).solve();
+        let m = self.right.len();
+        // What of each column lies along each shape.
+        let mut along = DMatrix::zeros(m, shapes.len());
+        for (j, shape) in shapes.iter().enumerate() {
+            for (i, x) in &shape.0 {
+                let mut column = along.column_mut(j);
+                column.axpy(*x, &self.gram.column(*i), 1.0);
             }
         }
-        Self { gram, right }
+        let spread = &along * &solution.covariance;
+        let x = DVector::from_column_slice(&solution.x);
+        Self {
+            gram: &self.gram - &spread * along.transpose(),
+            right: &self.right - &along * x,
+            power: self.power - solution.explained,
+            norms: self.norms.clone(),
+        }
+    }
+
+    /// The solution for shapes beside what was taken off; `whole` is the same before that.
+    pub(crate) fn solve_beside(&self, whole: &Self, shapes: &[Shape]) -> Solution {
+        let mut small = self.of(shapes);
+        for (norm, shape) in small.norms.iter_mut().zip(shapes) {
+            *norm = whole.product(shape, shape);
+        }
+        small.solve()
     }
 
     /// The least-squares solution; directions that the columns hardly have are left at zero.
     pub(crate) fn solve(&self) -> Solution {
         let m = self.right.len();
+        // A column of nothing gets no amount.
         let scale: Vec<f64> = (0..m)
-            .map(|i| self.gram[(i, i)].sqrt().max(1e-150))
+            .map(|i| {
+                let norm = self.norms[i];
+                if norm > 1e-300 {
+                    norm.sqrt().recip()
+                } else {
+                    0.0
+                }
+            })
             .collect();
-        let unit = DMatrix::from_fn(m, m, |i, j| self.gram[(i, j)] / scale[i] / scale[j]);
-        let right = DVector::from_fn(m, |i, _| self.right[i] / scale[i]);
+        let unit = DMatrix::from_fn(m, m, |i, j| self.gram[(i, j)] * scale[i] * scale[j]);
+        let right = DVector::from_fn(m, |i, _| self.right[i] * scale[i]);
         if m == 0 {
             return Solution {
                 x: vec![],
@@ -89,7 +174,7 @@ impl Normal {
             };
         }
         let eigen = unit.symmetric_eigen();
-        let largest = eigen.eigenvalues.amax().max(1e-300);
+        let largest = eigen.eigenvalues.amax().max(1.0);
         let (mut x, mut covariance) = (DVector::zeros(m), DMatrix::zeros(m, m));
         let (mut explained, mut rank) = (0.0, 0);
         for (value, vector) in eigen
@@ -97,18 +182,18 @@ impl Normal {
             .iter()
             .zip(eigen.eigenvectors.column_iter())
         {
-            if *value < 1e-8 * largest {
+            if *value < DEPENDENT * largest {
                 continue;
             }
             let along = vector.dot(&right);
             explained += along * along / value;
             x += vector * (along / value);
-            covariance += vector * vector.transpose() / *value;
+            covariance.ger(1.0 / *value, &vector, &vector, 1.0);
             rank += 1;
         }
         Solution {
-            x: (0..m).map(|i| x[i] / scale[i]).collect(),
-            covariance: DMatrix::from_fn(m, m, |i, j| covariance[(i, j)] / scale[i] / scale[j]),
+            x: (0..m).map(|i| x[i] * scale[i]).collect(),
+            covariance: DMatrix::from_fn(m, m, |i, j| covariance[(i, j)] * scale[i] * scale[j]),
             explained,
             rank,
         }

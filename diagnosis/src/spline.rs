@@ -97,20 +97,33 @@ impl Spline {
         (first, x - first as f64)
     }
 
-    /// Coefficients of the best spline through `values`.
-    #[must_use]
-    pub fn fit(&self, values: &[f64], weight: &[f64]) -> Vec<f64> {
+    /// The B-splines of a stretch of samples from `start` on.
+    pub(crate) fn basis(&self, start: usize, samples: usize, slope: bool) -> Basis {
         let pieces = self.count() - 3;
-        let mut x = vec![0.0; self.count()];
-        for k in 0..self.samples {
-            if weight[k] == 0.0 {
-                continue;
+        let mut basis = Basis {
+            weights: std::array::from_fn(|_| vec![0.0; samples]),
+            pieces: vec![],
+        };
+        for k in 0..samples {
+            let (first, w) = Self::at(self.spacing, pieces, start + k);
+            let values = if slope {
+                slopes(w).map(|v| v / self.spacing)
+            } else {
+                weights(w)
+            };
+            for (list, value) in basis.weights.iter_mut().zip(values) {
+                list[k] = value;
             }
-            let (first, w) = Self::at(self.spacing, pieces, k);
-            for (i, b) in weights(w).into_iter().enumerate() {
-                x[first + i] += weight[k] * b * values[k];
+            match basis.pieces.last_mut() {
+                Some((same, range)) if *same == first => range.end = k + 1,
+                _ => basis.pieces.push((first, k..k + 1)),
             }
         }
+        basis
+    }
+
+    /// Sums of products with the B-splines → coefficients.
+    pub(crate) fn solve(&self, x: &mut [f64]) {
         for i in 0..x.len() {
             for d in 1..4.min(i + 1) {
                 x[i] -= self.factor[i][d] * x[i - d];
@@ -125,42 +138,130 @@ impl Spline {
             }
             x[i] /= self.factor[i][0];
         }
+    }
+
+    /// Coefficients of the best spline through `values`.
+    #[must_use]
+    pub fn fit(&self, values: &[f64], weight: &[f64]) -> Vec<f64> {
+        let mut x = vec![0.0; self.count()];
+        for start in (0..self.samples).step_by(STRETCH) {
+            let range = start..(start + STRETCH).min(self.samples);
+            let basis = self.basis(start, range.len(), false);
+            let pairs = values[range.clone()].iter().zip(&weight[range]);
+            // A sample that does not count may hold anything.
+            let weighted: Vec<f64> = pairs
+                .map(|(v, w)| if *w == 0.0 { 0.0 } else { v * w })
+                .collect();
+            basis.accumulate(&weighted, &mut x);
+        }
+        self.solve(&mut x);
         x
     }
 
     /// The spline at every sample.
     #[must_use]
     pub fn values(&self, coefficients: &[f64]) -> Vec<f64> {
-        self.evaluate(coefficients, weights, 1.0)
+        self.evaluate(coefficients, false)
     }
 
     /// Its derivative per sample.
     #[must_use]
     pub fn derivative(&self, coefficients: &[f64]) -> Vec<f64> {
-        self.evaluate(coefficients, slopes, 1.0 / self.spacing)
+        self.evaluate(coefficients, true)
     }
 
-    fn evaluate(&self, coefficients: &[f64], basis: fn(f64) -> [f64; 4], scale: f64) -> Vec<f64> {
-        let pieces = self.count() - 3;
-        (0..self.samples)
-            .map(|k| {
-                let (first, w) = Self::at(self.spacing, pieces, k);
-                let parts = basis(w).into_iter().enumerate();
-                scale * parts.map(|(i, b)| b * coefficients[first + i]).sum::<f64>()
-            })
-            .collect()
+    fn evaluate(&self, coefficients: &[f64], slope: bool) -> Vec<f64> {
+        let mut all = vec![0.0; self.samples];
+        for start in (0..self.samples).step_by(STRETCH) {
+            let end = (start + STRETCH).min(self.samples);
+            let basis = self.basis(start, end - start, slope);
+            basis.add(coefficients, 1.0, &mut all[start..end]);
+        }
+        all
     }
 
     /// What of `values` no such spline can follow.
     #[must_use]
     pub fn residual(&self, values: &[f64], weight: &[f64]) -> Vec<f64> {
-        let smooth = self.values(&self.fit(values, weight));
-        values
-            .iter()
-            .zip(smooth)
-            .zip(weight)
-            .map(|((v, s), w)| (v - s) * w)
-            .collect()
+        self.residuals(&[values], weight).swap_remove(0)
+    }
+
+    /// The same of several columns.
+    #[must_use]
+    pub fn residuals(&self, columns: &[&[f64]], weight: &[f64]) -> Vec<Vec<f64>> {
+        let mut sums = vec![vec![0.0; self.count()]; columns.len()];
+        let stretches = || {
+            (0..self.samples)
+                .step_by(STRETCH)
+                .map(|start| start..(start + STRETCH).min(self.samples))
+        };
+        let mut weighted = vec![];
+        for range in stretches() {
+            let basis = self.basis(range.start, range.len(), false);
+            for (values, sums) in columns.iter().zip(&mut sums) {
+                let pairs = values[range.clone()].iter().zip(&weight[range.clone()]);
+                // A sample that does not count may hold anything.
+                weighted.clear();
+                weighted.extend(pairs.map(|(v, w)| if *w == 0.0 { 0.0 } else { v * w }));
+                basis.accumulate(&weighted, sums);
+            }
+        }
+        sums.iter_mut().for_each(|sums| self.solve(sums));
+        let mut left: Vec<Vec<f64>> = columns.iter().map(|values| values.to_vec()).collect();
+        for range in stretches() {
+            let basis = self.basis(range.start, range.len(), false);
+            for (left, coefficients) in left.iter_mut().zip(&sums) {
+                let part = &mut left[range.clone()];
+                basis.add(coefficients, -1.0, part);
+                for (v, w) in part.iter_mut().zip(&weight[range.clone()]) {
+                    *v = if *w == 0.0 { 0.0 } else { *v * w };
+                }
+            }
+        }
+        left
+    }
+}
+
+/// Samples that are looked at together.
+const STRETCH: usize = 4096;
+
+/// The B-splines of a stretch of samples: shared by all that is fitted or taken off there.
+pub(crate) struct Basis {
+    /// The four B-splines that are not zero, sample by sample.
+    weights: [Vec<f64>; 4],
+    /// The first of them, and the samples between its knots.
+    pieces: Vec<(usize, std::ops::Range<usize>)>,
+}
+
+impl Basis {
+    /// Adds the products of weighted values with the B-splines to `sums`.
+    pub(crate) fn accumulate(&self, weighted: &[f64], sums: &mut [f64]) {
+        let [w0, w1, w2, w3] = &self.weights;
+        for (first, range) in &self.pieces {
+            // Two sums for each, so that no addition waits for the last one.
+            let mut sum = [[0.0; 4]; 2];
+            for k in range.clone() {
+                let (v, part) = (weighted[k], &mut sum[k & 1]);
+                part[0] += w0[k] * v;
+                part[1] += w1[k] * v;
+                part[2] += w2[k] * v;
+                part[3] += w3[k] * v;
+            }
+            for i in 0..4 {
+                sums[first + i] += sum[0][i] + sum[1][i];
+            }
+        }
+    }
+
+    /// Adds `by` times the spline of these coefficients to `values`.
+    pub(crate) fn add(&self, coefficients: &[f64], by: f64, values: &mut [f64]) {
+        let [w0, w1, w2, w3] = &self.weights;
+        for (first, range) in &self.pieces {
+            let [a, b, c, d]: [f64; 4] = std::array::from_fn(|i| by * coefficients[first + i]);
+            for k in range.clone() {
+                values[k] += a * w0[k] + b * w1[k] + c * w2[k] + d * w3[k];
+            }
+        }
     }
 }
 

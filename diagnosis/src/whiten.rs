@@ -1,7 +1,13 @@
 //! Whitening: what the noise keeps from sample to sample is predicted and taken off, from data and shapes alike.
 
 /// Order of the prediction: enough for slopes of the spectrum, too short to swallow a line.
-const ORDER: usize = 6;
+pub(crate) const ORDER: usize = 6;
+/// Reflections below so many of their standard errors are those of white noise.
+const WHITE: f64 = 4.5;
+/// Samples of a spectrum; several of them are averaged.
+const SEGMENT: usize = 4096;
+/// Above so many times what is near it in the spectrum, a line stands.
+const STANDS_OUT: f64 = 3.0;
 
 /// A linear prediction of noise from its past.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -13,12 +19,13 @@ pub(crate) struct Whitener {
 
 impl Whitener {
     /// From a residual whose frequencies below `gone` (cycles per sample) were taken off with the motion: there the noise
-    /// is taken to be what it is just above, for a hole in the spectrum must not be amplified. Autocorrelation method
-    /// (Levinson and Durbin).
+    /// is taken to be what it is just above, for a hole in the spectrum must not be amplified. Lines are no noise and are
+    /// cut off. Autocorrelation method (Levinson and Durbin).
     #[must_use]
     pub(crate) fn of(residual: &[f64], gone: f64) -> Self {
         let n = residual.len();
-        let (mut power, length) = crate::lines::spectrum(residual);
+        let mut power = without_lines(&averaged(residual));
+        let length = 2 * (power.len() - 1);
         let index = |f: f64| ((f * length as f64).ceil() as usize).min(power.len() - 1);
         let (first, last) = (index(gone), index((2.0 * gone).min(0.5)));
         if first > 0 && last > first {
@@ -32,7 +39,7 @@ impl Whitener {
                     |k: usize| (std::f64::consts::TAU * (k * lag) as f64 / length as f64).cos();
                 let ends = power[0] + power[power.len() - 1] * wave(power.len() - 1);
                 let inner: f64 = (1..power.len() - 1).map(|k| 2.0 * power[k] * wave(k)).sum();
-                (ends + inner) / length as f64 / n as f64
+                (ends + inner) / length as f64
             })
             .collect();
         if correlation[0].is_nan() || correlation[0] <= 0.0 {
@@ -43,9 +50,11 @@ impl Whitener {
         }
         let mut error = correlation[0];
         let mut a: Vec<f64> = vec![];
+        let mut coloured = false;
         for m in 0..ORDER {
             let predicted: f64 = (0..m).map(|i| a[i] * correlation[m - i]).sum();
             let reflection = (correlation[m + 1] - predicted) / error;
+            coloured |= reflection.abs() > WHITE / (n as f64).sqrt();
             let old = a.clone();
             for i in 0..m {
                 a[i] = old[i] - reflection * old[m - 1 - i];
@@ -53,21 +62,78 @@ impl Whitener {
             a.push(reflection);
             error *= 1.0 - reflection * reflection;
         }
+        if !coloured {
+            return Self {
+                coefficients: vec![],
+                sigma: correlation[0].sqrt(),
+            };
+        }
         Self {
             coefficients: a,
             sigma: error.max(1e-300).sqrt(),
         }
     }
 
-    /// The unpredictable part in units of its rms.
-    #[must_use]
-    pub(crate) fn apply(&self, values: &[f64]) -> Vec<f64> {
-        (0..values.len())
-            .map(|k| {
-                let past = self.coefficients.iter().enumerate().take(k);
-                let predicted: f64 = past.map(|(i, a)| a * values[k - 1 - i]).sum();
-                (values[k] - predicted) / self.sigma
-            })
-            .collect()
+    /// Nothing can be predicted.
+    pub(crate) fn is_white(&self) -> bool {
+        self.coefficients.is_empty()
     }
+
+    /// The unpredictable part of columns that have `ORDER` values of their past before them; in the unit of the values.
+    pub(crate) fn block(&self, columns: usize, samples: usize, plain: &[f64], white: &mut [f64]) {
+        if self.is_white() {
+            return;
+        }
+        let stride = plain.len() / columns;
+        for (from, to) in plain.chunks(stride).zip(white.chunks_mut(stride)) {
+            let to = &mut to[ORDER..ORDER + samples];
+            to.copy_from_slice(&from[ORDER..ORDER + samples]);
+            for (i, a) in self.coefficients.iter().enumerate() {
+                let past = &from[ORDER - 1 - i..];
+                to.iter_mut().zip(past).for_each(|(t, p)| *t -= a * p);
+            }
+        }
+    }
+}
+
+/// Average spectrum of overlapping segments, per sample: its mean over all frequencies is the mean square.
+fn averaged(values: &[f64]) -> Vec<f64> {
+    let n = values.len();
+    let segment = SEGMENT
+        .min((n / 4).next_power_of_two())
+        .clamp(16, n.max(16));
+    let window: Vec<f64> = (0..segment)
+        .map(|k| (std::f64::consts::PI * (k as f64 + 0.5) / segment as f64).sin())
+        .collect();
+    let scale = 1.0 / window.iter().map(|w| w * w).sum::<f64>();
+    let mut sum = vec![0.0; segment + 1];
+    let mut count: f64 = 0.0;
+    // Enough of them, spread over the record.
+    let step = (segment / 2).max(n / 64);
+    for start in (0..=n.saturating_sub(segment)).step_by(step) {
+        let part = values[start..].iter().zip(&window);
+        let windowed: Vec<f64> = part.map(|(v, w)| v * w).collect();
+        let (power, _) = crate::lines::spectrum(&windowed);
+        sum.iter_mut().zip(power).for_each(|(s, p)| *s += p * scale);
+        count += 1.0;
+    }
+    sum.iter().map(|s| s / count.max(1.0)).collect()
+}
+
+/// What stands far out of its surroundings in a spectrum, cut down to them.
+fn without_lines(power: &[f64]) -> Vec<f64> {
+    let reach = (power.len() / 16).clamp(4, 48);
+    (0..power.len())
+        .map(|k| {
+            let near = &power[k.saturating_sub(reach)..(k + reach + 1).min(power.len())];
+            let mut sorted = near.to_vec();
+            let middle = sorted.len() / 2;
+            let (_, median, _) = sorted.select_nth_unstable_by(middle, f64::total_cmp);
+            if power[k] > STANDS_OUT * *median {
+                *median
+            } else {
+                power[k]
+            }
+        })
+        .collect()
 }

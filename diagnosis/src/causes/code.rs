@@ -1,10 +1,15 @@
 //! Errors of the ADC as a function of its code.
 
-use crate::cause::{Candidate, Domain, channel};
+use std::rc::Rc;
+
+use super::Catalogue;
+use crate::block::Block;
+use crate::cause::{Candidate, Domain};
 use crate::context::Context;
 use crate::finding::{Chip, Parameter};
+use crate::library::Shape;
 
-pub(crate) fn candidates(context: &Context) -> Vec<Candidate> {
+pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
     let half = 1i64 << (context.bits.min(40) - 1);
     let span = |which: usize| {
         let codes = &context.codes[which];
@@ -24,23 +29,30 @@ pub(crate) fn candidates(context: &Context) -> Vec<Candidate> {
         .unwrap_or(1);
     // Coarse steps with little noise are errors of the code themselves.
     if coarse > 1 {
-        return vec![];
+        return;
     }
-    let mut list = vec![];
+    // The codes of the smooth signals: those of the measured ones know the noise that carried them over an edge.
+    let (e, adc) = (context.ellipse, context.adc);
+    let smooth = move |block: &Block, which: usize| -> Vec<i64> {
+        let (a, b, adc) = [(e.a_c, e.b_c, adc.cos), (e.a_s, e.b_s, adc.sin)][which];
+        let u = block.u[which].iter();
+        u.map(|u| adc.code(a * u + b)).collect()
+    };
     // The highest bit is the step in the middle of the range.
     for bit in (0..context.bits.min(40)).rev().take(8) {
         if (1i64 << bit) > reach || (1i64 << bit) < 8 {
             continue;
         }
-        let weight = |which: usize| -> Vec<f64> {
-            let set = |c: &i64| ((c + half) >> bit & 1) as f64 - 0.5;
-            context.codes[which].iter().map(set).collect()
-        };
-        let shapes = vec![
-            channel(context, 0, weight(0)),
-            channel(context, 1, weight(1)),
-        ];
-        list.push(Candidate {
+        let shapes: Vec<Shape> = (0..2)
+            .map(|which| {
+                catalogue.library.pair(move |block: &Block, c, s| {
+                    let set = |c: &i64| ((c + half) >> bit & 1) as f64 - 0.5;
+                    let codes = smooth(block, which);
+                    block.channel(which, &codes.iter().map(set).collect::<Vec<_>>(), c, s);
+                })
+            })
+            .collect();
+        catalogue.candidates.push(Candidate {
             name: "adc_nonlinearity",
             domain: Domain::Code,
             trials: 8.0,
@@ -49,17 +61,16 @@ pub(crate) fn candidates(context: &Context) -> Vec<Candidate> {
             refine: None,
             positive: false,
             chip: Chip::CannotCorrect,
-            parameters: Box::new(move |e| {
+            parameters: Rc::new(move |e| {
                 vec![
                     Parameter::exact("bit", f64::from(bit), "1"),
                     Parameter::measured("step_cos", e.x[0], e.error[0], "amplitude"),
                     Parameter::measured("step_sin", e.x[1], e.error[1], "amplitude"),
                 ]
             }),
-            evidence: Box::new(move |p| {
+            evidence: Rc::new(move |p| {
                 format!("the ADC's bit {bit} is off by {:.4} % (cos) and {:.4} % (sin) of the amplitude", p[1].value * 100.0, p[2].value * 100.0)
             }),
         });
     }
-    list
 }

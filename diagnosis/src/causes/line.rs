@@ -1,16 +1,76 @@
 //! Lines at a fixed frequency: hum in the channels, ripple of the amplitude, vibration of the axis.
 
-use crate::cause::{Candidate, Domain, channel, polar};
-use crate::column::Shape;
+use std::f64::consts::TAU;
+use std::rc::Rc;
+
+use crate::block::Block;
+use crate::cause::{Candidate, Domain, polar};
 use crate::context::Context;
 use crate::finding::{Chip, Parameter};
-use crate::lines::{pair_spectrum, peak, spectrum, wave};
+use crate::library::{Fill, Library, Place, Shape, Use};
+use crate::lines::{pair_spectrum, peak, two_spectra};
 use crate::model::Residual;
 
 /// Lowest frequency of a line, in cycles per recording: below, it is drift.
 const SLOWEST: f64 = 4.0;
 
-pub(crate) fn candidates(context: &Context, residual: &Residual) -> Vec<Candidate> {
+/// Samples between two evaluations of a line's sine; between them it is rotated on.
+const ROTATED: usize = 64;
+/// Share of a sample by which the time base may be off to be regular.
+const REGULAR: f64 = 1e-3;
+
+/// cos and sin of a line.
+fn wave(hertz: f64) -> Fill {
+    Rc::new(move |block, out| {
+        let n = block.len();
+        let (cos, sin) = out.split_at_mut(n);
+        let first = block.time[0];
+        let step = (block.time[n - 1] - first) / (n - 1).max(1) as f64;
+        let regular = |(k, t): (usize, &f64)| (t - first - k as f64 * step).abs() < REGULAR * step;
+        if !block.time.iter().enumerate().all(regular) {
+            for (k, t) in block.time.iter().enumerate() {
+                (sin[k], cos[k]) = (TAU * hertz * t).sin_cos();
+            }
+            return;
+        }
+        let (sin_step, cos_step) = (TAU * hertz * step).sin_cos();
+        for from in (0..n).step_by(ROTATED) {
+            let (mut s, mut c) = (TAU * hertz * (first + from as f64 * step)).sin_cos();
+            for k in from..(from + ROTATED).min(n) {
+                (cos[k], sin[k]) = (c, s);
+                (c, s) = (c * cos_step - s * sin_step, s * cos_step + c * sin_step);
+            }
+        }
+    })
+}
+
+/// cos and sin of a line in one channel, then in the other.
+fn in_channels(hertz: f64, library: &mut Library) -> Vec<Shape> {
+    let fill = wave(hertz);
+    let pairs = move |block: &Block, out: &mut [f64]| {
+        let n = block.len();
+        let mut waves = vec![0.0; 2 * n];
+        fill(block, &mut waves);
+        let (c, s) = out.split_at_mut(4 * n);
+        for i in 0..4 {
+            let at = i * n..(i + 1) * n;
+            let change = &waves[(i % 2) * n..][..n];
+            block.channel(i / 2, change, &mut c[at.clone()], &mut s[at]);
+        }
+    };
+    let place = library.add(4, Use::Pairs, Rc::new(pairs));
+    (0..4).map(|i| place.both(i)).collect()
+}
+
+fn two(place: Place, shape: fn(&Place, usize) -> Shape) -> Vec<Shape> {
+    (0..2).map(|i| shape(&place, i)).collect()
+}
+
+pub(crate) fn candidates(
+    context: &Context,
+    residual: &Residual,
+    library: &mut Library,
+) -> Vec<Candidate> {
     let n = context.samples();
     let trials = n as f64;
     let low = SLOWEST / n as f64;
@@ -24,19 +84,16 @@ pub(crate) fn candidates(context: &Context, residual: &Residual) -> Vec<Candidat
     let (in_c, in_s): (Vec<f64>, Vec<f64>) = (0..n).map(frame).unzip();
     let (power, length) = pair_spectrum(&in_c, &in_s);
     if let Some(f) = peak(&power, length, low, 0.499) {
+        let hertz = f * context.rate;
+        let mut all = vec![];
         for harmonics in [1, 3] {
-            let hertz = f * context.rate;
             if harmonics > 1 && f * 3.0 > 0.49 {
                 continue;
             }
-            let mut shapes = vec![];
-            for harmonic in 1..=harmonics {
-                for which in [0, 1] {
-                    for w in wave(&context.time, hertz * f64::from(harmonic)) {
-                        shapes.push(channel(context, which, w));
-                    }
-                }
+            for harmonic in all.len() / 4 + 1..=harmonics {
+                all.extend(in_channels(hertz * harmonic as f64, library));
             }
+            let shapes = all.clone();
             list.push(Candidate {
                 name: "interference",
                 domain: Domain::Line,
@@ -46,7 +103,7 @@ pub(crate) fn candidates(context: &Context, residual: &Residual) -> Vec<Candidat
                 refine: None,
                 positive: false,
                 chip: Chip::CannotCorrect,
-                parameters: Box::new(move |e| {
+                parameters: Rc::new(move |e| {
                     let (a_c, d_c, p_c, e_c) = polar(&e.x[..2], &e.error[..2]);
                     let (a_s, d_s, p_s, e_s) = polar(&e.x[2..4], &e.error[2..4]);
                     let strongest = a_c.hypot(a_s) / d_c.hypot(d_s).max(f64::MIN_POSITIVE);
@@ -58,28 +115,27 @@ pub(crate) fn candidates(context: &Context, residual: &Residual) -> Vec<Candidat
                         Parameter::measured("phase_sin", p_s, e_s, "rad"),
                     ]
                 }),
-                evidence: Box::new(move |p| {
+                evidence: Rc::new(move |p| {
                     let with = if harmonics > 1 { " and its harmonics" } else { "" };
                     format!("a line at {:.3} Hz{with} is added to the channels, {:.3} % (cos) and {:.3} % (sin) of the amplitude", p[0].value, p[1].value * 100.0, p[3].value * 100.0)
                 }),
             });
         }
     }
-    let (power, length) = spectrum(&residual.radial);
-    if let Some(f) = peak(&power, length, low, 0.499) {
+    let ([radial, fast], length) = two_spectra(&residual.radial, residual.fast());
+    if let Some(f) = peak(&radial, length, low, 0.499) {
         let hertz = f * context.rate;
-        let shapes =
-            wave(&context.time, hertz).map(|w| Shape::radial(&w, &context.cos, &context.sin));
+        let shapes = two(library.add(2, Use::Radial, wave(hertz)), Place::radial);
         list.push(Candidate {
             name: "amplitude_ripple",
             domain: Domain::Line,
             trials,
-            shapes: shapes.into(),
+            shapes,
             motion: false,
             refine: None,
             positive: false,
             chip: Chip::CannotCorrect,
-            parameters: Box::new(move |e| {
+            parameters: Rc::new(move |e| {
                 let (a, d, p, ep) = polar(e.x, e.error);
                 vec![
                     frequency(hertz, a / d, n, f),
@@ -87,7 +143,7 @@ pub(crate) fn candidates(context: &Context, residual: &Residual) -> Vec<Candidat
                     Parameter::measured("phase", p, ep, "rad"),
                 ]
             }),
-            evidence: Box::new(|p| {
+            evidence: Rc::new(|p| {
                 format!(
                     "the amplitude of both channels is modulated by {:.3} % at {:.3} Hz",
                     p[1].value * 100.0,
@@ -96,21 +152,19 @@ pub(crate) fn candidates(context: &Context, residual: &Residual) -> Vec<Candidat
             }),
         });
     }
-    let (power, length) = spectrum(&residual.motion);
-    if let Some(f) = peak(&power, length, low, 0.499) {
+    if let Some(f) = peak(&fast, length, low, 0.499) {
         let hertz = f * context.rate;
-        let shapes =
-            wave(&context.time, hertz).map(|w| Shape::tangential(&w, &context.cos, &context.sin));
+        let shapes = two(library.add(2, Use::Motion, wave(hertz)), Place::tangential);
         list.push(Candidate {
             name: "vibration",
             domain: Domain::Motion,
             trials,
-            shapes: shapes.into(),
+            shapes,
             motion: true,
             refine: None,
             positive: false,
             chip: Chip::NotASensorError,
-            parameters: Box::new(move |e| {
+            parameters: Rc::new(move |e| {
                 let (a, d, p, ep) = polar(e.x, e.error);
                 vec![
                     frequency(hertz, a / d, n, f),
@@ -118,7 +172,7 @@ pub(crate) fn candidates(context: &Context, residual: &Residual) -> Vec<Candidat
                     Parameter::measured("phase", p, ep, "rad"),
                 ]
             }),
-            evidence: Box::new(|p| format!("the axis really vibrates: {:.3e} rad of a scale period at {:.3} Hz, without any change of the radius", p[1].value, p[0].value)),
+            evidence: Rc::new(|p| format!("the axis really vibrates: {:.3e} rad of a scale period at {:.3} Hz, without any change of the radius", p[1].value, p[0].value)),
         });
     }
     list

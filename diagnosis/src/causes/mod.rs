@@ -3,24 +3,140 @@
 mod angle;
 mod code;
 mod line;
+mod place;
 mod revolution;
 mod speed;
 mod time;
 
-use crate::cause::Candidate;
-use crate::context::Context;
-use crate::model::Residual;
+use std::rc::Rc;
 
-/// Every cause with every choice of its discrete parameters.
-pub(crate) fn all(context: &Context, residual: &Residual) -> Vec<Candidate> {
-    let mut list = angle::candidates(context);
-    list.extend(code::candidates(context));
-    list.extend(speed::candidates(context));
-    list.extend(time::candidates(context));
-    list.extend(line::candidates(context, residual));
-    list.extend(revolution::candidates(context, residual));
+use std::collections::BTreeMap;
+
+use crate::cause::{Candidate, Domain};
+use crate::context::Context;
+use crate::library::{Library, Place, Shape, Use};
+use crate::model::Residual;
+use crate::trig::{Trig, rotated};
+
+pub(crate) use place::orders as revolution_orders;
+
+/// Highest order of the scale period.
+pub(crate) const ORDERS: usize = 8;
+
+/// What does not depend on what is left of the recording: functions, causes, and generic bases.
+#[derive(Default)]
+pub(crate) struct Catalogue {
+    pub(crate) library: Library,
+    /// The five parameters.
+    pub(crate) parameters: Vec<Shape>,
+    /// Every cause with every choice of its discrete parameters.
+    pub(crate) candidates: Vec<Candidate>,
+    /// What any cause of a domain could look like. They measure the noise that no cause explains, and tell whether a
+    /// named cause has the shape it claims.
+    pub(crate) generic: BTreeMap<Domain, Vec<Shape>>,
+    /// All atoms of the generic bases.
+    pub(crate) broad: Vec<usize>,
+}
+
+impl Catalogue {
+    /// The catalogue for a recording.
+    pub(crate) fn new(context: &Context, with_motion: bool) -> Self {
+        let mut this = Self::default();
+        this.library.with_motion = with_motion;
+        angle::enter(context, &mut this);
+        code::enter(context, &mut this);
+        speed::enter(context, &mut this);
+        time::enter(context, &mut this);
+        revolution::enter(context, &mut this);
+        let shapes = this.generic.values().flatten().chain(&this.parameters);
+        this.broad = shapes.flat_map(|s| s.0.iter().map(|p| p.0)).collect();
+        this.broad.sort_unstable();
+        this.broad.dedup();
+        this
+    }
+
+    /// The basis of a domain; empty where it has none.
+    pub(crate) fn basis(&self, domain: Domain) -> &[Shape] {
+        // What depends on the code depends on the angle too.
+        let domain = if domain == Domain::Code {
+            Domain::Angle
+        } else {
+            domain
+        };
+        self.generic.get(&domain).map_or(&[], |list| list)
+    }
+
+    fn generic(&mut self, domain: Domain, shapes: impl IntoIterator<Item = Shape>) {
+        self.generic.entry(domain).or_default().extend(shapes);
+    }
+}
+
+/// Causes that are looked for where the residual shows something, with functions of their own.
+pub(crate) fn shown(
+    context: &Context,
+    residual: &Residual,
+    library: &mut Library,
+) -> Vec<Candidate> {
+    let mut list = line::candidates(context, residual, library);
+    list.extend(place::candidates(context, residual, library));
     list
 }
 
-pub(crate) use speed::varies as speed_varies;
-pub(crate) use time::polynomials;
+/// Functions of time, speed or temperature, each times waves of the angle up to the second order.
+fn modulated(
+    library: &mut Library,
+    count: usize,
+    modulations: impl Fn(&crate::block::Block, usize) -> Vec<f64> + 'static,
+) -> Place {
+    const TOP: usize = 2;
+    let per = 2 * TOP + 1;
+    library.add(
+        count * per,
+        Use::Both,
+        Rc::new(move |block, out| {
+            for (i, part) in out.chunks_mut(per * block.len()).enumerate() {
+                block.waves(TOP, Some(&modulations(block, i)), part);
+            }
+        }),
+    )
+}
+
+/// The modulations that [`modulated`] entered: shapes of them.
+#[derive(Clone, Copy)]
+struct Modulated(Place);
+
+impl Modulated {
+    fn shape(self, by: usize, parts: &[Trig; 2]) -> Shape {
+        self.0.waves(parts, by, 2)
+    }
+
+    /// Waves of an order along the radius and along the circle.
+    fn generic(self, by: usize, order: usize) -> Vec<Shape> {
+        let (zero, mut list) = (Trig::constant(0.0), vec![]);
+        let waves = if order == 0 {
+            vec![Trig::constant(1.0)]
+        } else {
+            vec![Trig::cos(order, 0.0), Trig::sin(order, 0.0)]
+        };
+        for wave in waves {
+            list.push(self.shape(by, &[wave.clone(), zero.clone()]));
+            list.push(self.shape(by, &[zero.clone(), wave]));
+        }
+        list
+    }
+}
+
+/// The five parameters: cos into c, 1 into c, sin into s, 1 into s, cos into s.
+fn parameters(angle: &Place) -> Vec<Shape> {
+    let (cos, sin) = (Trig::cos(1, 0.0), Trig::sin(1, 0.0));
+    let (one, zero) = (Trig::constant(1.0), Trig::constant(0.0));
+    [
+        [&cos, &zero],
+        [&one, &zero],
+        [&zero, &sin],
+        [&zero, &one],
+        [&zero, &cos],
+    ]
+    .map(|[c, s]| angle.waves(&rotated(c, s), 0, ORDERS))
+    .into()
+}

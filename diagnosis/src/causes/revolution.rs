@@ -1,111 +1,96 @@
-//! What repeats with the revolution: run-out, contamination, graduation, cogging.
+//! What repeats with the revolution: run-out, graduation.
 
 use std::f64::consts::TAU;
+use std::rc::Rc;
 
-use crate::cause::{Candidate, Domain, each, polar};
-use crate::column::Shape;
+use super::Catalogue;
+use crate::block::Block;
+use crate::cause::{Candidate, Domain, polar};
 use crate::context::Context;
 use crate::finding::{Chip, Parameter};
-use crate::model::Residual;
+use crate::library::{Shape, Use};
 
-/// Orders of the revolution that are tried for cogging.
-const ORDERS: u32 = 64;
-const PLACES: usize = 72;
+/// Orders of the revolution that a generic error has.
+const ORDERS: usize = 12;
 
-fn waves(phi: &[f64], order: f64) -> [Vec<f64>; 2] {
-    [
-        phi.iter().map(|p| (order * p).cos()).collect(),
-        phi.iter().map(|p| (order * p).sin()).collect(),
-    ]
+/// cos and sin of orders 1 … `top` of the revolution, one after the other.
+fn waves(block: &Block, top: usize, out: &mut [f64]) {
+    let Some(phi) = block.phi else { return };
+    let n = block.len();
+    for k in 0..n {
+        (out[n + k], out[k]) = phi[k].sin_cos();
+    }
+    for order in 1..top {
+        for k in 0..n {
+            let (c, s) = (out[k], out[n + k]);
+            let (last_c, last_s) = (out[(2 * order - 2) * n + k], out[(2 * order - 1) * n + k]);
+            out[2 * order * n + k] = last_c * c - last_s * s;
+            out[(2 * order + 1) * n + k] = last_s * c + last_c * s;
+        }
+    }
 }
 
-pub(crate) fn candidates(context: &Context, residual: &Residual) -> Vec<Candidate> {
-    let Some(phi) = &context.phi else {
-        return vec![];
-    };
-    let per = context.periods_per_revolution.unwrap_or(1);
-    let travelled = {
-        let ends = phi
-            .iter()
-            .fold((f64::MAX, f64::MIN), |(a, b), p| (a.min(*p), b.max(*p)));
-        (ends.1 - ends.0) / TAU
-    };
-    let (cos, sin) = (&context.cos, &context.sin);
-    let mut list = vec![];
-    if travelled < 0.9 {
-        return list;
+/// Revolutions between the ends of the motion.
+pub(super) fn turns(phi: &[f64]) -> f64 {
+    let ends = phi
+        .iter()
+        .fold((f64::MAX, f64::MIN), |(a, b), p| (a.min(*p), b.max(*p)));
+    (ends.1 - ends.0) / TAU
+}
+
+pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
+    let Some(phi) = &context.phi else { return };
+    let against = context.against_reference.is_some();
+    let way = if against { Use::Both } else { Use::Radial };
+    let place = catalogue.library.add(
+        2 * ORDERS,
+        way,
+        Rc::new(|block, out| waves(block, ORDERS, out)),
+    );
+    let all = (0..2 * ORDERS).flat_map(|i| [place.radial(i), place.tangential(i)]);
+    catalogue.generic(Domain::Revolution, all.filter(|s| !s.0.is_empty()));
+    if turns(phi) < 0.9 {
+        return;
     }
+    let list = &mut catalogue.candidates;
     for order in 1..=3u32 {
-        let shapes = waves(phi, order.into()).map(|w| Shape::radial(&w, cos, sin));
+        let first = 2 * order as usize - 2;
+        let shapes: Vec<Shape> = [first, first + 1].map(|i| place.radial(i)).into();
         list.push(Candidate {
             name: "runout",
             domain: Domain::Revolution,
             trials: 3.0,
-            shapes: shapes.into(),
+            shapes,
             motion: false,
             refine: None,
             positive: false,
             chip: Chip::CannotCorrect,
             parameters: harmonic(order, "depth", "1"),
-            evidence: Box::new(move |p| format!("the amplitude of both channels changes {order} time(s) per revolution, by {:.3} %", p[1].value * 100.0)),
+            evidence: Rc::new(move |p| format!("the amplitude of both channels changes {order} time(s) per revolution, by {:.3} %", p[1].value * 100.0)),
         });
     }
-    if context.against_reference.is_some() {
-        for order in 1..=12u32 {
-            let shapes = waves(phi, order.into()).map(|w| Shape::tangential(&w, cos, sin));
+    if against {
+        for order in 1..=ORDERS as u32 {
+            let first = 2 * order as usize - 2;
+            let shapes: Vec<Shape> = [first, first + 1].map(|i| place.tangential(i)).into();
             list.push(Candidate {
                 name: "graduation_error",
                 domain: Domain::Revolution,
-                trials: 12.0,
-                shapes: shapes.into(),
+                trials: ORDERS as f64,
+                shapes,
                 motion: false,
                 refine: None,
                 positive: false,
                 chip: Chip::CannotCorrect,
                 parameters: harmonic(order, "amplitude", "rad"),
-                evidence: Box::new(move |p| format!("against the reference the angle is off by {:.3e} rad of a scale period, {order} time(s) per revolution", p[1].value)),
+                evidence: Rc::new(move |p| format!("against the reference the angle is off by {:.3e} rad of a scale period, {order} time(s) per revolution", p[1].value)),
             });
         }
     }
-    list.extend(contamination(context, phi, residual));
-    // Real motion; multiples of the scale period could be the sensor's.
-    let best = (1..=ORDERS)
-        .filter(|order| order % per != 0)
-        .map(|order| {
-            let [c, s] = waves(phi, order.into());
-            let along = |w: &[f64]| {
-                w.iter()
-                    .zip(&residual.motion)
-                    .map(|(a, b)| a * b)
-                    .sum::<f64>()
-            };
-            let norm = |w: &[f64]| w.iter().map(|a| a * a).sum::<f64>();
-            (
-                along(&c).powi(2) / norm(&c) + along(&s).powi(2) / norm(&s).max(1e-9),
-                order,
-            )
-        })
-        .max_by(|a, b| a.0.total_cmp(&b.0));
-    if let Some((_, order)) = best {
-        let shapes = waves(phi, order.into()).map(|w| Shape::tangential(&w, cos, sin));
-        list.push(Candidate {
-            name: "cogging",
-            domain: Domain::Motion,
-            trials: f64::from(ORDERS),
-            shapes: shapes.into(),
-            motion: true,
-            refine: None,
-            positive: false,
-            chip: Chip::NotASensorError,
-            parameters: harmonic(order, "amplitude", "rad"),
-            evidence: Box::new(move |p| format!("the axis really moves unevenly, {order} times per revolution by {:.3e} rad of a scale period, without any change of the radius", p[1].value)),
-        });
-    }
-    list
 }
 
-fn harmonic(order: u32, name: &'static str, unit: &'static str) -> crate::cause::Reads {
-    Box::new(move |e| {
+pub(super) fn harmonic(order: u32, name: &'static str, unit: &'static str) -> crate::cause::Reads {
+    Rc::new(move |e| {
         let (a, d, p, ep) = polar(e.x, e.error);
         vec![
             Parameter::exact("order", f64::from(order), "1"),
@@ -113,69 +98,4 @@ fn harmonic(order: u32, name: &'static str, unit: &'static str) -> crate::cause:
             Parameter::measured("phase", p, ep, "rad"),
         ]
     })
-}
-
-/// A dip of the amplitude at one place, every revolution.
-fn contamination(context: &Context, phi: &[f64], residual: &Residual) -> Vec<Candidate> {
-    let place = |p: f64| ((p.rem_euclid(TAU) / TAU * PLACES as f64) as usize).min(PLACES - 1);
-    let (mut sum, mut count) = (vec![0.0; PLACES], vec![0.0; PLACES]);
-    for (p, r) in phi.iter().zip(&residual.radial) {
-        sum[place(*p)] += r;
-        count[place(*p)] += 1.0;
-    }
-    let mean: Vec<f64> = sum
-        .iter()
-        .zip(&count)
-        .map(|(s, c): (&f64, &f64)| s / c.max(1.0))
-        .collect();
-    let Some(lowest) = (0..PLACES).min_by(|a, b| mean[*a].total_cmp(&mean[*b])) else {
-        return vec![];
-    };
-    let mut list = vec![];
-    for shift in [-0.5, 0.0, 0.5] {
-        for width in [0.02, 0.04, 0.08, 0.16, 0.3] {
-            let centre = (lowest as f64 + 0.5 + shift) / PLACES as f64 * TAU;
-            let dip: Vec<f64> = phi
-                .iter()
-                .map(|p| {
-                    let off = (p - centre + TAU / 2.0).rem_euclid(TAU) - TAU / 2.0;
-                    -(-0.5 * (off / width).powi(2)).exp()
-                })
-                .collect();
-            list.push(Candidate {
-                name: "contamination",
-                domain: Domain::Revolution,
-                trials: PLACES as f64 * 5.0,
-                shapes: vec![Shape::radial(&dip, &context.cos, &context.sin)],
-                motion: false,
-                refine: None,
-                positive: true,
-                chip: Chip::CannotCorrect,
-                parameters: Box::new(move |e| {
-                    let mut all = each(&["depth"], "1")(e);
-                    all.push(Parameter::measured(
-                        "place",
-                        centre,
-                        width * e.error[0] / e.x[0].abs().max(1e-12),
-                        "rad",
-                    ));
-                    all.push(Parameter::measured(
-                        "width",
-                        width,
-                        width * e.error[0] / e.x[0].abs().max(1e-12),
-                        "rad",
-                    ));
-                    all
-                }),
-                evidence: Box::new(|p| {
-                    format!(
-                        "the amplitude dips by {:.3} % at {:.3} rad of the revolution, every time",
-                        p[0].value * 100.0,
-                        p[1].value
-                    )
-                }),
-            });
-        }
-    }
-    list
 }

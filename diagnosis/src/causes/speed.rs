@@ -1,9 +1,15 @@
 //! Errors that grow with speed: delays, bandwidths, hysteresis.
 
-use crate::cause::{Candidate, Domain, channel, derivatives, each, normalised, raw};
-use crate::column::Shape;
+use std::cell::RefCell;
+use std::rc::Rc;
+
+use super::{Catalogue, Modulated, modulated};
+use crate::block::Block;
+use crate::cause::{Candidate, Domain, each};
 use crate::context::Context;
 use crate::finding::{Chip, Parameter};
+use crate::library::Shape;
+use crate::trig::{Trig, channel, derivatives};
 
 /// Share of the speed that has to change for its effects to be told from a phase error.
 const CHANGE: f64 = 0.02;
@@ -31,22 +37,48 @@ fn reverses(context: &Context) -> bool {
 }
 
 /// What a first-order low pass of time constant `tau` takes from a channel, over `tau`.
-fn low_pass(context: &Context, which: usize, tau: f64) -> Vec<f64> {
-    let (u, slope) = (normalised(context), derivatives(context));
-    (0..context.samples())
+fn low_pass(block: &Block, which: usize, tau: f64) -> Vec<f64> {
+    let (u, slope) = (block.u[which], block.slope[which]);
+    (0..block.len())
         .map(|k| {
-            let w = context.speed[k] * tau;
-            let lost = -w * slope[which][k] - w * w * u[which][k];
+            let w = block.speed[k] * tau;
+            let lost = -w * slope[k] - w * w * u[k];
             lost / (1.0 + w * w) / tau
         })
         .collect()
 }
 
-pub(crate) fn candidates(context: &Context) -> Vec<Candidate> {
-    let mut list = vec![];
-    let v = &context.speed;
-    let slope = derivatives(context);
-    let times = |f: &[f64]| -> Vec<f64> { f.iter().zip(v).map(|(f, v)| f * v).collect() };
+/// Numbers of the modulations.
+const ODD: usize = 0;
+const EVEN: usize = 1;
+const SIGN: usize = 2;
+
+pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
+    let beta = context.ellipse.beta;
+    let top = context
+        .speed
+        .iter()
+        .fold(f64::MIN_POSITIVE, |m, v| m.max(v.abs()));
+    let speed = Modulated(modulated(&mut catalogue.library, 3, move |block, which| {
+        let by = |f: fn(f64) -> f64| block.speed.iter().map(|v| f(v / top)).collect();
+        match which {
+            ODD => by(|v| v),
+            EVEN => by(|v| v * v),
+            _ => by(f64::signum),
+        }
+    }));
+    if varies(context) {
+        let orders = [ODD, EVEN, SIGN]
+            .into_iter()
+            .flat_map(|by| (0..=2).flat_map(move |order| speed.generic(by, order)));
+        catalogue.generic(Domain::Speed, orders);
+    }
+    let (zero, one_) = (Trig::constant(0.0), Trig::constant(1.0));
+    let scaled = |shape: Shape, by: f64| Shape(shape.0.iter().map(|(i, x)| (*i, x * by)).collect());
+    // The speed times a change of one channel.
+    let times =
+        |which: usize, change: &Trig| scaled(speed.shape(ODD, &channel(beta, which, change)), top);
+    let slope = derivatives(beta);
     let one = |name,
                shape: Shape,
                parameter: &'static [&'static str],
@@ -63,15 +95,14 @@ pub(crate) fn candidates(context: &Context) -> Vec<Candidate> {
         positive,
         chip,
         parameters: each(parameter, unit),
-        evidence: Box::new(move |p| say(p[0].value)),
+        evidence: Rc::new(move |p| say(p[0].value)),
     };
-    if let Some(reference) = &context.against_reference {
-        let _ = reference;
+    let list = &mut catalogue.candidates;
+    if context.against_reference.is_some() {
         // Late by d: the angle shown is that of d before.
-        let late: Vec<f64> = v.iter().map(|v| -v).collect();
         list.push(one(
             "latency",
-            Shape::tangential(&late, &context.cos, &context.sin),
+            scaled(speed.shape(ODD, &[zero.clone(), one_.clone()]), -top),
             &["delay_s"],
             "s",
             Chip::Corrects,
@@ -87,7 +118,7 @@ pub(crate) fn candidates(context: &Context) -> Vec<Candidate> {
     if varies(context) {
         list.push(one(
             "channel_skew",
-            channel(context, 1, times(&slope[1])),
+            times(1, &slope[1]),
             &["delay_s"],
             "s",
             Chip::CannotCorrect,
@@ -99,14 +130,16 @@ pub(crate) fn candidates(context: &Context) -> Vec<Candidate> {
                 )
             },
         ));
-        let top = v.iter().fold(f64::MIN_POSITIVE, |m, v| m.max(v.abs()));
         for which in [0, 1] {
             for reach in [0.003, 0.02, 0.1, 0.4, 1.0] {
                 let tau = reach / top;
                 let name: [&'static [&'static str]; 2] = [&["tau_cos_s"], &["tau_sin_s"]];
+                let shape = catalogue.library.pair(move |block: &Block, c, s| {
+                    block.channel(which, &low_pass(block, which, tau), c, s);
+                });
                 let mut candidate = one(
                     "bandwidth_mismatch",
-                    channel(context, which, low_pass(context, which, tau)),
+                    shape,
                     name[which],
                     "s",
                     Chip::CannotCorrect,
@@ -119,21 +152,23 @@ pub(crate) fn candidates(context: &Context) -> Vec<Candidate> {
                     },
                 );
                 candidate.trials = 10.0;
-                candidate.refine = Some(Box::new(move |context, x| {
-                    vec![channel(context, which, low_pass(context, which, x[0]))]
-                }));
+                candidate.refine = Some(Rc::new(
+                    move |block: &Block, inner: &[f64], c: &mut [f64], s: &mut [f64]| {
+                        block.channel(which, &low_pass(block, which, inner[0]), c, s);
+                    },
+                ));
                 list.push(candidate);
             }
         }
-        let falls: Vec<f64> = v.iter().map(|v| -0.5 * v * v).collect();
+        let falls = scaled(speed.shape(EVEN, &[one_, zero]), -0.5 * top * top);
         list.push(Candidate {
-            parameters: Box::new(|e| {
+            parameters: Rc::new(|e| {
                 let tau = e.x[0].max(0.0).sqrt();
                 vec![Parameter::measured("tau_s", tau, e.error[0] / (2.0 * tau).max(f64::MIN_POSITIVE), "s")]
             }),
             ..one(
                 "common_bandwidth",
-                Shape::radial(&falls, &context.cos, &context.sin),
+                falls,
                 &["tau_s"],
                 "s",
                 Chip::CannotCorrect,
@@ -142,64 +177,75 @@ pub(crate) fn candidates(context: &Context) -> Vec<Candidate> {
             )
         });
         list.push(Candidate {
-            shapes: vec![channel(context, 0, times(&slope[1])), channel(context, 1, times(&slope[0]))],
-            parameters: Box::new(|e| {
+            shapes: vec![times(0, &slope[1]), times(1, &slope[0])],
+            parameters: Rc::new(|e| {
                 vec![
                     Parameter::measured("product_into_cos_s", -e.x[0], e.error[0], "s"),
                     Parameter::measured("product_into_sin_s", -e.x[1], e.error[1], "s"),
                 ]
             }),
-            evidence: Box::new(|p| {
+            evidence: Rc::new(|p| {
                 format!("a part of the other channel arrives delayed: fraction times delay {:.3e} s into cos, {:.3e} s into sin", p[0].value, p[1].value)
             }),
-            ..one("delayed_crosstalk", Shape::zero(0), &["product"], "s", Chip::CannotCorrect, false, |_| String::new())
+            ..one("delayed_crosstalk", Shape::default(), &["product"], "s", Chip::CannotCorrect, false, |_| String::new())
         });
     }
     if reverses(context) {
-        let sign: Vec<f64> = v.iter().map(|v| v.signum()).collect();
         list.push(Candidate {
-            shapes: vec![channel(context, 0, sign.clone()), channel(context, 1, sign)],
+            shapes: [0, 1]
+                .map(|which| speed.shape(SIGN, &channel(beta, which, &Trig::constant(1.0))))
+                .into(),
             parameters: each(&["offset_cos", "offset_sin"], "amplitude"),
-            evidence: Box::new(|p| {
+            evidence: Rc::new(|p| {
                 format!("the offsets change with the direction of motion by {:.4} % (cos) and {:.4} % (sin) of the amplitude", p[0].value * 200.0, p[1].value * 200.0)
             }),
-            ..one("hysteresis", Shape::zero(0), &["offset"], "amplitude", Chip::CannotCorrect, false, |_| String::new())
+            ..one("hysteresis", Shape::default(), &["offset"], "amplitude", Chip::CannotCorrect, false, |_| String::new())
         });
     }
-    list.extend(ac_coupling(context));
-    list
+    ac_coupling(context, catalogue);
+}
+
+/// The slow part of a channel, block after block.
+fn slow(block: &Block, which: usize, rate: f64, state: &RefCell<(usize, f64)>) -> Vec<f64> {
+    let mut state = state.borrow_mut();
+    if block.start != state.0 {
+        *state = (block.start, 0.0);
+    }
+    let mut now = state.1;
+    let values = block.u[which]
+        .iter()
+        .map(|v| {
+            now += rate * (v - now);
+            -now
+        })
+        .collect();
+    *state = (block.start + block.len(), now);
+    values
 }
 
 /// A first-order high pass takes the slow part of the signals away.
-fn ac_coupling(context: &Context) -> Vec<Candidate> {
-    let u = normalised(context);
+fn ac_coupling(context: &Context, catalogue: &mut Catalogue) {
     let duration = context.samples() as f64 / context.rate;
-    let mut list = vec![];
     let mut corner = 0.3 / duration;
     let corners = (context.rate / 30.0 / corner).log(3.0).floor().max(1.0);
     while corner < context.rate / 30.0 {
         let rate = (std::f64::consts::TAU * corner / context.rate).min(0.5);
-        let slow = |which: usize| -> Vec<f64> {
-            let mut state = 0.0;
-            u[which]
-                .iter()
-                .map(|v| {
-                    state += rate * (v - state);
-                    -state
-                })
-                .collect()
-        };
+        let states: [RefCell<(usize, f64)>; 2] = Default::default();
+        let shape = catalogue.library.pair(move |block: &Block, c, s| {
+            let [cos, sin] = [0, 1].map(|which| slow(block, which, rate, &states[which]));
+            block.raw(&cos, &sin, c, s);
+        });
         let now = corner;
-        list.push(Candidate {
+        catalogue.candidates.push(Candidate {
             name: "ac_coupling",
             domain: Domain::Speed,
             trials: corners,
-            shapes: vec![raw(context, slow(0), slow(1))],
+            shapes: vec![shape],
             motion: false,
             refine: None,
             positive: true,
             chip: Chip::CannotCorrect,
-            parameters: Box::new(move |e| {
+            parameters: Rc::new(move |e| {
                 vec![Parameter::measured(
                     "corner_hz",
                     e.x[0] * now,
@@ -207,7 +253,7 @@ fn ac_coupling(context: &Context) -> Vec<Candidate> {
                     "Hz",
                 )]
             }),
-            evidence: Box::new(|p| {
+            evidence: Rc::new(|p| {
                 format!(
                     "slow parts of the signals are missing, as behind a high pass of {:.3e} Hz",
                     p[0].value
@@ -216,5 +262,4 @@ fn ac_coupling(context: &Context) -> Vec<Candidate> {
         });
         corner *= 3.0;
     }
-    list
 }

@@ -1,66 +1,82 @@
 //! Slow changes, in time or with temperature.
 
-use crate::cause::{Candidate, Domain, channel, normalised};
+use std::rc::Rc;
+
+use super::{Catalogue, Modulated, modulated};
+use crate::cause::{Candidate, Domain};
 use crate::context::Context;
 use crate::finding::{Chip, Parameter};
+use crate::library::Shape;
+use crate::trig::{Trig, channel, normalised};
 
-/// Legendre polynomials of the time, −1 … 1 over the recording, from the first degree on.
-pub(crate) fn polynomials(context: &Context, degree: usize) -> Vec<Vec<f64>> {
+/// Highest degree of a polynomial of the time.
+const DEGREE: usize = 6;
+
+/// Legendre polynomial of a time from −1 to 1.
+fn legendre(degree: usize, x: f64) -> f64 {
+    let (mut before, mut now) = (1.0, x);
+    for n in 1..degree {
+        let m = n as f64;
+        (before, now) = (now, ((2.0 * m + 1.0) * x * now - m * before) / (m + 1.0));
+    }
+    now
+}
+
+pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
+    let beta = context.ellipse.beta;
     let last = context
         .time
         .last()
         .copied()
         .unwrap_or(1.0)
         .max(f64::MIN_POSITIVE);
-    let x: Vec<f64> = context.time.iter().map(|t| 2.0 * t / last - 1.0).collect();
-    let mut all = vec![vec![1.0; x.len()], x.clone()];
-    for n in 1..degree {
-        let next = (0..x.len())
-            .map(|k| {
-                let (n, before, now) = (n as f64, all[all.len() - 2][k], all[all.len() - 1][k]);
-                ((2.0 * n + 1.0) * x[k] * now - n * before) / (n + 1.0)
-            })
-            .collect();
-        all.push(next);
+    let time = Modulated(modulated(
+        &mut catalogue.library,
+        DEGREE,
+        move |block, i| {
+            let at = |t: &f64| legendre(i + 1, 2.0 * t / last - 1.0);
+            block.time.iter().map(at).collect()
+        },
+    ));
+    for by in 0..DEGREE {
+        // Along the circle and free of the angle it is motion.
+        let mut orders = time.generic(by, 0);
+        orders.truncate(1);
+        orders.extend((1..=2).flat_map(|order| time.generic(by, order)));
+        catalogue.generic(Domain::Time, orders);
     }
-    all.remove(0);
-    all.truncate(degree);
-    all
-}
-
-pub(crate) fn candidates(context: &Context) -> Vec<Candidate> {
-    let u = normalised(context);
     // Over a period or two, time and angle are one, and a polynomial of time is any shape of the angle.
     let way: f64 = context.speed.iter().map(|v| v.abs()).sum();
     let periods = way / context.rate / std::f64::consts::TAU;
-    let mut drivers: Vec<(&'static str, Vec<Vec<f64>>)> = [1, 3, 6]
+    let mut drivers: Vec<(&'static str, Modulated, usize)> = [1, 3, DEGREE]
         .into_iter()
         .filter(|degree| periods >= 3.0 * *degree as f64)
-        .map(|degree| ("time", polynomials(context, degree)))
+        .map(|degree| ("time", time, degree))
         .collect();
     if drivers.is_empty() {
-        return vec![];
+        return;
     }
-    if let Some(temperature) = &context.temperature {
-        drivers.push(("temperature", vec![temperature.clone()]));
+    if context.temperature.is_some() {
+        let temperature = modulated(&mut catalogue.library, 1, |block, _| {
+            block.temperature.map_or_else(Vec::new, <[f64]>::to_vec)
+        });
+        drivers.push(("temperature", Modulated(temperature), 1));
     }
     let trials = drivers.len() as f64;
-    let mut list = vec![];
-    for (driver, shapes) in drivers {
+    for (driver, modulations, per) in drivers {
         for gain in [false, true] {
-            let mut all = vec![];
-            for which in [0, 1] {
-                for shape in &shapes {
+            let all: Vec<Shape> = (0..2)
+                .flat_map(|which| {
                     let change = if gain {
-                        shape.iter().zip(&u[which]).map(|(s, u)| s * u).collect()
+                        normalised(beta)[which].clone()
                     } else {
-                        shape.clone()
+                        Trig::constant(1.0)
                     };
-                    all.push(channel(context, which, change));
-                }
-            }
-            let per = shapes.len();
-            list.push(Candidate {
+                    let parts = channel(beta, which, &change);
+                    (0..per).map(move |by| modulations.shape(by, &parts))
+                })
+                .collect();
+            catalogue.candidates.push(Candidate {
                 name: if gain { "gain_drift" } else { "offset_drift" },
                 domain: Domain::Time,
                 trials,
@@ -69,7 +85,7 @@ pub(crate) fn candidates(context: &Context) -> Vec<Candidate> {
                 refine: None,
                 positive: false,
                 chip: Chip::Corrects,
-                parameters: Box::new(move |e| {
+                parameters: Rc::new(move |e| {
                     // From one end of the recording to the other: twice the odd polynomials.
                     let total = |from: usize| {
                         let odd = (0..per).step_by(2).map(|i| from + i);
@@ -83,12 +99,11 @@ pub(crate) fn candidates(context: &Context) -> Vec<Candidate> {
                         Parameter::measured("change_sin", s, ds, "amplitude"),
                     ]
                 }),
-                evidence: Box::new(move |p| {
+                evidence: Rc::new(move |p| {
                     let what = if gain { "gains" } else { "offsets" };
                     format!("the {what} drift with {driver}, by {:.3} % (cos) and {:.3} % (sin) of the amplitude from one end to the other", p[0].value * 100.0, p[1].value * 100.0)
                 }),
             });
         }
     }
-    list
 }

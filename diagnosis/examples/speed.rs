@@ -1,0 +1,108 @@
+//! Measures how long a diagnosis takes, and writes `diagnosis-speed.md`.
+//!
+//! `cargo run --release -p nonius-diagnosis --example speed -- docs`
+
+use std::f64::consts::TAU;
+use std::fmt::Write;
+use std::path::Path;
+use std::time::Instant;
+
+use nonius_diagnosis::diagnose;
+use nonius_recording::{Overrides, Recording};
+use rand::{SeedableRng, rngs::StdRng};
+use rand_distr::{Distribution, StandardNormal};
+
+/// What is hidden in a recording.
+#[derive(Clone, Copy, PartialEq)]
+enum Hidden {
+    Nothing,
+    /// A third harmonic and a line.
+    Two,
+}
+
+/// A reversing motion at 50 kHz, noise of 0.1 %, 14 bits.
+fn recording(samples: usize, hidden: Hidden) -> Recording {
+    const RATE: f64 = 50e3;
+    const NOISE: f64 = 0.001;
+    let mut random = StdRng::seed_from_u64(samples as u64);
+    let mut normal = || -> f64 { StandardNormal.sample(&mut random) };
+    let lsb = 2.0 / f64::from(1 << 14);
+    let code = |v: f64| (v / lsb).round() * lsb;
+    let [mut time, mut cos, mut sin] = [vec![], vec![], vec![]];
+    let some = if hidden == Hidden::Two { 1.0 } else { 0.0 };
+    for k in 0..samples {
+        let t = k as f64 / RATE;
+        let alpha = 15.0 * TAU * (TAU * 5.0 * t + 0.3).sin() + 12.0 * TAU * t;
+        let hum = 0.001 * some * (TAU * 150.0 * t).cos();
+        let bend = 0.002 * some * (3.0 * alpha).cos();
+        let c = alpha.cos() + bend + hum + NOISE * normal();
+        let s = (alpha - 0.03).sin() - bend + 0.5 * hum + NOISE * normal();
+        time.push(t);
+        cos.push(code(0.8 * c + 0.02));
+        sin.push(code(0.75 * s - 0.01));
+    }
+    let described = Overrides {
+        adc_bits: Some(14),
+        full_scale: Some(1.0),
+        periods_per_revolution: Some(32),
+        ..Overrides::default()
+    };
+    Recording::from_samples(time, cos, sin, &described).expect("a usable recording")
+}
+
+/// The most memory this process ever held, in megabytes, where the system tells.
+fn peak_megabytes() -> Option<f64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find(|l| l.starts_with("VmHWM:"))?;
+    let kilobytes: f64 = line.split_whitespace().nth(1)?.parse().ok()?;
+    Some(kilobytes / 1024.0)
+}
+
+fn main() {
+    let mut arguments = std::env::args().skip(1);
+    let folder = arguments.next().unwrap_or_else(|| "docs".into());
+    let sizes: Vec<usize> = arguments.filter_map(|a| a.parse().ok()).collect();
+    let sizes = if sizes.is_empty() {
+        vec![100_000, 1_000_000]
+    } else {
+        sizes
+    };
+    let mut text = String::from(
+        "# Speed of the diagnosis\n\n\
+         Written by `cargo run --release -p nonius-diagnosis --example speed -- docs`; do not edit. One core; reversing motion,\n\
+         14 bits, noise of 0.1 %, without reference, 32 periods per revolution. Time from the recording in memory to findings\n\
+         and positions; memory is the most that the process ever held, recording included. Other work on the machine makes\n\
+         every line longer.\n\n\
+         | samples | hidden | found | seconds | megabytes |\n|---|---|---|---|---|\n",
+    );
+    for samples in sizes {
+        for (hidden, what) in [
+            (Hidden::Nothing, "nothing"),
+            (Hidden::Two, "third harmonic and line"),
+        ] {
+            let recording = recording(samples, hidden);
+            let start = Instant::now();
+            let found = diagnose(&recording).expect("an ellipse");
+            let seconds = start.elapsed().as_secs_f64();
+            let mut names: Vec<&str> = found.findings.iter().map(|f| f.cause.as_str()).collect();
+            if found.unexplained.significant {
+                names.push("unexplained");
+            }
+            if names.is_empty() {
+                names.push("nothing");
+            }
+            let memory = peak_megabytes().map_or("unknown".into(), |m| format!("{m:.0}"));
+            let row = format!(
+                "| {samples} | {what} | {} | {seconds:.2} | {memory} |",
+                names.join(", ")
+            );
+            println!("{row}");
+            let _ = writeln!(text, "{row}");
+        }
+    }
+    let target = Path::new(&folder).join("diagnosis-speed.md");
+    let fresh = Path::new(&folder).join(".diagnosis-speed.md.new");
+    std::fs::write(&fresh, text)
+        .and_then(|()| std::fs::rename(&fresh, &target))
+        .expect("the folder for the page");
+}

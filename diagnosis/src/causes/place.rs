@@ -1,0 +1,163 @@
+//! What is looked for where the revolution shows it: contamination at one place, cogging of one order.
+
+use std::f64::consts::TAU;
+use std::rc::Rc;
+
+use super::revolution::{harmonic, turns};
+use crate::block::Block;
+use crate::cause::{Candidate, Domain, each};
+use crate::context::Context;
+use crate::finding::{Chip, Parameter};
+use crate::library::{Library, Shape, Use};
+use crate::model::Residual;
+
+/// Orders of the revolution that are tried for cogging.
+const ORDERS: usize = 64;
+const PLACES: usize = 72;
+/// Widths of a dip that are tried, radians.
+const WIDTHS: [f64; 5] = [0.02, 0.04, 0.08, 0.16, 0.3];
+
+pub(crate) fn candidates(
+    context: &Context,
+    residual: &Residual,
+    library: &mut Library,
+) -> Vec<Candidate> {
+    let Some(phi) = context.phi.as_ref().filter(|phi| turns(phi) >= 0.9) else {
+        return vec![];
+    };
+    let mut list = contamination(phi, residual, library);
+    list.extend(cogging(context, phi, residual, library));
+    list
+}
+
+/// Sums of values times exp(−i order φ), for orders 0 … `ORDERS` of the revolution: cos parts, then sin parts.
+pub(crate) fn orders(phi: &[f64], values: &[f64]) -> Vec<[f64; 2]> {
+    /// Samples that are turned together.
+    const TOGETHER: usize = 256;
+    let mut sums = vec![[0.0; 2]; ORDERS + 1];
+    for (phi, values) in phi.chunks(TOGETHER).zip(values.chunks(TOGETHER)) {
+        let turn: Vec<(f64, f64)> = phi.iter().map(|p| p.sin_cos()).collect();
+        let (mut c, mut s) = (values.to_vec(), vec![0.0; values.len()]);
+        for sum in &mut sums {
+            sum[0] += c.iter().sum::<f64>();
+            sum[1] += s.iter().sum::<f64>();
+            for ((c, s), (sin, cos)) in c.iter_mut().zip(&mut s).zip(&turn) {
+                (*c, *s) = (*c * cos - *s * sin, *s * cos + *c * sin);
+            }
+        }
+    }
+    sums
+}
+
+/// Real motion; multiples of the scale period could be the sensor's.
+fn cogging(
+    context: &Context,
+    phi: &[f64],
+    residual: &Residual,
+    library: &mut Library,
+) -> Option<Candidate> {
+    let per = context.periods_per_revolution.unwrap_or(1) as usize;
+    let sums = orders(phi, residual.fast());
+    let power = |order: &usize| sums[*order][0].powi(2) + sums[*order][1].powi(2);
+    let order = (1..=ORDERS)
+        .filter(|order| order % per != 0)
+        .max_by(|a, b| power(a).total_cmp(&power(b)))?;
+    let place = library.add(
+        2,
+        Use::Motion,
+        Rc::new(move |block, out| {
+            let n = block.len();
+            for (k, phi) in block.phi.unwrap_or_default().iter().enumerate() {
+                (out[n + k], out[k]) = (order as f64 * phi).sin_cos();
+            }
+        }),
+    );
+    let shapes: Vec<Shape> = [0, 1].map(|i| place.tangential(i)).into();
+    let order = order as u32;
+    Some(Candidate {
+        name: "cogging",
+        domain: Domain::Motion,
+        trials: ORDERS as f64,
+        shapes,
+        motion: true,
+        refine: None,
+        positive: false,
+        chip: Chip::NotASensorError,
+        parameters: harmonic(order, "amplitude", "rad"),
+        evidence: Rc::new(move |p| {
+            format!(
+                "the axis really moves unevenly, {order} times per revolution by {:.3e} rad of a scale period, without any change of the radius",
+                p[1].value
+            )
+        }),
+    })
+}
+
+/// A dip of the amplitude at one place, every revolution.
+fn contamination(phi: &[f64], residual: &Residual, library: &mut Library) -> Vec<Candidate> {
+    let place = |p: f64| ((p.rem_euclid(TAU) / TAU * PLACES as f64) as usize).min(PLACES - 1);
+    let (mut sum, mut count) = (vec![0.0; PLACES], vec![0.0; PLACES]);
+    for (p, r) in phi.iter().zip(&residual.radial) {
+        sum[place(*p)] += r;
+        count[place(*p)] += 1.0;
+    }
+    let mean: Vec<f64> = sum
+        .iter()
+        .zip(&count)
+        .map(|(s, c): (&f64, &f64)| s / c.max(1.0))
+        .collect();
+    let Some(lowest) = (0..PLACES).min_by(|a, b| mean[*a].total_cmp(&mean[*b])) else {
+        return vec![];
+    };
+    let mut list = vec![];
+    for shift in [-0.5, 0.0, 0.5] {
+        for width in WIDTHS {
+            let centre = (lowest as f64 + 0.5 + shift) / PLACES as f64 * TAU;
+            let place = library.add(
+                1,
+                Use::Radial,
+                Rc::new(move |block: &Block, out: &mut [f64]| {
+                    for (o, p) in out.iter_mut().zip(block.phi.unwrap_or_default()) {
+                        let off = (p - centre + TAU / 2.0).rem_euclid(TAU) - TAU / 2.0;
+                        let x = 0.5 * (off / width).powi(2);
+                        *o = if x < 40.0 { -(-x).exp() } else { 0.0 };
+                    }
+                }),
+            );
+            list.push(Candidate {
+                name: "contamination",
+                domain: Domain::Revolution,
+                trials: PLACES as f64 * 5.0,
+                shapes: vec![place.radial(0)],
+                motion: false,
+                refine: None,
+                positive: true,
+                chip: Chip::CannotCorrect,
+                parameters: Rc::new(move |e| {
+                    let mut all = each(&["depth"], "1")(e);
+                    all.push(Parameter::measured(
+                        "place",
+                        centre,
+                        width * e.error[0] / e.x[0].abs().max(1e-12),
+                        "rad",
+                    ));
+                    all.push(Parameter::measured(
+                        "width",
+                        width,
+                        width * e.error[0] / e.x[0].abs().max(1e-12),
+                        "rad",
+                    ));
+                    all
+                }),
+                evidence: Rc::new(|p| {
+                    format!(
+                        "the amplitude dips by {:.3} % at {:.3} rad of the revolution, every time",
+                        p[0].value * 100.0,
+                        p[1].value
+                    )
+                }),
+            });
+        }
+    }
+    list
+}
