@@ -84,6 +84,7 @@ pub struct Update<S: Signal> {
 
 /// The parameter accumulators after this sample, all but θ9. `whole_period`: a period of travel ends. `PLAIN` as
 /// [`Structure::is_plain`].
+#[inline(always)]
 pub fn update<S: Signal, const PLAIN: bool>(
     seen: &Seen<S>,
     fresh: S::Bool,
