@@ -6,7 +6,6 @@ use anyhow::{Context, Result};
 use clap::Args;
 use nonius_model::design::Design;
 use nonius_package::{DesignJson, package_with, write};
-use nonius_recording::Recording;
 use nonius_testvectors::stimulus;
 
 use crate::play;
@@ -26,6 +25,9 @@ pub(crate) struct Build {
     /// A recording (CSV) to play into the Verilog too, besides the named stimuli; its waves are written.
     #[arg(long, value_name = "RECORDING")]
     play: Option<PathBuf>,
+    /// A simulated sensor (sensor.toml of `nonius diagnose`) to play into the Verilog, likewise.
+    #[arg(long, value_name = "SENSOR", conflicts_with = "play")]
+    sensor: Option<PathBuf>,
     /// Plays a recording of whole turns so many times.
     #[arg(long, value_name = "N", default_value_t = 1, requires = "play", value_parser = clap::value_parser!(u32).range(1..))]
     repeat: u32,
@@ -38,16 +40,18 @@ pub(crate) fn run(args: &Build) -> Result<()> {
     let design =
         Design::new(&spec).with_context(|| format!("{} cannot work", args.design.display()))?;
     let mut stimuli = stimulus::named(&design, ROWS);
-    if let Some(path) = &args.play {
-        let recording = Recording::read(path, &args.recording_args.overrides())?;
-        play::check(&spec, &recording, path, args.repeat)?;
-        stimuli.push(play::stimulus(&spec, &recording, args.repeat));
-    }
-    let shown = if args.play.is_some() {
-        "recording"
-    } else {
-        "sweep"
+    let shown = match (&args.play, &args.sensor) {
+        (Some(_), _) => "recording",
+        (None, Some(_)) => "sensor",
+        (None, None) => "sweep",
     };
+    if shown != "sweep" {
+        let overrides = args.recording_args.overrides();
+        let (recording, path) =
+            play::source(args.play.as_deref(), args.sensor.as_deref(), &overrides)?;
+        play::check(&spec, &recording, &path, args.repeat)?;
+        stimuli.push(play::stimulus(shown, &spec, &recording, args.repeat));
+    }
     let package = package_with(&design, stimuli, shown)?;
     write(&package.files, &args.output)?;
     summary(&package.json, &args.output, shown);

@@ -1,15 +1,51 @@
-//! A recording played into a chip of a design.
+//! A recording, measured or simulated, played into a chip of a design.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use anyhow::{Result, bail};
+use anyhow::{Context, Result, bail};
 use nonius_model::physical::Converter;
 use nonius_model::spec::Spec;
-use nonius_recording::{Recording, Survey};
+use nonius_recording::{Overrides, Recording, Survey};
+use nonius_sensor::{Motion, Sensor};
 use nonius_testvectors::stimulus::{Sample, Stimulus};
 
 /// Largest jump, in periods, from the end of a repeated recording to its beginning, beyond the usual step.
 const JOINT: f64 = 0.1;
+
+/// Noise of a simulated sensor: always the same, so that a build is.
+const SEED: u64 = 1;
+
+/// The recording in a file, or what the sensor in another shows when it is moved as far and as fast as it was; and the
+/// name of the file.
+///
+/// # Errors
+/// Neither is given, or the file is not what it should be.
+pub(crate) fn source(
+    recording: Option<&Path>,
+    sensor: Option<&Path>,
+    overrides: &Overrides,
+) -> Result<(Recording, PathBuf)> {
+    match (recording, sensor) {
+        (Some(path), _) => Ok((Recording::read(path, overrides)?, path.into())),
+        (None, Some(path)) => Ok((simulated(path)?, path.into())),
+        (None, None) => bail!("give a recording (CSV), or a sensor with --sensor SENSOR.toml"),
+    }
+}
+
+fn simulated(path: &Path) -> Result<Recording> {
+    let file = path.display().to_string();
+    let text = std::fs::read_to_string(path).with_context(|| format!("cannot read {file}"))?;
+    let sensor = Sensor::from_toml(&text, &file)?;
+    let samples = sensor.simulate(&Motion::to_and_fro(&sensor), SEED);
+    let adc = &sensor.adc;
+    let overrides = Overrides {
+        adc_bits: Some(adc.bits),
+        periods_per_revolution: sensor.motion.periods_per_revolution,
+        ..Overrides::default()
+    };
+    Recording::from_samples(samples.time_s, samples.cos, samples.sin, &overrides)
+        .with_context(|| format!("{file} makes no recording"))
+}
 
 /// Says what the reader noticed and where recording and design do not fit each other.
 ///
@@ -38,12 +74,12 @@ pub(crate) fn sample(converter: &Converter, cos: f64, sin: f64) -> Sample {
 
 /// The recording, `repeat` times, as a stimulus of the testbench.
 #[must_use]
-pub fn stimulus(spec: &Spec, recording: &Recording, repeat: u32) -> Stimulus {
+pub fn stimulus(name: &str, spec: &Spec, recording: &Recording, repeat: u32) -> Stimulus {
     let converter = Converter::of(spec);
     let once = || recording.cos.iter().zip(&recording.sin);
     let samples = (0..repeat).flat_map(|_| once().map(|(c, s)| sample(&converter, *c, *s)));
     Stimulus {
-        name: "recording".into(),
+        name: name.into(),
         samples: samples.collect(),
     }
 }

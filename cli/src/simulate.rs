@@ -23,7 +23,11 @@ pub(crate) struct Simulate {
     /// The design.
     design: PathBuf,
     /// The recording (CSV).
-    recording: PathBuf,
+    #[arg(required_unless_present = "sensor", conflicts_with = "sensor")]
+    recording: Option<PathBuf>,
+    /// A simulated sensor (sensor.toml of `nonius diagnose`) in place of a recording.
+    #[arg(long, value_name = "SENSOR")]
+    sensor: Option<PathBuf>,
     /// File to write (CSV): time_s, position_periods, speed_periods_per_s, locked, theta_1, …
     #[arg(short)]
     output: PathBuf,
@@ -149,8 +153,12 @@ pub(crate) fn run(args: &Simulate) -> Result<()> {
     let file = args.design.display().to_string();
     let spec = crate::design_file::read(&args.design)?;
     let design = Design::new(&spec).with_context(|| format!("{file} cannot work"))?;
-    let recording = Recording::read(&args.recording, &args.recording_args.overrides())?;
-    play::check(&spec, &recording, &args.recording, args.repeat)?;
+    let (recording, path) = play::source(
+        args.recording.as_deref(),
+        args.sensor.as_deref(),
+        &args.recording_args.overrides(),
+    )?;
+    play::check(&spec, &recording, &path, args.repeat)?;
     let thetas = spec.calibration.thetas();
     let mut interpolator: Box<dyn Interpolator> = if args.reference {
         Box::new(Paper {

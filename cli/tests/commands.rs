@@ -312,6 +312,40 @@ fn diagnose_writes_the_contract() {
         "{}",
         String::from_utf8_lossy(&built.stderr)
     );
+    // The extended simulation runs, and goes into the Verilog's vectors.
+    let sensor = ["--sensor", "out/sensor.toml", "-o"];
+    for call in [
+        [
+            &["simulate", "out/design.toml"],
+            &sensor[..],
+            &["sensor.csv"],
+        ]
+        .concat(),
+        [&["build", "out/design.toml"], &sensor[..], &["played"]].concat(),
+    ] {
+        let output = nonius(dir.path(), &call);
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{said}");
+    }
+    let simulated = fs::read_to_string(dir.path().join("sensor.csv")).expect("simulated");
+    assert!(simulated.lines().count() > 2000);
+    assert!(dir.path().join("played/vectors/sensor.vec").is_file());
+    assert!(dir.path().join("played/waves/sensor.vcd").is_file());
+    fs::write(dir.path().join("bad.toml"), "[signals]\na_c = true\n").expect("a file");
+    refused(
+        &nonius(
+            dir.path(),
+            &[
+                "simulate",
+                "out/design.toml",
+                "--sensor",
+                "bad.toml",
+                "-o",
+                "x.csv",
+            ],
+        ),
+        &["bad.toml:2:7"],
+    );
     refused(
         &nonius(dir.path(), &["diagnose", "none.csv", "-o", "out"]),
         &["none.csv"],

@@ -46,7 +46,7 @@ fn agrees(file: &Path, repeat: u32, options: &Options) {
     let text = nonius::new::fitted_text("it", file, &recording).expect("a design can follow it");
     let spec = Spec::from_toml(&text, "it.toml").expect("a design");
     let design = Design::new(&spec).expect("a design");
-    let played = nonius::play::stimulus(&spec, &recording, repeat);
+    let played = nonius::play::stimulus("recording", &spec, &recording, repeat);
     let samples = played.samples.len() as u64;
     assert!(samples >= 1000, "{name}: too little is played");
     let package =
