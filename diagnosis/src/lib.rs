@@ -13,6 +13,7 @@ mod causes;
 mod checks;
 mod context;
 mod diagnose;
+mod exact;
 mod finding;
 mod knots;
 mod library;
