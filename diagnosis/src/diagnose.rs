@@ -8,6 +8,7 @@ use crate::checks::{self, Checked};
 use crate::context::{Context, ContextError};
 use crate::exact;
 use crate::finding::{Finding, Parameter};
+use crate::flicker::Flicker;
 use crate::library::Row;
 use crate::model::System;
 use crate::noise;
@@ -127,11 +128,12 @@ fn conclude(
     let named = selection.findings(system, &halves);
     let left = system.residual(&selection.fit);
     // Only what is noise can be noise of a kind.
-    let noisy = if selection.unnamed.is_empty() {
+    let mut noisy = if selection.unnamed.is_empty() {
         noise::findings(context, &left)
     } else {
         vec![]
     };
+    noisy.extend(system.flicker.iter().map(Flicker::finding));
     let (held_before, held_after) = (
         halves.held_out(&selection.base.shapes),
         halves.held_out(&selection.fit.shapes),

@@ -4,6 +4,7 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::causes::Catalogue;
 use crate::context::Context;
+use crate::flicker::{self, Flicker};
 use crate::library::{ROWS, Row, Shape};
 use crate::selection::Accepted;
 use crate::solve::{Normal, Solution};
@@ -41,6 +42,8 @@ pub(crate) struct System<'a> {
     pub(crate) samples: Samples<'a>,
     /// Products of all atoms, whitened.
     pub(crate) total: Normal,
+    /// Flicker noise in what everything that any cause could explain leaves.
+    pub(crate) flicker: Option<Flicker>,
 }
 
 /// The sums of either half of interleaved blocks, for some atoms only.
@@ -88,6 +91,7 @@ impl<'a> System<'a> {
             context,
             samples,
             total: Normal::new(DMatrix::zeros(0, 0), DVector::zeros(0), 0.0),
+            flicker: None,
         };
         let atoms: Vec<usize> = (0..this.samples.library.atoms.len()).collect();
         for (whitener, data) in this.samples.whiteners.iter_mut().zip(&this.samples.data) {
@@ -107,6 +111,7 @@ impl<'a> System<'a> {
         let x = this.total.of(&shapes).solve().x;
         let amounts: Vec<(usize, f64)> = broad.into_iter().zip(x).collect();
         let left = this.samples.left(&amounts);
+        this.flicker = flicker::find(context, &left[0]);
         for (row, left) in ROWS.iter().zip(&left).filter(|(_, l)| !l.is_empty()) {
             let gone = match (&context.spline, row) {
                 (_, Row::Radial) => 0.0,

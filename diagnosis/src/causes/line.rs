@@ -8,12 +8,14 @@ use crate::cause::{Candidate, Domain, Estimate, Exact, Make, polar};
 use crate::context::Context;
 use crate::finding::{Chip, Parameter};
 use crate::library::{Fill, Library, Place, Shape, Use};
-use crate::lines::{pair_spectrum, peak, two_spectra};
+use crate::lines::{flattened, pair_spectrum, peak, two_spectra};
 use crate::model::Residual;
 
 /// Lowest frequency of a line, in cycles per recording: below, it is drift.
 const SLOWEST: f64 = 4.0;
 
+/// So many times what is near it in the spectrum, a line stands out of noise of any colour.
+const STANDS_OUT: f64 = 40.0;
 /// Samples between two evaluations of a line's sine; between them it is rotated on.
 const ROTATED: usize = 64;
 /// Share of a sample by which the time base may be off to be regular.
@@ -69,12 +71,22 @@ fn two(place: Place, shape: fn(&Place, usize) -> Shape) -> Vec<Shape> {
 pub(crate) fn candidates(
     context: &Context,
     residual: &Residual,
+    coloured: bool,
     library: &mut Library,
 ) -> Vec<Candidate> {
     let n = context.samples();
     let trials = n as f64;
     let low = SLOWEST / n as f64;
     let mut list = vec![];
+    let line = |power: Vec<f64>, length: usize| {
+        if coloured {
+            let level = flattened(&power);
+            let f = peak(&level, length, low, 0.499)?;
+            let highest = level[(f * length as f64).round() as usize];
+            return (highest > STANDS_OUT).then_some(f);
+        }
+        peak(&power, length, low, 0.499)
+    };
     // A line's frequency is known to a small part of one cycle per recording.
     let duration = n as f64 / context.rate;
     let exact = |hertz: f64, make: Make| {
@@ -93,7 +105,7 @@ pub(crate) fn candidates(
     };
     let (in_c, in_s): (Vec<f64>, Vec<f64>) = (0..n).map(frame).unzip();
     let (power, length) = pair_spectrum(&in_c, &in_s);
-    if let Some(f) = peak(&power, length, low, 0.499) {
+    if let Some(f) = line(power, length) {
         let hertz = f * context.rate;
         let mut all = vec![];
         for harmonics in [1, 3] {
@@ -138,7 +150,7 @@ pub(crate) fn candidates(
         }
     }
     let ([radial, fast], length) = two_spectra(&residual.radial, residual.fast());
-    if let Some(f) = peak(&radial, length, low, 0.499) {
+    if let Some(f) = line(radial, length) {
         let hertz = f * context.rate;
         let make: Make = Rc::new(|inner, library| {
             two(library.add(2, Use::Radial, wave(inner[0])), Place::radial)
@@ -170,7 +182,7 @@ pub(crate) fn candidates(
             }),
         });
     }
-    if let Some(f) = peak(&fast, length, low, 0.499) {
+    if let Some(f) = line(fast, length) {
         let hertz = f * context.rate;
         let make: Make = Rc::new(|inner, library| {
             two(

@@ -77,13 +77,15 @@ impl Catalogue {
     }
 }
 
-/// Causes that are looked for where the residual shows something, with functions of their own.
+/// Causes that are looked for where the residual shows something, with functions of their own; where noise is
+/// `coloured`, lines have to stand out of what is near them.
 pub(crate) fn shown(
     context: &Context,
     residual: &Residual,
+    coloured: bool,
     library: &mut Library,
 ) -> Vec<Candidate> {
-    let mut list = line::candidates(context, residual, library);
+    let mut list = line::candidates(context, residual, coloured, library);
     list.extend(place::candidates(context, residual, library));
     list
 }
