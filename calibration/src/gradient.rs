@@ -1,11 +1,16 @@
 //! The searches of sections 5.2 to 5.4, off line: the Θ that makes J = Σ (‖MΘ‖² − 1)² smallest.
 //!
-//! The paper goes down the gradient; what counts is where it ends, and Levenberg–Marquardt gets there sooner. With the
-//! cubic sets one direction changes no radius, and J leaves it open: the step along it is left out.
+//! The paper goes down the gradient; what counts is where it ends, and Levenberg–Marquardt gets there sooner. It works
+//! on signals normalised by an ellipse, where all columns of M are of one size; J does not mind.
+//!
+//! With the cubic sets one direction of Θ changes no radius: [`BLIND`]. The search stays where it starts along it, at
+//! straight channels.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, SVector};
+use nonius_recording::Ellipse;
 
-use crate::ellipse::Ellipse;
+use crate::curve::Curve;
+use crate::sandwich::Sandwich;
 
 /// Which parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,73 +21,161 @@ pub enum Set {
     Five,
     /// Cubic polynomials of each channel, 5.4.
     Eight,
-    /// And the phase.
+    /// And the phase, after the bending: s = θ5 y_s + θ6 y_s² + θ7 y_s³ + θ8 + θ9 c, with c the corrected cosine.
     Nine,
 }
 
-/// Singular values below this, relative to the largest, are a direction that J does not see.
-const BLIND: f64 = 1e-3;
-const ITERATIONS: usize = 100;
+/// The change of the first eight of Θ, for signals of amplitude 1, that turns the angle by ½ sin 2α per unit and leaves
+/// the radius alone: δc = −c + c³, δs = s − s³, and c δc + s δs = 0 on the unit circle.
+pub const BLIND: [f64; 8] = [-1.0, 0.0, 1.0, 0.0, 1.0, 0.0, -1.0, 0.0];
+
+/// Eigenvalues below this share of the largest are a direction that these samples do not show.
+const FAINT: f64 = 1e-9;
+const ITERATIONS: usize = 200;
 
 impl Set {
-    /// The columns of M for signals of amplitude about one.
-    fn columns(self, c: f64, s: f64) -> Vec<[f64; 2]> {
-        let cubic = |y: f64| [y, y * y, y * y * y, 1.0];
-        match self {
-            Self::Four => vec![[c, 0.0], [1.0, 0.0], [0.0, s], [0.0, 1.0]],
-            Self::Five => vec![[c, 0.0], [1.0, 0.0], [0.0, s], [0.0, 1.0], [0.0, c]],
-            Self::Eight | Self::Nine => {
-                let mut all: Vec<[f64; 2]> = cubic(c).map(|m| [m, 0.0]).to_vec();
-                all.extend(cubic(s).map(|m| [0.0, m]));
-                if self == Self::Nine {
-                    all.push([0.0, c]);
-                }
-                all
-            }
-        }
-    }
-
-    /// Powers of the signals' unit in each parameter: θ of normalised signals is θ of raw ones times unit^power.
+    /// Number of parameters.
     #[must_use]
-    pub fn powers(self) -> Vec<i32> {
+    pub fn len(self) -> usize {
         match self {
-            Self::Four => vec![1, 0, 1, 0],
-            Self::Five => vec![1, 0, 1, 0, 1],
-            Self::Eight => vec![1, 2, 3, 0, 1, 2, 3, 0],
-            Self::Nine => vec![1, 2, 3, 0, 1, 2, 3, 0, 1],
+            Self::Four => 4,
+            Self::Five => 5,
+            Self::Eight => 8,
+            Self::Nine => 9,
         }
     }
 
-    fn start(self, ellipse: &Ellipse) -> Vec<f64> {
-        let [one, two, three, four, five] = ellipse.theta();
-        match self {
-            Self::Four => vec![
-                1.0 / ellipse.a_c,
-                two,
-                1.0 / ellipse.a_s,
-                -ellipse.b_s / ellipse.a_s,
-            ],
-            Self::Five => vec![one, two, three, four, five],
-            Self::Eight => vec![
-                one,
-                0.0,
-                0.0,
-                two,
-                1.0 / ellipse.a_s,
-                0.0,
-                0.0,
-                -ellipse.b_s / ellipse.a_s,
-            ],
-            Self::Nine => vec![one, 0.0, 0.0, two, three, 0.0, 0.0, four, five],
-        }
+    /// Never.
+    #[must_use]
+    pub fn is_empty(self) -> bool {
+        false
+    }
+
+    /// Whether channels are bent.
+    #[must_use]
+    pub fn cubic(self) -> bool {
+        matches!(self, Self::Eight | Self::Nine)
     }
 
     /// The corrected pair.
     #[must_use]
     pub fn correct(self, theta: &[f64], y_c: f64, y_s: f64) -> (f64, f64) {
-        let columns = self.columns(y_c, y_s);
-        let sum = |row: usize| -> f64 { columns.iter().zip(theta).map(|(m, t)| m[row] * t).sum() };
-        (sum(0), sum(1))
+        let cubic = |t: &[f64], y: f64| ((t[2] * y + t[1]) * y + t[0]) * y + t[3];
+        match self {
+            Self::Four => (theta[0] * y_c + theta[1], theta[2] * y_s + theta[3]),
+            Self::Five => (
+                theta[0] * y_c + theta[1],
+                theta[2] * y_s + theta[3] + theta[4] * y_c,
+            ),
+            Self::Eight => (cubic(&theta[..4], y_c), cubic(&theta[4..8], y_s)),
+            Self::Nine => {
+                let c = cubic(&theta[..4], y_c);
+                (c, cubic(&theta[4..8], y_s) + theta[8] * c)
+            }
+        }
+    }
+
+    /// Derivative of ‖(c, s)‖² by Θ.
+    fn slope(self, theta: &[f64], y_c: f64, y_s: f64, out: &mut [f64]) {
+        let (c, s) = self.correct(theta, y_c, y_s);
+        match self {
+            Self::Four | Self::Five => {
+                out[..4].copy_from_slice(&[2.0 * c * y_c, 2.0 * c, 2.0 * s * y_s, 2.0 * s]);
+                if let Some(five) = out.get_mut(4) {
+                    *five = 2.0 * s * y_c;
+                }
+            }
+            Self::Eight | Self::Nine => {
+                // The corrected cosine acts in both rows of the nine.
+                let cross = theta.get(8).copied().unwrap_or(0.0);
+                let by_c = 2.0 * (c + cross * s);
+                let by_s = 2.0 * s;
+                for (i, (y, by)) in [(y_c, by_c), (y_s, by_s)].into_iter().enumerate() {
+                    let own = [by * y, by * y * y, by * y * y * y, by];
+                    out[4 * i..4 * i + 4].copy_from_slice(&own);
+                }
+                if let Some(nine) = out.get_mut(8) {
+                    *nine = by_s * c;
+                }
+            }
+        }
+    }
+
+    /// Unit of each parameter: 1/column^power.
+    #[must_use]
+    pub fn powers(self) -> Vec<i32> {
+        let all = match self {
+            Self::Four | Self::Five => [1, 0, 1, 0, 1, 0, 0, 0, 0],
+            Self::Eight | Self::Nine => [1, 2, 3, 0, 1, 2, 3, 0, 0],
+        };
+        all[..self.len()].to_vec()
+    }
+
+    /// Θ that does nothing to signals normalised by `frame`, but for the phase.
+    fn start(self, frame: &Ellipse) -> DVector<f64> {
+        let (cos, tan) = (frame.beta.cos(), frame.beta.tan());
+        DVector::from_vec(match self {
+            Self::Four => vec![1.0, 0.0, 1.0, 0.0],
+            Self::Five => vec![1.0, 0.0, 1.0 / cos, 0.0, tan],
+            Self::Eight => vec![1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0],
+            Self::Nine => vec![1.0, 0.0, 0.0, 0.0, 1.0 / cos, 0.0, 0.0, 0.0, tan],
+        })
+    }
+
+    /// Orthogonal directions in which to search: all but the blind one.
+    fn directions(self) -> DMatrix<f64> {
+        let n = self.len();
+        if !self.cubic() {
+            return DMatrix::identity(n, n);
+        }
+        let blind = DVector::from_fn(n, |i, _| BLIND.get(i).copied().unwrap_or(0.0)).normalize();
+        // A reflection that turns the first axis into the blind direction; its other columns are orthogonal to it.
+        let mut mirror = -blind;
+        mirror[0] += 1.0;
+        let mirror = mirror.normalize();
+        let reflection = DMatrix::identity(n, n) - &mirror * mirror.transpose() * 2.0;
+        reflection.columns(1, n - 1).into_owned()
+    }
+
+    /// Θ of normalised signals as a linear map to Θ of raw ones: u = (y − b)/a put into the polynomials.
+    fn to_raw(self, frame: &Ellipse) -> DMatrix<f64> {
+        let n = self.len();
+        let mut map = DMatrix::zeros(n, n);
+        let channel = |a: f64, b: f64| (1.0 / a, -b / a);
+        let (c, s) = (channel(frame.a_c, frame.b_c), channel(frame.a_s, frame.b_s));
+        match self {
+            Self::Four | Self::Five => {
+                for (i, (g, h)) in [(0, c), (2, s)] {
+                    map[(i, i)] = g;
+                    map[(i + 1, i)] = h;
+                    map[(i + 1, i + 1)] = 1.0;
+                }
+                if self == Self::Five {
+                    map[(4, 4)] = c.0;
+                    map[(3, 4)] = c.1;
+                }
+            }
+            Self::Eight | Self::Nine => {
+                for (i, (g, h)) in [(0, c), (4, s)] {
+                    // Rows y, y², y³, 1; columns u, u², u³, 1 with u = g y + h.
+                    let block = [
+                        [g, 2.0 * g * h, 3.0 * g * h * h, 0.0],
+                        [0.0, g * g, 3.0 * g * g * h, 0.0],
+                        [0.0, 0.0, g * g * g, 0.0],
+                        [h, h * h, h * h * h, 1.0],
+                    ];
+                    for (r, row) in block.iter().enumerate() {
+                        for (k, value) in row.iter().enumerate() {
+                            map[(i + r, i + k)] = *value;
+                        }
+                    }
+                }
+                if self == Self::Nine {
+                    map[(8, 8)] = 1.0;
+                }
+            }
+        }
+        map
     }
 }
 
@@ -91,114 +184,222 @@ impl Set {
 pub struct Minimum {
     /// Θ for the signals in their own unit.
     pub theta: Vec<f64>,
-    /// Directions that J does not see.
-    pub blind: usize,
+    /// Its covariance; `None` where the samples do not determine it. The blind direction has none.
+    pub covariance: Option<DMatrix<f64>>,
+    /// The nearest parameters of equation (4): amplitude and mean of each channel's first harmonic over the period, and
+    /// the phase. `None` where a polynomial cannot be inverted.
+    pub ellipse: Option<Ellipse>,
+    /// Their covariance.
+    pub ellipse_covariance: Option<DMatrix<f64>>,
+    /// Directions that these samples do not show, besides the blind one.
+    pub faint: usize,
     /// The iteration has come to rest.
     pub converged: bool,
 }
 
-/// The minimum of J nearest to the ellipse.
+/// The minimum of J nearest to the ellipse `frame`, which also normalises the signals.
 #[must_use]
-pub fn minimise(set: Set, cos: &[f64], sin: &[f64], start: &Ellipse) -> Minimum {
-    // Signals of amplitude one make the columns of one size.
-    let unit = start.amplitude();
-    let scaled = Ellipse {
-        a_c: start.a_c / unit,
-        b_c: start.b_c / unit,
-        a_s: start.a_s / unit,
-        b_s: start.b_s / unit,
-        beta: start.beta,
-    };
-    let mut theta = DVector::from_vec(set.start(&scaled));
-    let n = theta.len();
-    let pairs = || cos.iter().zip(sin).map(|(c, s)| (c / unit, s / unit));
-    let mut damping = 1e-6;
-    let mut blind = 0;
-    let mut converged = false;
-    let objective = |theta: &DVector<f64>| -> f64 {
-        pairs()
-            .map(|(c, s)| {
-                let (x, y) = set.correct(theta.as_slice(), c, s);
-                (x * x + y * y - 1.0).powi(2)
-            })
-            .sum()
-    };
-    let mut now = objective(&theta);
-    for _ in 0..ITERATIONS {
-        let mut normal = DMatrix::<f64>::zeros(n, n);
-        let mut score = DVector::<f64>::zeros(n);
-        for (c, s) in pairs() {
-            let columns = set.columns(c, s);
-            let (x, y) = set.correct(theta.as_slice(), c, s);
-            let residual = x * x + y * y - 1.0;
-            let row =
-                DVector::from_iterator(n, columns.iter().map(|m| 2.0 * (m[0] * x + m[1] * y)));
-            normal.ger(1.0, &row, &row, 1.0);
-            score.axpy(residual, &row, 1.0);
-        }
-        let eigen = normal.clone().symmetric_eigen();
-        let largest = eigen.eigenvalues.amax();
-        let mut step = DVector::<f64>::zeros(n);
-        blind = 0;
-        for (value, vector) in eigen
-            .eigenvalues
-            .iter()
-            .zip(eigen.eigenvectors.column_iter())
-        {
-            if *value < BLIND * BLIND * largest {
-                blind += 1;
-                continue;
-            }
-            let along = vector.dot(&score) / (value + damping * largest);
-            step.axpy(-along, &vector, 1.0);
-        }
-        let next = &theta + &step;
-        let then = objective(&next);
-        if then.is_finite() && then <= now * (1.0 + 1e-14) {
-            let small = step.amax() < 1e-11;
-            theta = next;
-            now = then;
-            damping = (damping / 10.0).max(1e-15);
-            if small {
-                converged = true;
-                break;
-            }
+pub fn minimise(set: Set, cos: &[f64], sin: &[f64], frame: &Ellipse) -> Minimum {
+    let frame = Ellipse {
+        // Sets without phase search about signals without it.
+        beta: if matches!(set, Set::Five | Set::Nine) {
+            frame.beta
         } else {
-            damping *= 10.0;
-            if damping > 1e6 {
-                break;
-            }
-        }
-    }
-    let theta = theta.iter().zip(set.powers());
+            0.0
+        },
+        ..*frame
+    };
+    let normal = |(c, s): (&f64, &f64)| ((c - frame.b_c) / frame.a_c, (s - frame.b_s) / frame.a_s);
+    let pairs: Vec<(f64, f64)> = cos.iter().zip(sin).map(normal).collect();
+    let search = Search {
+        set,
+        pairs,
+        directions: set.directions(),
+    };
+    let (theta, faint, converged) = search.run(set.start(&frame));
+    let inner = search.covariance(&theta);
+    let to_raw = set.to_raw(&frame);
+    let physical = physical(set, theta.as_slice());
+    let by = physical.and_then(|p| physical_slopes(set, &theta, &p));
+    let size = [frame.a_c, frame.a_c, frame.a_s, frame.a_s, 1.0];
+    let middle = [0.0, frame.b_c, 0.0, frame.b_s, 0.0];
     Minimum {
-        theta: theta.map(|(t, power)| t / unit.powi(power)).collect(),
-        blind,
+        theta: (&to_raw * &theta).as_slice().to_vec(),
+        covariance: inner.as_ref().map(|c| &to_raw * c * to_raw.transpose()),
+        ellipse: physical.map(|p| {
+            Ellipse::of(&SVector::from_fn(|i, _| {
+                p.parameters()[i] * size[i] + middle[i]
+            }))
+        }),
+        ellipse_covariance: inner.zip(by).map(|(c, by)| {
+            let plain = &by * c * by.transpose();
+            DMatrix::from_fn(5, 5, |i, j| plain[(i, j)] * size[i] * size[j])
+        }),
+        faint,
         converged,
     }
 }
 
-/// Where a cubic channel has its ends ±1: amplitude and offset in the unit of the signal.
-#[must_use]
-pub fn ends(cubic: [f64; 4], start: (f64, f64)) -> Option<(f64, f64)> {
-    let [one, two, three, zero] = cubic;
-    let end = |target: f64, from: f64| {
-        let mut y = from;
-        for _ in 0..50 {
-            let value = zero + y * (one + y * (two + y * three)) - target;
-            let slope = one + y * (2.0 * two + y * 3.0 * three);
-            let step = value / slope;
-            if !step.is_finite() {
-                return None;
+struct Search {
+    set: Set,
+    pairs: Vec<(f64, f64)>,
+    directions: DMatrix<f64>,
+}
+
+impl Search {
+    fn objective(&self, theta: &[f64]) -> f64 {
+        let radius = |(c, s): &(f64, f64)| {
+            let (x, y) = self.set.correct(theta, *c, *s);
+            (x * x + y * y - 1.0).powi(2)
+        };
+        self.pairs.iter().map(radius).sum()
+    }
+
+    /// Levenberg–Marquardt. Gives Θ, the number of faint directions, and whether it came to rest.
+    fn run(&self, mut theta: DVector<f64>) -> (DVector<f64>, usize, bool) {
+        let n = self.set.len();
+        let mut damping = 1e-6;
+        let mut now = self.objective(theta.as_slice());
+        let mut faint = 0;
+        let mut slope = DVector::zeros(n);
+        for _ in 0..ITERATIONS {
+            let mut normal = DMatrix::<f64>::zeros(n, n);
+            let mut score = DVector::<f64>::zeros(n);
+            for (c, s) in &self.pairs {
+                let (x, y) = self.set.correct(theta.as_slice(), *c, *s);
+                self.set
+                    .slope(theta.as_slice(), *c, *s, slope.as_mut_slice());
+                normal.syger(1.0, &slope, &slope, 1.0);
+                score.axpy(x * x + y * y - 1.0, &slope, 1.0);
             }
-            y -= step;
-            if step.abs() < 1e-13 * (1.0 + y.abs()) {
-                return Some(y);
+            normal.fill_upper_triangle_with_lower_triangle();
+            let inner = self.directions.transpose() * normal * &self.directions;
+            let score = self.directions.transpose() * score;
+            let eigen = inner.symmetric_eigen();
+            let largest = eigen.eigenvalues.amax();
+            let mut step = DVector::<f64>::zeros(score.len());
+            faint = 0;
+            for (value, vector) in eigen
+                .eigenvalues
+                .iter()
+                .zip(eigen.eigenvectors.column_iter())
+            {
+                if *value < FAINT * largest {
+                    faint += 1;
+                    continue;
+                }
+                step.axpy(
+                    -vector.dot(&score) / (value + damping * largest),
+                    &vector,
+                    1.0,
+                );
+            }
+            let step = &self.directions * step;
+            let next = &theta + &step;
+            let then = self.objective(next.as_slice());
+            // Rounding makes J tremble at the minimum.
+            if then.is_finite() && then <= now * (1.0 + 1e-12) + f64::MIN_POSITIVE {
+                theta = next;
+                now = then;
+                damping = (damping / 10.0).max(1e-15);
+                if step.amax() < 1e-10 {
+                    return (theta, faint, true);
+                }
+            } else {
+                damping *= 10.0;
+                if step.amax() < 1e-10 {
+                    return (theta, faint, true);
+                }
+                if damping > 1e6 {
+                    break;
+                }
             }
         }
-        None
+        (theta, faint, false)
+    }
+
+    fn covariance(&self, theta: &DVector<f64>) -> Option<DMatrix<f64>> {
+        let n = self.set.len();
+        let mut sandwich = Sandwich::new(self.directions.ncols());
+        let mut slope = DVector::zeros(n);
+        for (c, s) in &self.pairs {
+            let (x, y) = self.set.correct(theta.as_slice(), *c, *s);
+            self.set
+                .slope(theta.as_slice(), *c, *s, slope.as_mut_slice());
+            let inner = self.directions.transpose() * &slope;
+            sandwich.add(x * x + y * y - 1.0, inner.as_slice());
+        }
+        let inner = sandwich.covariance()?;
+        Some(&self.directions * inner * self.directions.transpose())
+    }
+}
+
+/// The ellipse nearest to the signals that Θ makes the unit circle, for normalised signals.
+fn physical(set: Set, theta: &[f64]) -> Option<Ellipse> {
+    let found = match set {
+        Set::Four | Set::Five => Ellipse::of_theta(theta),
+        Set::Eight | Set::Nine => {
+            let tan = theta.get(8).copied().unwrap_or(0.0);
+            // s = W + tan β · c = sin α, so W = sin(α − β) / cos β.
+            let (a_c, b_c) = first_harmonic(&theta[..4], 1.0)?;
+            let (a_s, b_s) = first_harmonic(&theta[4..8], tan.hypot(1.0))?;
+            Ellipse {
+                a_c,
+                b_c,
+                a_s,
+                b_s,
+                beta: tan.atan(),
+            }
+        }
     };
-    let (a, b) = start;
-    let (high, low) = (end(1.0, b + a)?, end(-1.0, b - a)?);
-    Some(((high - low) / 2.0, (high + low) / 2.0))
+    found.is_sound().then_some(found)
+}
+
+fn physical_slopes(set: Set, theta: &DVector<f64>, at: &Ellipse) -> Option<DMatrix<f64>> {
+    let mut by = DMatrix::zeros(5, set.len());
+    let h = 1e-6;
+    for i in 0..set.len() {
+        let moved = |h: f64| {
+            let mut theta = theta.clone();
+            theta[i] += h;
+            Some(physical(set, theta.as_slice())?.parameters() - at.parameters())
+        };
+        let slope = (moved(h)? - moved(-h)?) / (2.0 * h);
+        by.column_mut(i).copy_from(&slope);
+    }
+    Some(by)
+}
+
+/// Amplitude and mean of the signal u over a period in which the cubic of it is `size` · cos. `None` where the cubic
+/// does not rise all the way.
+fn first_harmonic(cubic: &[f64], size: f64) -> Option<(f64, f64)> {
+    const POINTS: u32 = 64;
+    let [one, two, three, zero] = [cubic[0], cubic[1], cubic[2], cubic[3]];
+    let (mut sum, mut first) = (0.0, 0.0);
+    let mut u = 0.0;
+    // Half a period: the other half is its mirror image.
+    for k in 0..POINTS {
+        let cos = ((f64::from(k) + 0.5) * std::f64::consts::PI / f64::from(POINTS)).cos();
+        let mut still = false;
+        for _ in 0..50 {
+            let value = ((three * u + two) * u + one) * u + zero - size * cos;
+            let slope = (3.0 * three * u + 2.0 * two) * u + one;
+            let step = (value / slope).clamp(-0.5, 0.5);
+            if slope.is_nan() || slope <= 0.0 || step.is_nan() {
+                return None;
+            }
+            u -= step;
+            if step.abs() < 1e-13 {
+                still = true;
+                break;
+            }
+        }
+        if !still {
+            return None;
+        }
+        sum += u;
+        first += u * cos;
+    }
+    let n = f64::from(POINTS);
+    Some((2.0 * first / n, sum / n))
 }

@@ -1,18 +1,29 @@
 //! Off-line calibration: from two columns of samples to the parameters of equation (4), with standard errors.
 //!
-//! [`calibrate`] runs one [`Method`]; [`unbiased`] is the default. Signals are in any unit, both in the same one.
+//! [`calibrate`] runs one [`Method`] of the paper's section 5; [`Method::Unbiased`] is the default. Signals are in any
+//! unit, both in the same one. [`cramer_rao`] is what no estimator can beat, [`report()`] the result to be read.
 
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
-pub mod bound;
+mod calibrate;
 pub mod conic;
-pub mod ellipse;
+pub mod cramer_rao;
+pub mod curve;
 pub mod extremes;
 pub mod gradient;
-mod jackknife;
 mod method;
+mod noise;
+mod report;
+mod result;
+mod samples;
+mod sandwich;
 pub mod unbiased;
 mod words;
 
-pub use ellipse::Ellipse;
-pub use method::{Calibration, Error, Method, Options, Parameter, calibrate};
+pub use calibrate::{calibrate, undetermined};
+pub use curve::Curve;
+pub use method::{Error, Method, Options};
+pub use noise::Shape;
+pub use nonius_recording::Ellipse;
+pub use report::report;
+pub use result::{Calibration, Parameter};

@@ -1,80 +1,190 @@
-//! What the data cannot tell, in plain words.
+//! What the data cannot tell, and what to know about the numbers, in plain words.
 
-use crate::ellipse::Ellipse;
-use crate::gradient::{Minimum, Set};
+use crate::curve::{Curve, Parameters};
+use crate::gradient::Minimum;
+use crate::method::{Error, Method};
 use crate::unbiased::Fit;
 
-const NAMES: [&str; 5] = ["a_c", "b_c", "a_s", "b_s", "beta"];
+pub(crate) const NAMES: [&str; 5] = ["a_c", "b_c", "a_s", "b_s", "beta"];
 /// Standard errors above this, in amplitudes or radians, are no knowledge.
-const VAGUE: f64 = 0.2;
+const VAGUE: f64 = 0.1;
 /// Largest gap between neighbouring angles, in turns, of data that go round.
-const GAP: f64 = 0.25;
+pub(crate) const GAP: f64 = 0.25;
+/// Loss by a short arc that is worth a name.
+const WORSE: f64 = 3.0;
+/// Scatter of the recording's parts, in standard errors, that white noise reaches once in thousands.
+const SCATTER: f64 = 1.8;
+/// Residual below which it is rounding, in fractions of the amplitude.
+pub(crate) const ROUNDING: f64 = 1e-8;
 
-/// Largest arc, in turns, in which there is no sample.
-pub(crate) fn gap(ellipse: &Ellipse, cos: &[f64], sin: &[f64]) -> f64 {
-    const BINS: usize = 360;
-    let mut seen = [false; BINS];
-    for (y_c, y_s) in cos.iter().zip(sin) {
-        let (c, s) = ellipse.corrected(*y_c, *y_s);
-        let turn = s.atan2(c) / std::f64::consts::TAU + 0.5;
-        seen[((turn * BINS as f64) as usize).min(BINS - 1)] = true;
-    }
-    let (mut longest, mut run) = (0, 0);
-    for k in 0..2 * BINS {
-        run = if seen[k % BINS] { 0 } else { run + 1 };
-        longest = longest.max(run);
-    }
-    longest.min(BINS) as f64 / BINS as f64
-}
-
-pub(crate) fn of_arc(gap: f64) -> Option<String> {
-    (gap > GAP).then(|| {
-        format!(
-            "the samples leave an arc of {gap:.2} of a period empty: amplitudes, offsets and phase are told apart by \
-             the arc that is there only; a whole period tells them all"
-        )
-    })
-}
-
-pub(crate) fn of_fit(fit: &Fit) -> Vec<String> {
-    let a = fit.ellipse.amplitude();
+/// Of the arc that is there: `whole` are the standard errors that samples spread over whole periods would have.
+pub(crate) fn of_arc(gap: f64, fit: &Fit, whole: Option<Parameters>) -> Vec<String> {
     let mut out = vec![];
-    for (i, name) in NAMES.iter().enumerate() {
-        let unit = if i == 4 { 1.0 } else { a };
-        let error = fit.covariance[(i, i)].sqrt() / unit;
-        if error.is_nan() || error > VAGUE {
-            out.push(format!(
-                "{name} cannot be told from these samples: its standard error is {:.0} % of the {}",
-                error * 100.0,
-                if i == 4 { "radian" } else { "amplitude" }
-            ));
-        }
+    let errors: Vec<f64> = (0..5).map(|i| fit.covariance[(i, i)].sqrt()).collect();
+    if gap > GAP {
+        let worse = whole.map(|whole| {
+            let named = (0..5).map(|i| (errors[i] / whole[i], NAMES[i]));
+            let mut named: Vec<_> = named.filter(|(w, _)| w.is_nan() || *w > WORSE).collect();
+            named.sort_by(|a, b| b.0.total_cmp(&a.0));
+            let list: Vec<String> = named
+                .iter()
+                .map(|(w, name)| format!("{name} {w:.0} times"))
+                .collect();
+            list.join(", ")
+        });
+        let loss = match worse {
+            Some(list) if !list.is_empty() => {
+                format!("; less well known than from whole periods: {list}")
+            }
+            _ => String::new(),
+        };
+        out.push(format!(
+            "{gap:.2} of the scale period holds no sample, and what the curve does there is an extrapolation{loss}"
+        ));
     }
-    if !fit.converged {
-        out.push("the fit did not come to rest: take its numbers as a rough guess".into());
+    let units = fit.ellipse.units();
+    for (i, name) in NAMES.iter().enumerate() {
+        let error = errors[i] / units[i];
+        if error.is_nan() || error > VAGUE {
+            out.push(if i == 4 {
+                format!("{name} cannot be told from these samples: its standard error is {error:.2} rad")
+            } else {
+                let percent = error * 100.0;
+                format!(
+                    "{name} cannot be told from these samples: its standard error is {percent:.0} % of the amplitude"
+                )
+            });
+        }
     }
     out
 }
 
-pub(crate) fn of_minimum(set: Set, minimum: &Minimum) -> Vec<String> {
+/// Of the noise, and of what is not noise.
+pub(crate) fn of_residuals(method: Method, fit: &Fit, residual_rms: f64) -> Vec<String> {
     let mut out = vec![];
-    if matches!(set, Set::Eight | Set::Nine) {
+    if residual_rms < ROUNDING {
+        return out;
+    }
+    if let Some(shape) = &fit.shape
+        && !method.set().cubic()
+    {
+        out.push(format!(
+            "the signals are no exact ellipse: the radius strays by {:.2} % of the amplitude rms in step with the angle, \
+             most at order {}; the parameters are those of the nearest ellipse, an angle error of that size stays \
+             ({:.4} rad), and the error bars, which count it as noise, are a rough guess; `nonius diagnose` looks for \
+             the cause",
+            shape.rms * 100.0,
+            shape.order,
+            shape.rms
+        ));
+    }
+    if let Some(scatter) = fit.scatter
+        && scatter > SCATTER
+    {
+        out.push(format!(
+            "consecutive parts of the recording differ {scatter:.1} times as much as the error bars say: something \
+             changes in time (drift, a line, amplitude noise), and the error bars are that much too small"
+        ));
+    }
+    out
+}
+
+pub(crate) fn of_ratio(fit: &Fit) -> Option<String> {
+    fit.ratio_assumed.then(|| {
+        "the ratio of the channels' noise cannot be told from these samples; equal noise was taken (--noise-ratio gives \
+         another)"
+            .into()
+    })
+}
+
+pub(crate) fn of_method(method: Method) -> Vec<String> {
+    let mut out = vec![];
+    let name = method.name();
+    if !method.finds_phase() {
+        out.push(format!(
+            "beta: {name} takes the channels to be a quarter of a period apart and cannot tell a phase error"
+        ));
+    }
+    if method.set().cubic() {
         out.push(
-            "the direction (theta_1 -1, theta_3 +1, theta_5 +1, theta_7 -1, for signals of amplitude 1) changes no \
-             radius: the angle error 1/2 sin 2 alpha per unit of it cannot be seen this way, and is left as it is"
+            "the direction v (theta_1 -1, theta_3 +1, theta_5 +1, theta_7 -1, for signals of amplitude 1) changes no \
+             radius but turns the angle by 1/2 sin 2 alpha per unit; the radius cannot tell it, Theta is held at \
+             straight channels along v, and error bars do not hold it"
                 .into(),
         );
-        let more = minimum.blind.saturating_sub(1);
-        if more > 0 {
-            out.push(format!(
-                "{more} further direction(s) of Theta cannot be told from these samples"
-            ));
-        }
-    } else if minimum.blind > 0 {
-        out.push("some direction of Theta cannot be told from these samples".into());
+    }
+    out
+}
+
+pub(crate) fn of_minimum(method: Method, minimum: &Minimum) -> Vec<String> {
+    let mut out = vec![];
+    if minimum.faint > 0 {
+        let (n, plural) = (minimum.faint, if minimum.faint > 1 { "s" } else { "" });
+        out.push(format!(
+            "{n} direction{plural} of Theta cannot be told from these samples"
+        ));
+    }
+    if minimum.ellipse.is_none() {
+        let name = method.name();
+        out.push(format!(
+            "a_c, b_c, a_s, b_s, beta: the curve that {name} found cannot be turned back into signals; theirs are the \
+             values of the nearest ellipse"
+        ));
     }
     if !minimum.converged {
         out.push("the search did not come to rest: take its numbers as a rough guess".into());
     }
     out
+}
+
+/// How an estimate lies beside the unbiased one, in standard errors of the latter.
+pub(crate) fn beside_unbiased(method: Method, found: &Parameters, fit: &Fit) -> Option<String> {
+    let against = (0..5).filter(|i| *i < 4 || method.finds_phase()).map(|i| {
+        let miss = (found[i] - fit.ellipse.parameters()[i]) / fit.covariance[(i, i)].sqrt();
+        (miss.abs(), NAMES[i])
+    });
+    let (most, name) = against.max_by(|a, b| a.0.total_cmp(&b.0))?;
+    if method.set().cubic() {
+        return None;
+    }
+    (most > 2.0 && most.is_finite()).then(|| {
+        format!(
+            "{name} lies {most:.1} standard errors from the estimate of unbiased: noise and distortion bias {}",
+            method.name()
+        )
+    })
+}
+
+/// Standard deviation across the samples' main direction over that along it, 0 to 1.
+pub(crate) fn slimness(cos: &[f64], sin: &[f64]) -> f64 {
+    let n = cos.len() as f64;
+    let mean = |v: &[f64]| v.iter().sum::<f64>() / n;
+    let (c0, s0) = (mean(cos), mean(sin));
+    let mut spread = nalgebra::Matrix2::zeros();
+    for (c, s) in cos.iter().zip(sin) {
+        let y = nalgebra::Vector2::new(c - c0, s - s0);
+        spread += y * y.transpose();
+    }
+    let values = spread.symmetric_eigenvalues();
+    (values.min().max(0.0) / values.max().max(f64::MIN_POSITIVE)).sqrt()
+}
+
+/// Where the samples draw no ellipse at all.
+pub(crate) fn of_nothing(slimness: f64, why: &Error) -> String {
+    /// Slimmer than this is a line, rounder a cloud.
+    const LINE: f64 = 0.4;
+    let seen = match why {
+        Error::NoEllipse if slimness < LINE => {
+            "the samples lie on a line within their noise: the arc is too short, or both channels carry one signal"
+                .into()
+        }
+        Error::NoEllipse => {
+            "the samples are a cloud and no ring: the scale stands still, or the signals are no sin/cos pair".into()
+        }
+        other => other.to_string(),
+    };
+    format!(
+        "a_c, b_c, a_s, b_s, beta, theta: {seen}; move the scale by a period or more while recording; the values are \
+         half the sums and differences of the extremes"
+    )
 }

@@ -1,24 +1,60 @@
 //! `nonius build`: the whole package of a design.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
+use clap::Args;
 use nonius_model::design::Design;
-use nonius_package::{DesignJson, package, write};
+use nonius_package::{DesignJson, package_with, write};
+use nonius_recording::Recording;
+use nonius_testvectors::stimulus;
+
+use crate::play;
+use crate::recording_args::RecordingArgs;
 
 /// Samples of each named stimulus.
 const ROWS: usize = 2000;
 
-pub(crate) fn run(design: &Path, output: &Path) -> Result<()> {
-    let spec = crate::design_file::read(design)?;
-    let design = Design::new(&spec).with_context(|| format!("{} cannot work", design.display()))?;
-    let package = package(&design, ROWS)?;
-    write(&package.files, output)?;
-    summary(&package.json, output);
+/// What to build.
+#[derive(Args)]
+pub(crate) struct Build {
+    /// The design.
+    design: PathBuf,
+    /// Folder to write; replaced if nonius wrote it before.
+    #[arg(short)]
+    output: PathBuf,
+    /// A recording (CSV) to play into the Verilog too, besides the named stimuli; its waves are written.
+    #[arg(long, value_name = "RECORDING")]
+    play: Option<PathBuf>,
+    /// Plays a recording of whole turns so many times.
+    #[arg(long, value_name = "N", default_value_t = 1, requires = "play", value_parser = clap::value_parser!(u32).range(1..))]
+    repeat: u32,
+    #[command(flatten)]
+    recording_args: RecordingArgs,
+}
+
+pub(crate) fn run(args: &Build) -> Result<()> {
+    let spec = crate::design_file::read(&args.design)?;
+    let design =
+        Design::new(&spec).with_context(|| format!("{} cannot work", args.design.display()))?;
+    let mut stimuli = stimulus::named(&design, ROWS);
+    if let Some(path) = &args.play {
+        let recording = Recording::read(path, &args.recording_args.overrides())?;
+        play::check(&spec, &recording, path, args.repeat)?;
+        stimuli.push(play::stimulus(&spec, &recording, args.repeat));
+    }
+    let shown = if args.play.is_some() {
+        "recording"
+    } else {
+        "sweep"
+    };
+    let package = package_with(&design, stimuli, shown)?;
+    write(&package.files, &args.output)?;
+    summary(&package.json, &args.output, shown);
     Ok(())
 }
 
-fn summary(j: &DesignJson, output: &Path) {
+fn summary(j: &DesignJson, output: &Path, shown: &str) {
     let rate = j.spec.adc.sample_rate_hz;
     println!("{} (design {})", j.name, j.hash);
     println!(
@@ -53,5 +89,5 @@ fn summary(j: &DesignJson, output: &Path) {
         "  written     {folder}/: rtl, tb, vectors, waves, coefficients, design.json, report.html"
     );
     println!("next: nonius verify {folder}");
-    println!("      gtkwave {folder}/waves/sweep.gtkw");
+    println!("      gtkwave {folder}/waves/{shown}.gtkw");
 }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use anyhow::{Result, bail};
 use clap::{Args, ValueEnum};
-use nonius_calibration::{Calibration, Method, Options, Parameter, calibrate};
+use nonius_calibration::{Method, Options, Parameter, calibrate, report, undetermined};
 use nonius_recording::Recording;
 use serde::Serialize;
 
@@ -76,7 +76,7 @@ pub(crate) fn run(args: &Calibrate) -> Result<()> {
         && !(ratio.is_finite() && (0.01..=100.0).contains(&ratio))
     {
         bail!(
-            "--noise-ratio {ratio}: expected 0.01 to 100, the sine channel's noise over the cosine's"
+            "--noise-ratio {ratio}: expected 0.01 to 100, the noise of the sine channel over that of the cosine channel"
         );
     }
     let recording = Recording::read(&args.recording, &args.recording_args.overrides())?;
@@ -86,14 +86,17 @@ pub(crate) fn run(args: &Calibrate) -> Result<()> {
     let options = Options {
         noise_ratio: args.noise_ratio,
     };
-    let found = calibrate(
-        &recording.cos,
-        &recording.sin,
-        args.method.method(),
-        &options,
-    )
-    .map_err(|error| anyhow::anyhow!("{}: {error}", args.recording.display()))?;
+    let (cos, sin, method) = (&recording.cos, &recording.sin, args.method.method());
+    let found = match calibrate(cos, sin, method, &options) {
+        Ok(found) => found,
+        // The file is in order; what it does not tell is the answer.
+        Err(why) if why.is_ignorance() => undetermined(method, cos, sin, &why),
+        Err(why) => bail!("{}: {why}", args.recording.display()),
+    };
     if args.json {
+        for remark in &found.remarks {
+            eprintln!("note: {remark}");
+        }
         let json = Json {
             schema: "nonius.calibration/1",
             method: found.method,
@@ -104,74 +107,8 @@ pub(crate) fn run(args: &Calibrate) -> Result<()> {
         };
         println!("{}", serde_json::to_string_pretty(&json)?);
     } else {
-        print(&found);
+        let adc = recording.metadata.adc;
+        print!("{}", report(&found, Some([adc.cos.lsb, adc.sin.lsb])));
     }
     Ok(())
-}
-
-fn print(found: &Calibration) {
-    println!("[[Statistics]]");
-    println!("    method             = {:?}", found.method);
-    println!("    samples            = {}", found.samples);
-    println!(
-        "    residual rms       = {:.4e} of the amplitude",
-        found.residual_rms
-    );
-    println!(
-        "    noise              = {:.4e} (cos), {:.4e} (sin), in the unit of the columns",
-        found.noise[0], found.noise[1]
-    );
-    if let Some(angle) = found.angle_bound {
-        println!("    bound of the angle = {angle:.2e} rad rms, from the uncertain parameters");
-    }
-    println!("[[Parameters]]");
-    for (i, p) in found.parameters.iter().enumerate() {
-        let error = match p.std_error {
-            Some(e) if p.value != 0.0 => {
-                format!("+/- {e:.3e} ({:.3} %)", (e / p.value).abs() * 100.0)
-            }
-            Some(e) => format!("+/- {e:.3e}"),
-            None => "+/- not known".into(),
-        };
-        let bound = match (&found.bound, i < 5) {
-            (Some(bound), true) => format!("   bound {:.3e}", bound[i]),
-            _ => String::new(),
-        };
-        let unit = if p.unit == "column" || p.unit == "1" {
-            ""
-        } else {
-            &p.unit
-        };
-        println!(
-            "    {:<8} {:>14.8} {error:<28}{bound}  {unit}",
-            p.name, p.value
-        );
-        if i == 4 {
-            println!("    {:<8} {:>14.6} deg", "", p.value.to_degrees());
-        }
-    }
-    if let Some(correlations) = &found.correlations {
-        println!("[[Correlations]] (beyond 0.1)");
-        let mut pairs = vec![];
-        for (i, row) in correlations.iter().enumerate() {
-            pairs.extend(
-                row.iter()
-                    .take(i)
-                    .enumerate()
-                    .map(|(j, value)| (*value, j, i)),
-            );
-        }
-        pairs.retain(|p| p.0.is_finite() && p.0.abs() > 0.1);
-        pairs.sort_by(|a, b| b.0.abs().total_cmp(&a.0.abs()));
-        for (value, i, j) in pairs {
-            let name = |k: usize| &found.parameters[k].name;
-            println!("    C({}, {}) = {value:+.3}", name(i), name(j));
-        }
-    }
-    if !found.cannot_tell.is_empty() {
-        println!("[[What the data cannot tell]]");
-        for sentence in &found.cannot_tell {
-            println!("    {sentence}");
-        }
-    }
 }

@@ -46,6 +46,8 @@ struct Draft {
     accuracy: f64,
 }
 
+/// Asked over found: calibration noise and loop noise add up.
+const MARGIN: f64 = 1.1;
 /// Accuracies that are tried, from the finest, until the sensor and its ADC allow one.
 const FINEST: f64 = 1e-6;
 const COARSEST: f64 = 0.1;
@@ -87,20 +89,24 @@ pub(crate) fn run(args: &New) -> Result<()> {
 }
 
 /// The text of a design fitted to a recording.
-pub(crate) fn fitted_text(name: &str, file: &Path, recording: &Recording) -> Result<String> {
+///
+/// # Errors
+/// No design can follow the recording.
+pub fn fitted_text(name: &str, file: &Path, recording: &Recording) -> Result<String> {
     let mut draft = fitted(name, file, recording, &Survey::of(recording))?;
     settle(&mut draft)?;
     Ok(draft.toml())
 }
 
-/// The finest accuracy that the rest of the draft allows.
+/// The finest accuracy that the rest of the draft allows, and a tenth for what the prediction leaves out.
 fn settle(draft: &mut Draft) -> Result<Design> {
     draft.accuracy = FINEST;
     loop {
-        let text = draft.toml();
-        let spec = Spec::from_toml(&text, &format!("{}.toml", draft.name))?;
-        match Design::new(&spec) {
-            Ok(design) => return Ok(design),
+        match designed(draft) {
+            Ok(_) => {
+                draft.accuracy = rounded_up(draft.accuracy * MARGIN);
+                return designed(draft);
+            }
             Err(_) if draft.accuracy < COARSEST => {
                 draft.accuracy = rounded_up(draft.accuracy * 1.1);
             }
@@ -109,6 +115,11 @@ fn settle(draft: &mut Draft) -> Result<Design> {
             }
         }
     }
+}
+
+fn designed(draft: &Draft) -> Result<Design> {
+    let spec = Spec::from_toml(&draft.toml(), &format!("{}.toml", draft.name))?;
+    Ok(Design::new(&spec)?)
 }
 
 /// The next number of two digits.

@@ -28,12 +28,24 @@ impl Paper {
         (known, known.speed * self.reference.tracking().config.ts)
     }
 
-    /// The first parameters, for signals in their own unit; those of sections 5.4 for y, the signals in units of the
-    /// nominal amplitude.
+    /// The calibrated parameters, for signals in their own unit; with bends in the chip's order (see the kernel `bend`),
+    /// to first order in the bends.
     pub(crate) fn theta(&self, parameters: usize) -> Vec<f64> {
         let all: Vec<f64> = self.reference.theta().iter().copied().collect();
         if parameters > 5 {
-            return all[..parameters].to_vec();
+            let (gain, middle) = (1.0 / self.normalise.amplitude, self.normalise.middle);
+            let (common, opposite) = ((all[2] + all[6]) / 2.0, (all[2] - all[6]) / 2.0);
+            // The chip's bend of third order takes θ9 u off what stands before it.
+            let (one, three) = (
+                all[0] * gain / (1.0 - opposite),
+                all[4] * gain / (1.0 + opposite),
+            );
+            let mut chip = vec![one, all[3] - one * middle, three, all[7] - three * middle];
+            if parameters == 9 {
+                chip.push(all[8]);
+            }
+            chip.extend([all[1], all[5], common, opposite]);
+            return chip;
         }
         let five = [all[0], all[1], all[2], all[3], all[4]];
         self.normalise.theta_of_signals(five)[..parameters].to_vec()

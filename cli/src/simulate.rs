@@ -4,22 +4,18 @@ use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use nonius_model::chip::Chip;
 use nonius_model::design::Design;
 use nonius_model::physical::{Converter, theta};
-use nonius_model::spec::Spec;
-use nonius_recording::{Recording, Survey};
-use nonius_testvectors::stimulus::Sample;
+use nonius_recording::Recording;
 use nonius_testvectors::waves::Waves;
 
+use crate::play;
 use crate::recording_args::RecordingArgs;
 use crate::target::Target;
-
-/// Largest jump, in periods, from the end of a repeated recording to its beginning, beyond the usual step.
-const JOINT: f64 = 0.1;
 
 /// What to simulate.
 #[derive(Args)]
@@ -71,7 +67,6 @@ struct BitTrue<'a> {
 
 impl Interpolator for BitTrue<'_> {
     fn estimate(&self) -> Estimate {
-        let parameters = self.design.spec.calibration.parameters as usize;
         Estimate {
             position: exact(
                 self.chip.position_raw(),
@@ -79,17 +74,16 @@ impl Interpolator for BitTrue<'_> {
             ),
             speed_per_sample: self.speed,
             locked: self.chip.state.locked,
-            theta: theta(&self.design.spec, self.chip.theta())[..parameters].to_vec(),
+            theta: {
+                let all = theta(&self.design.spec, self.chip.theta());
+                let numbers = self.design.spec.calibration.thetas();
+                numbers.iter().map(|i| all[i - 1]).collect()
+            },
         }
     }
 
     fn step(&mut self, cos: f64, sin: f64) -> Result<()> {
-        let sample = Sample {
-            cos: self.converter.code(cos),
-            sin: self.converter.code(sin),
-            preset: false,
-            calibrate: true,
-        };
+        let sample = play::sample(&self.converter, cos, sin);
         let probes = self
             .chip
             .step_codes(sample.cos, sample.sin, sample.preset, sample.calibrate);
@@ -156,18 +150,12 @@ pub(crate) fn run(args: &Simulate) -> Result<()> {
     let spec = crate::design_file::read(&args.design)?;
     let design = Design::new(&spec).with_context(|| format!("{file} cannot work"))?;
     let recording = Recording::read(&args.recording, &args.recording_args.overrides())?;
-    for note in &recording.notes {
-        eprintln!("note: {note}");
-    }
-    if args.repeat > 1 {
-        joins(&recording, &args.recording)?;
-    }
-    compare(&spec, &recording);
-    let parameters = spec.calibration.parameters as usize;
+    play::check(&spec, &recording, &args.recording, args.repeat)?;
+    let thetas = spec.calibration.thetas();
     let mut interpolator: Box<dyn Interpolator> = if args.reference {
         Box::new(Paper {
             paper: crate::paper::Paper::of(&design)?,
-            parameters,
+            parameters: thetas.len(),
         })
     } else {
         Box::new(BitTrue {
@@ -188,7 +176,7 @@ pub(crate) fn run(args: &Simulate) -> Result<()> {
         interpolator.as_mut(),
         &recording,
         args.repeat,
-        parameters,
+        thetas,
     )
     .with_context(|| format!("cannot write {}", args.output.display()))?;
     interpolator.finish()?;
@@ -209,11 +197,11 @@ fn write(
     interpolator: &mut dyn Interpolator,
     recording: &Recording,
     repeat: u32,
-    parameters: usize,
+    thetas: &[usize],
 ) -> Result<()> {
     let mut out = BufWriter::with_capacity(1 << 16, target.file());
     write!(out, "time_s,position_periods,speed_periods_per_s,locked")?;
-    for i in 1..=parameters {
+    for i in thetas {
         write!(out, ",theta_{i}")?;
     }
     writeln!(out)?;
@@ -250,54 +238,6 @@ fn write(
     bar.finish_and_clear();
     out.flush()?;
     Ok(())
-}
-
-/// A recording that is to be repeated begins where it ends.
-fn joins(recording: &Recording, path: &Path) -> Result<()> {
-    let motion = Survey::of(recording).motion;
-    let angle = &motion.angle_periods;
-    let (Some(first), Some(last)) = (angle.first(), angle.last()) else {
-        return Ok(());
-    };
-    let steps = angle.len().saturating_sub(1).max(1) as f64;
-    let usual = (last - first) / steps;
-    let jump = first - (last + usual);
-    let jump = jump - jump.round();
-    if jump.abs() > JOINT {
-        bail!(
-            "{}: --repeat needs a recording of whole turns; its end and its beginning are {:.3} of a scale period \
-             apart. Cut it to whole scale periods, or play it once.",
-            path.display(),
-            jump.abs()
-        );
-    }
-    Ok(())
-}
-
-/// Says where recording and design do not fit each other.
-fn compare(spec: &Spec, recording: &Recording) {
-    let (designed, recorded) = (spec.adc.sample_rate_hz, recording.metadata.sample_rate_hz);
-    if (recorded / designed - 1.0).abs() > 0.01 {
-        eprintln!(
-            "note: the design samples at {designed} Hz, the recording at {recorded:.6} Hz; the chip counts samples, so \
-             its bandwidth is {:.4} times the designed one here",
-            recorded / designed
-        );
-    }
-    let converter = Converter::of(spec);
-    let pairs = recording.cos.iter().zip(&recording.sin);
-    let clipped = pairs
-        .filter(|(c, s)| converter.clips(**c) || converter.clips(**s))
-        .count();
-    if clipped > 0 {
-        eprintln!(
-            "note: {clipped} of {} samples lie outside the design's ADC range {} … {} and are held at its ends; \
-             `nonius new NAME --from RECORDING.csv` fits a range",
-            recording.samples(),
-            spec.adc.middle - spec.adc.full_scale,
-            spec.adc.middle + spec.adc.full_scale
-        );
-    }
 }
 
 #[cfg(test)]

@@ -317,3 +317,13 @@ fn diagnose_writes_the_contract() {
         &["none.csv"],
     );
 }
+
+#[test]
+fn verify_refuses_what_it_cannot_run() {
+    let dir = tempfile::tempdir().expect("scratch folder");
+    refused(
+        &nonius(dir.path(), &["verify", "chip", "--simulator", "modelsim"]),
+        &["modelsim", "icarus", "verilator"],
+    );
+    refused(&nonius(dir.path(), &["verify", "nowhere"]), &["nowhere"]);
+}

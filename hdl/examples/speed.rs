@@ -164,6 +164,6 @@ const HEAD: &str = "\
 Written by `cargo run --release -p nonius-hdl --example speed -- designs/optical.toml docs`; do not edit. One core;
 the fastest of five repetitions of two million samples. The Verilog is compiled with -O3 and its time includes reading
 and comparing every probe with the vectors.
-Other work on the machine lowers every line: two runs on a busy one differed by 45 %, so take these as lower bounds.
+Other work on the machine lowers every line, so take these as lower bounds.
 
 ";

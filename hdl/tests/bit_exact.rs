@@ -5,7 +5,7 @@ mod chip;
 use chip::{optical, shipped, write};
 use nonius_hdl::ChipDir;
 use nonius_hdl::verify::{Options, verify};
-use nonius_model::spec::{All, Coding, Multipliers, Spec};
+use nonius_model::spec::{All, CalibrationMethod, Coding, Multipliers, Spec};
 
 fn agrees(spec: &Spec, rows: usize, options: &Options) {
     let dir = tempfile::tempdir().expect("scratch folder");
@@ -54,6 +54,35 @@ fn variants() -> Vec<Spec> {
         with(&|s| s.chip.multipliers = Multipliers::All(All::All)),
     ];
     all.extend([2, 3, 5].map(|n| with(&|s| s.chip.multipliers = Multipliers::Count(n))));
+    all.extend([8, 9].map(|n| with(&|s| s.calibration.parameters = n)));
+    all.extend([
+        with(&|s| {
+            s.calibration.parameters = 9;
+            s.chip.multipliers = Multipliers::All(All::All);
+            s.tracking.method = 2;
+            slow_type_1(s);
+        }),
+        with(&|s| {
+            s.calibration.parameters = 8;
+            s.calibration.completion = false;
+            s.chip.multipliers = Multipliers::Count(3);
+        }),
+        with(&|s| {
+            s.calibration.parameters = 4;
+            s.calibration.method = CalibrationMethod::Exact;
+        }),
+        with(&|s| {
+            s.calibration.method = CalibrationMethod::Exact;
+            s.chip.multipliers = Multipliers::Count(2);
+            slow_type_1(s);
+            s.tracking.pole = Some(0.9);
+        }),
+        with(&|s| s.calibration.method = CalibrationMethod::SumOfSquares),
+        with(&|s| {
+            s.calibration.parameters = 4;
+            s.calibration.method = CalibrationMethod::Batch;
+        }),
+    ]);
     all.extend([8, 16, 18].map(|bits| {
         with(&|s| {
             s.adc.bits = bits;

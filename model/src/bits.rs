@@ -8,7 +8,7 @@ use std::ops::{Add, Mul, Neg, Sub};
 
 use fixed::types::{I16F48, I32F96};
 
-use crate::format::{CONTAINER_FRACTION, Overflow, Quantiser, Rounding};
+use crate::format::{CONTAINER_FRACTION, Quantiser};
 use crate::rom::Rom;
 use crate::signal::{Signal, Wide};
 
@@ -41,25 +41,6 @@ impl Bits {
     #[must_use]
     pub fn to_f64(self) -> f64 {
         self.0.to_num()
-    }
-
-    /// Puts an integer in units of the format's last bit into the format and back into the container.
-    #[inline(always)]
-    fn settle(integer: i64, to: &Quantiser) -> Self {
-        let format = to.format;
-        let fitted = match to.overflow {
-            Overflow::Saturate => integer.clamp(format.min_raw() as i64, format.max_raw() as i64),
-            Overflow::Wrap => {
-                let spare = 64 - format.width;
-                if format.signed {
-                    (integer << spare) >> spare
-                } else {
-                    ((integer as u64) << spare >> spare) as i64
-                }
-            }
-            Overflow::Never => integer,
-        };
-        Self::from_raw(fitted, format.fraction)
     }
 }
 
@@ -116,13 +97,8 @@ impl Signal for Bits {
     }
     #[inline(always)]
     fn quantise(self, to: &Quantiser) -> Self {
-        let drop = CONTAINER_FRACTION - to.format.fraction;
-        let half = if to.rounding == Rounding::Nearest {
-            (1i64 << drop) >> 1
-        } else {
-            0
-        };
-        Self::settle((self.0.to_bits() + half) >> drop, to)
+        let to = &to.in_container;
+        Self(I16F48::from_bits(to.settle(self.0.to_bits() + to.half)))
     }
     #[inline(always)]
     fn less_than(self, other: Self) -> bool {
@@ -168,22 +144,14 @@ impl Wide for WideBits {
     }
     #[inline(always)]
     fn quantise(self, to: &Quantiser) -> Bits {
-        let drop = WIDE_FRACTION - to.format.fraction;
-        let half = if to.rounding == Rounding::Nearest {
-            1i128 << (drop - 1)
-        } else {
-            0
-        };
-        Bits::settle(((self.0.to_bits() + half) >> drop) as i64, to)
+        let to = &to.in_container;
+        let rounded = (self.0.to_bits() + to.wide_half) >> CONTAINER_FRACTION;
+        Bits(I16F48::from_bits(to.settle(rounded as i64)))
     }
     #[inline(always)]
     fn quantise_geared(self, gear: Bits, stride: u32, _last: u32, to: &Quantiser) -> Bits {
-        let drop = WIDE_FRACTION - to.format.fraction + stride * gear.raw(0) as u32;
-        let half = if to.rounding == Rounding::Nearest {
-            1i128 << (drop - 1)
-        } else {
-            0
-        };
-        Bits::settle(((self.0.to_bits() + half) >> drop) as i64, to)
+        // Cutting off before the rounding changes nothing: half a bit is a whole number of what is left.
+        let slower = self.0.to_bits() >> (stride * gear.raw(0) as u32);
+        Self(I32F96::from_bits(slower)).quantise(to)
     }
 }

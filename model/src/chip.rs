@@ -3,8 +3,9 @@
 use crate::bits::Bits;
 use crate::design::Design;
 use crate::graph::{Graph, Node, RangeError, Recorder};
-use crate::kernel::{Coefficients, Input, Probes, State, Structure, sample};
+use crate::kernel::{Coefficients, Input, Probes, State, Structure, advance, sample};
 use crate::signal::Signal;
+use crate::spec::CalibrationMethod;
 
 /// The chip in one reading: `Chip<Bits>` is bit-true, `Chip<f64>` the same algorithm without rounding.
 #[derive(Clone, Debug)]
@@ -47,12 +48,17 @@ impl Chip<Bits> {
             + i128::from(self.state.alpha_hat.raw(alpha.fraction))
     }
 
-    /// The parameters that the next sample is corrected with, as the kernels see them.
+    /// The parameters θ1 … θ9 that the next sample is corrected with, as the kernels see them.
     #[must_use]
-    pub fn theta(&self) -> [f64; 5] {
-        let theta =
-            crate::kernel::correction::parameters(&self.state, &self.coefficients, &self.structure);
-        theta.map(Bits::to_f64)
+    pub fn theta(&self) -> [f64; 9] {
+        use crate::kernel::{bend, correction};
+        let state = &self.state;
+        let [t1, t2, t3, t4, t5] =
+            correction::parameters(state, &self.coefficients, &self.structure);
+        let bends = bend::parameters(state, &self.structure);
+        let (t6, t7) = (bends.theta_6, bends.theta_7);
+        let (t8, t9) = (state.theta_8_deviation, state.theta_9_deviation);
+        [t1, t2, t3, t4, t5, t6, t7, t8, t9].map(Bits::to_f64)
     }
 
     /// The position in periods.
@@ -87,9 +93,7 @@ impl<S: Signal> Chip<S> {
     /// One sample.
     #[inline]
     pub fn step(&mut self, input: &Input<S>) -> Probes<S> {
-        let (next, probes) = sample(input, &self.state, &self.coefficients, &self.structure);
-        self.state = next;
-        probes
+        advance(input, &mut self.state, &self.coefficients, &self.structure)
     }
 }
 
@@ -97,17 +101,31 @@ impl<S: Signal> Chip<S> {
 #[must_use]
 pub fn registers(structure: &Structure) -> (Vec<&'static str>, Vec<&'static str>) {
     let one = structure.method == crate::kernel::Method::One;
+    let two_products = structure.method != crate::kernel::Method::Two;
+    let exact = structure.parameters > 0 && structure.gradient == CalibrationMethod::Exact;
     let used = |name: &str| match name {
         "alpha_hat_previous" => one,
         "rate" => !one,
         "error_previous" => structure.method != crate::kernel::Method::Two,
-        "theta_5_deviation" => structure.parameters >= 5,
+        "theta_5_deviation" => structure.has_phase(),
         "theta_1_deviation" | "theta_2_deviation" | "theta_3_deviation" | "theta_4_deviation" => {
             structure.parameters >= 4
         }
+        "theta_6_deviation" | "theta_7_deviation" | "theta_8_deviation" => structure.has_bend(),
         "gamma_gear" | "gear_periods" | "travel_origin" | "travel_low" | "travel_high"
         | "disturbed" => structure.parameters >= 4,
         "loop_gear" => structure.loop_gears > 0,
+        "theta_9_deviation" | "null_gradient" | "null_gradient_rate" | "travel_samples"
+        | "moving" => structure.completion.is_some(),
+        "null_gradient_error" => structure.completion.is_some() && two_products,
+        name if name.starts_with("alpha_gradient") => {
+            let phase = name.ends_with('5');
+            let error = name.starts_with("alpha_gradient_error");
+            exact && (!phase || structure.has_phase()) && (!error || two_products)
+        }
+        name if name.starts_with("gathered") => {
+            structure.gathers() && (!name.ends_with('5') || structure.has_phase())
+        }
         _ => true,
     };
     let keep = |names: &[&'static str]| names.iter().copied().filter(|n| used(n)).collect();
@@ -118,7 +136,8 @@ pub fn registers(structure: &Structure) -> (Vec<&'static str>, Vec<&'static str>
 #[must_use]
 pub fn probes(structure: &Structure) -> (Vec<&'static str>, Vec<&'static str>) {
     let used = |name: &str| match name {
-        "theta_5" => structure.parameters >= 5,
+        "theta_5" => structure.has_phase(),
+        "theta_6" | "theta_7" => structure.has_bend(),
         "theta_2" | "theta_4" | "rho_c" | "rho_s" | "fresh" | "whole_period" => {
             structure.parameters >= 4
         }
@@ -220,10 +239,18 @@ pub fn register_format(name: &str, structure: &Structure) -> crate::format::Form
         "theta_3_deviation" => f.deviation[2].format,
         "theta_4_deviation" => f.deviation[3].format,
         "theta_5_deviation" => f.deviation[4].format,
+        "theta_6_deviation" => f.deviation[5].format,
+        "theta_7_deviation" => f.deviation[6].format,
+        "theta_8_deviation" => f.deviation[7].format,
+        "theta_9_deviation" => f.deviation[8].format,
         "lock_level" => f.level.format,
         "loop_gear" => f.loop_gear,
         "gamma_gear" => f.gamma_gear,
         "gear_periods" => f.gear_periods,
+        "travel_samples" => f.travel_samples,
+        name if name.contains("gradient_error") => f.signal.format,
+        name if name.contains("_gradient") => f.alpha_gradient.format,
+        name if name.starts_with("gathered") => f.gathered.format,
         "travel_origin" | "travel_low" | "travel_high" => crate::kernel::travel::SECTOR,
         _ => f.signal.format,
     }

@@ -24,6 +24,7 @@ pub struct Format {
 impl Format {
     /// Two's complement with `width` bits, the last of weight 2^-`fraction`.
     #[must_use]
+    #[inline(always)]
     pub const fn signed(width: u32, fraction: u32) -> Self {
         Self {
             signed: true,
@@ -34,6 +35,7 @@ impl Format {
 
     /// Unsigned with `width` bits, the last of weight 2^-`fraction`.
     #[must_use]
+    #[inline(always)]
     pub const fn unsigned(width: u32, fraction: u32) -> Self {
         Self {
             signed: false,
@@ -139,66 +141,72 @@ pub struct Quantiser {
     pub rounding: Rounding,
     /// What happens outside the range.
     pub overflow: Overflow,
+    /// The same for the bit-true reading.
+    #[serde(skip)]
+    pub(crate) in_container: InContainer,
 }
 
 impl Quantiser {
-    /// Round to nearest and saturate: the rule for signals.
+    /// A format and the way into it.
     #[must_use]
-    pub const fn saturating(format: Format) -> Self {
+    #[inline(always)]
+    pub const fn new(format: Format, rounding: Rounding, overflow: Overflow) -> Self {
         Self {
             format,
-            rounding: Rounding::Nearest,
-            overflow: Overflow::Saturate,
+            rounding,
+            overflow,
+            in_container: InContainer::new(format, rounding, overflow),
         }
+    }
+
+    /// Round to nearest and saturate: the rule for signals.
+    #[must_use]
+    #[inline(always)]
+    pub const fn saturating(format: Format) -> Self {
+        Self::new(format, Rounding::Nearest, Overflow::Saturate)
     }
 
     /// The same where half a bit was added before: what is left of rounding to nearest is to cut off.
     #[must_use]
+    #[inline(always)]
     pub const fn rounded_before(self) -> Self {
         Self {
             rounding: Rounding::Floor,
+            in_container: InContainer {
+                half: 0,
+                wide_half: 0,
+                ..self.in_container
+            },
             ..self
         }
     }
 
     /// Cut off and wrap: the rule for angles and counters.
     #[must_use]
+    #[inline(always)]
     pub const fn wrapping(format: Format) -> Self {
-        Self {
-            format,
-            rounding: Rounding::Floor,
-            overflow: Overflow::Wrap,
-        }
+        Self::new(format, Rounding::Floor, Overflow::Wrap)
     }
 
     /// Round to nearest where the range is proven.
     #[must_use]
+    #[inline(always)]
     pub const fn proven(format: Format) -> Self {
-        Self {
-            format,
-            rounding: Rounding::Nearest,
-            overflow: Overflow::Never,
-        }
+        Self::new(format, Rounding::Nearest, Overflow::Never)
     }
 
     /// Cut off where the range is proven.
     #[must_use]
+    #[inline(always)]
     pub const fn truncating(format: Format) -> Self {
-        Self {
-            format,
-            rounding: Rounding::Floor,
-            overflow: Overflow::Never,
-        }
+        Self::new(format, Rounding::Floor, Overflow::Never)
     }
 
     /// Cut to a grid in every reading and wrap.
     #[must_use]
+    #[inline(always)]
     pub const fn grid(format: Format) -> Self {
-        Self {
-            format,
-            rounding: Rounding::Grid,
-            overflow: Overflow::Wrap,
-        }
+        Self::new(format, Rounding::Grid, Overflow::Wrap)
     }
 
     /// Quantises the integer `raw` with `fraction` fraction bits, exactly as the chip does.
@@ -226,6 +234,83 @@ impl Quantiser {
             }
             Overflow::Never => shifted,
         }
+    }
+}
+
+/// A quantiser as the bit-true reading applies it, in place: add, mask, sign-extend, clamp, on integers in units of
+/// the container's last bit. Worked out once, because it is all that the chip does between its products.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct InContainer {
+    /// Half a last bit of the format, 0 where nothing is rounded.
+    pub(crate) half: i64,
+    /// The same for an exact product, which has twice the fraction bits.
+    pub(crate) wide_half: i128,
+    /// The bits that the format has; without an end above where it is signed or does not wrap.
+    pub(crate) mask: i64,
+    /// Bits above the sign of a format that wraps.
+    pub(crate) spare: u32,
+    /// Smallest value where it saturates.
+    pub(crate) low: i64,
+    /// Largest value where it saturates.
+    pub(crate) high: i64,
+}
+
+impl InContainer {
+    #[inline(always)]
+    const fn new(format: Format, rounding: Rounding, overflow: Overflow) -> Self {
+        // A format that is too fine for the container is refused when the chip is recorded.
+        let drop = CONTAINER_FRACTION.saturating_sub(format.fraction);
+        let wide_half = match rounding {
+            Rounding::Nearest => 1i128 << (drop + CONTAINER_FRACTION - 1),
+            Rounding::Floor | Rounding::Grid => 0,
+        };
+        let wraps = matches!(overflow, Overflow::Wrap);
+        let saturates = matches!(overflow, Overflow::Saturate);
+        let last_bits = (1i64 << drop) - 1;
+        let top = drop + format.width;
+        let above = if wraps && !format.signed && top < 64 {
+            !0i64 << top
+        } else {
+            0
+        };
+        let spare = if wraps && format.signed && top < 64 {
+            64 - top
+        } else {
+            0
+        };
+        Self {
+            half: (wide_half >> CONTAINER_FRACTION) as i64,
+            wide_half,
+            mask: !last_bits & !above,
+            spare,
+            low: if saturates {
+                in_i64(format.min_raw() << drop)
+            } else {
+                i64::MIN
+            },
+            high: if saturates {
+                in_i64(format.max_raw() << drop)
+            } else {
+                i64::MAX
+            },
+        }
+    }
+
+    /// The container's integer of what the integer `rounded` (half a bit added already) becomes.
+    #[inline(always)]
+    pub(crate) fn settle(&self, rounded: i64) -> i64 {
+        let kept = ((rounded & self.mask) << self.spare) >> self.spare;
+        kept.clamp(self.low, self.high)
+    }
+}
+
+const fn in_i64(value: i128) -> i64 {
+    if value > i64::MAX as i128 {
+        i64::MAX
+    } else if value < i64::MIN as i128 {
+        i64::MIN
+    } else {
+        value as i64
     }
 }
 

@@ -46,21 +46,34 @@ impl Converter {
 }
 
 /// The chip's parameters as those of section 5.3, for signals in the unit of `adc.full_scale`:
-/// cos α = θ1 y_c + θ2, sin α = θ3 y_s + θ4 + θ5 y_c. Gains in 1/unit, offsets without unit.
+/// cos α = θ1 y_c + θ2, sin α = θ3 y_s + θ4 + θ5 y_c. Gains in 1/unit, offsets without unit. With 8 and 9 parameters θ5
+/// acts on the corrected cosine and θ6 … θ9 are bends (see the kernel `bend`), all without unit.
 #[must_use]
-pub fn theta(spec: &Spec, normalised: [f64; 5]) -> [f64; 5] {
+pub fn theta(spec: &Spec, normalised: [f64; 9]) -> [f64; 9] {
     let power = 2f64.powi(crate::design::normalisation(spec).1 as i32);
     // y = (value − middle) · scale is what the chip multiplies.
     let scale = power / spec.adc.full_scale;
     let middle = spec.adc.middle;
-    let [one, two, three, four, five] = normalised;
-    let (gain_c, gain_s, cross) = (one * scale, three * scale, five * scale);
+    let [one, two, three, four, five, bends @ ..] = normalised;
+    let (gain_c, gain_s) = (one * scale, three * scale);
+    // With bends the phase acts on the corrected cosine, which has no unit.
+    let bent = spec.calibration.parameters >= 8;
+    let (cross, shift) = if bent {
+        (five, gain_s)
+    } else {
+        (five * scale, gain_s + five * scale)
+    };
+    let [six, seven, eight, nine] = bends;
     [
         gain_c,
         two - gain_c * middle,
         gain_s,
-        four - (gain_s + cross) * middle,
+        four - shift * middle,
         cross,
+        six,
+        seven,
+        eight,
+        nine,
     ]
 }
 

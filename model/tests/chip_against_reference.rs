@@ -9,7 +9,7 @@ mod support;
 
 use std::f64::consts::TAU;
 
-use agreement::{Difference, EQUALISER, WorstCase, compare};
+use agreement::{Difference, WorstCase, compare, equaliser};
 use nonius_model::chip::Chip;
 use nonius_model::design::Design;
 use nonius_model::reference::gate::{Gate, GateState, Window};
@@ -103,7 +103,7 @@ fn the_equations_agree() {
             &design,
             &mut Chip::unrounded(&design),
             sweep(&spec),
-            EQUALISER,
+            equaliser(&spec),
         );
         check(&name, &found, &WorstCase::of(&design, false));
         calibrated(&spec, &found);
@@ -120,7 +120,7 @@ fn the_bits_agree_to_the_rounding() {
             &design,
             &mut Chip::bit_true(&design),
             sweep(&spec),
-            EQUALISER,
+            equaliser(&spec),
         );
         check(&name, &found, &WorstCase::of(&design, true));
         calibrated(&spec, &found);
@@ -147,11 +147,11 @@ fn a_small_difference_in_the_design_is_seen() {
         &wider,
         &mut Chip::unrounded(&design),
         sweep(&spec),
-        EQUALISER,
+        equaliser(&spec),
     );
     assert!(found.alpha_hat > 100.0 * worst.alpha_hat, "{found:?}");
     assert!(found.e > 100.0 * worst.e, "{found:?}");
-    let larger = EQUALISER.map(|x| 1.01 * x);
+    let larger = equaliser(&spec).map(|x| 1.01 * x);
     let found = compare(&design, &mut Chip::unrounded(&design), sweep(&spec), larger);
     assert!(found.theta > 100.0 * worst.theta, "{found:?}");
     assert!(found.rho > 100.0 * worst.rho, "{found:?}");

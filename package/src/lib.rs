@@ -16,9 +16,6 @@ use nonius_testvectors::stimulus::{self, Stimulus};
 use nonius_testvectors::vectors;
 use nonius_testvectors::waves::{Waves, gtkw};
 
-/// The stimulus whose waves are written.
-const SHOWN: &str = "sweep";
-
 /// The files of a chip and what there is to say about it.
 pub struct Package {
     /// Path below the output folder, content.
@@ -46,14 +43,18 @@ pub enum PackageError {
 /// # Errors
 /// Only defects of the generator.
 pub fn package(design: &Design, rows: usize) -> Result<Package, PackageError> {
-    package_with(design, stimulus::named(design, rows))
+    package_with(design, stimulus::named(design, rows), "sweep")
 }
 
-/// The same with other stimuli.
+/// The same with other stimuli; `shown` is the one whose waves are written.
 ///
 /// # Errors
 /// Only defects of the generator.
-pub fn package_with(design: &Design, stimuli: Vec<Stimulus>) -> Result<Package, PackageError> {
+pub fn package_with(
+    design: &Design,
+    stimuli: Vec<Stimulus>,
+    shown: &str,
+) -> Result<Package, PackageError> {
     let names: Vec<_> = stimuli
         .iter()
         .map(|s| (s.name.clone(), s.samples.len()))
@@ -70,7 +71,7 @@ pub fn package_with(design: &Design, stimuli: Vec<Stimulus>) -> Result<Package, 
         let rows = vectors::rows(design, one, &chip.columns);
         files.push((format!("vectors/{}.vec", one.name), rows.into_bytes()));
     }
-    if let Some(shown) = stimuli.iter().find(|s| s.name == SHOWN).or(stimuli.first()) {
+    if let Some(shown) = stimuli.iter().find(|s| s.name == shown).or(stimuli.first()) {
         let name = &shown.name;
         let mut bytes = vec![];
         let mut waves = Waves::new(&mut bytes, design, &chip.columns, chip.clocks)?;

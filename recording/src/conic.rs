@@ -48,29 +48,34 @@ impl Conic {
         let smallest = eigen.eigenvalues.imin();
         let q = inverse.transpose() * eigen.eigenvectors.column(smallest);
         let f = -q.dot(&mean);
-        of_coefficients([q[0], q[1], q[2], q[3], q[4], f])
+        Ellipse::of_conic([q[0], q[1], q[2], q[3], q[4], f])
     }
 }
 
-/// The parameters of equation (4) from the coefficients A … F, in closed form.
-fn of_coefficients([a, b, c, d, e, f]: [f64; 6]) -> Option<Ellipse> {
-    let discriminant = 4.0 * a * c - b * b;
-    let b_c = (b * e - 2.0 * c * d) / discriminant;
-    let b_s = (b * d - 2.0 * a * e) / discriminant;
-    // About its centre: A x² + B xy + C y² = size.
-    let size = -(f + (d * b_c + e * b_s) / 2.0);
-    let (a, b, c) = (a / size, b / size, c / size);
-    let sin_beta = b / (2.0 * (a * c).sqrt());
-    let cos_beta_squared = 1.0 - sin_beta * sin_beta;
-    let ellipse = Ellipse {
-        a_c: (a * cos_beta_squared).sqrt().recip(),
-        b_c,
-        a_s: (c * cos_beta_squared).sqrt().recip(),
-        b_s,
-        beta: sin_beta.asin(),
-    };
-    let real = discriminant > 0.0 && a > 0.0 && c > 0.0 && cos_beta_squared > 0.0;
-    (real && ellipse.is_finite()).then_some(ellipse)
+impl Ellipse {
+    /// The ellipse A x² + B xy + C y² + D x + E y + F = 0 from its coefficients A … F: the closed-form solution of the
+    /// paper's equations (5), up to a common factor of either sign. x is the cos channel, y the sin channel. `None`
+    /// where the conic is no real ellipse.
+    #[must_use]
+    pub fn of_conic([a, b, c, d, e, f]: [f64; 6]) -> Option<Self> {
+        let discriminant = 4.0 * a * c - b * b;
+        let b_c = (b * e - 2.0 * c * d) / discriminant;
+        let b_s = (b * d - 2.0 * a * e) / discriminant;
+        // About its centre: A x² + B xy + C y² = size.
+        let size = -(f + (d * b_c + e * b_s) / 2.0);
+        let (a, b, c) = (a / size, b / size, c / size);
+        let sin_beta = b / (2.0 * (a * c).sqrt());
+        let cos_beta_squared = 1.0 - sin_beta * sin_beta;
+        let ellipse = Self {
+            a_c: (a * cos_beta_squared).sqrt().recip(),
+            b_c,
+            a_s: (c * cos_beta_squared).sqrt().recip(),
+            b_s,
+            beta: sin_beta.asin(),
+        };
+        let real = discriminant > 0.0 && a > 0.0 && c > 0.0 && cos_beta_squared > 0.0;
+        (real && ellipse.is_finite()).then_some(ellipse)
+    }
 }
 
 #[cfg(test)]

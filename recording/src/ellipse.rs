@@ -80,6 +80,12 @@ impl Ellipse {
         c.hypot(s) - 1.0
     }
 
+    /// The mean amplitude of the two channels, in the unit of the columns.
+    #[must_use]
+    pub fn amplitude(&self) -> f64 {
+        (self.a_c + self.a_s) / 2.0
+    }
+
     /// Fits an ellipse to samples. Where they do not show one (too short an arc, too much noise),
     /// the extremes serve, and the notes say so.
     #[must_use]
@@ -100,6 +106,13 @@ impl Ellipse {
                 }
             }
         }
+    }
+
+    /// The least-squares conic (Taubin's) through all samples, on however short an arc and with its glitches; `None`
+    /// where it is no ellipse.
+    #[must_use]
+    pub fn of_arc(cos: &[f64], sin: &[f64]) -> Option<Self> {
+        conic(pairs(cos, sin), &Self::of_extremes(cos, sin))
     }
 
     /// Centre and half the range of each channel, one sample in a thousand left out at each end.
@@ -143,19 +156,8 @@ fn robust(cos: &[f64], sin: &[f64], extremes: &Ellipse) -> Result<EllipseFit, &'
     let mut ellipse = *extremes;
     let mut rho = Vec::new();
     for _ in 0..4 {
-        let mut conic = Conic::default();
-        for ((c, s), _) in pairs(cos, sin).zip(&keep).filter(|(_, keep)| **keep) {
-            let (x, y) = frame.corrected(c, s);
-            conic.add(x, y);
-        }
-        let unit = conic.ellipse().ok_or("the samples lie on no ellipse")?;
-        ellipse = Ellipse {
-            a_c: unit.a_c * frame.a_c,
-            b_c: unit.b_c * frame.a_c + frame.b_c,
-            a_s: unit.a_s * frame.a_s,
-            b_s: unit.b_s * frame.a_s + frame.b_s,
-            beta: unit.beta,
-        };
+        let kept = pairs(cos, sin).zip(&keep).filter(|(_, keep)| **keep);
+        ellipse = conic(kept.map(|(y, _)| y), &frame).ok_or("the samples lie on no ellipse")?;
         rho = residuals(&ellipse, cos, sin);
         let sigma = 1.4826 * median(rho.iter().map(|r| r.abs()).collect());
         let limit = f64::max(OUTLIER * sigma, OUTLIER_FLOOR);
@@ -178,6 +180,23 @@ fn robust(cos: &[f64], sin: &[f64], extremes: &Ellipse) -> Result<EllipseFit, &'
         residual_rms,
         outliers,
         notes,
+    })
+}
+
+/// The least-squares conic through points, in a frame in which they are of order one.
+fn conic(points: impl Iterator<Item = (f64, f64)>, frame: &Ellipse) -> Option<Ellipse> {
+    let mut conic = Conic::default();
+    for (c, s) in points {
+        let (x, y) = frame.corrected(c, s);
+        conic.add(x, y);
+    }
+    let unit = conic.ellipse()?;
+    Some(Ellipse {
+        a_c: unit.a_c * frame.a_c,
+        b_c: unit.b_c * frame.a_c + frame.b_c,
+        a_s: unit.a_s * frame.a_s,
+        b_s: unit.b_s * frame.a_s + frame.b_s,
+        beta: unit.beta,
     })
 }
 

@@ -5,7 +5,7 @@
 // radial residual rho shows what the correction still misses and moves its parameters theta.
 // After S. Balemi, "Automatic calibration of sinusoidal encoder signals", IFAC 2005; equation numbers are the paper's.
 //
-// Design 330a69fa3b46: 16 products on 1 multiplier, 19 clocks per sample.
+// Design bfc12fa0c0dd: 16 products on 1 multiplier, 19 clocks per sample.
 //
 // Formats: sW.F is a two's complement number of W bits, F of them behind the point; uW.F has no sign and is kept here
 // with a zero in front, so that every number is signed. Angles are in turns of a scale period.
@@ -179,12 +179,12 @@ module optical (
     reg fresh;
     reg signed [17:0] rho_c;
     reg signed [17:0] rho_s;
-    reg signed [26:0] step_5;
-    reg signed [25:0] step_1;
+    reg signed [23:0] step_5;
+    reg signed [23:0] step_1;
     reg signed [25:0] theta_1_deviation_next;
     reg signed [23:0] step_2;
     reg signed [24:0] theta_2_deviation_next;
-    reg signed [25:0] step_3;
+    reg signed [23:0] step_3;
     reg signed [25:0] theta_3_deviation_next;
     reg signed [23:0] step_4;
     reg signed [24:0] theta_4_deviation_next;
@@ -448,31 +448,31 @@ module optical (
     //   theta -= gamma (2 y_c rho_c, rho_c, 2 y_s rho_s, rho_s, 4 y_c rho_s)
     //   (paper section 5.5.1, M of equation (7))
     wire signed [29:0] y_c_times_rho_s = product_0[29:0]; // s30.27, step 17
-    wire signed [29:0] gradient_5 = y_c_times_rho_s; // s30.29, step 17
-    wire signed [26:0] step_5_geared = shifted_1; // s27.26, step 17
-    wire signed [26:0] step_5_now = fresh ? step_5_geared : 27'sd0; // s27.26, step 17
-    wire signed [26:0] theta_5_deviation_next_difference = {{2{theta_5_deviation[24]}}, theta_5_deviation} - step_5; // s27.26, step 18
-    wire signed [24:0] theta_5_deviation_next = ((&theta_5_deviation_next_difference[26:24]) | ~(|theta_5_deviation_next_difference[26:24])) ? theta_5_deviation_next_difference[24:0] : {theta_5_deviation_next_difference[26], {24{~theta_5_deviation_next_difference[26]}}}; // s25.26, step 18
     wire signed [29:0] y_c_times_rho_c = product_0[29:0]; // s30.27, step 15
-    wire signed [29:0] gradient_1 = y_c_times_rho_c; // s30.30, step 15
-    wire signed [26:0] step_1_geared = shifted_1; // s27.26, step 15
-    wire signed [25:0] step_1_now = fresh ? step_1_geared[25:0] : 26'sd0; // s26.26, step 15
-    wire signed [26:0] theta_1_deviation_next_difference = {theta_1_deviation[25], theta_1_deviation} - {step_1[25], step_1}; // s27.26, step 16
+    wire signed [29:0] y_s_times_rho_s = product_0[29:0]; // s30.27, step 16
+    wire signed [29:0] gradient_5 = y_c_times_rho_s; // s30.26, step 17
+    wire signed [23:0] step_5_geared = shifted_1; // s24.26, step 17
+    wire signed [23:0] step_5_now = fresh ? step_5_geared : 24'sd0; // s24.26, step 17
+    wire signed [25:0] theta_5_deviation_next_difference = {theta_5_deviation[24], theta_5_deviation} - {{2{step_5[23]}}, step_5}; // s26.26, step 18
+    wire signed [24:0] theta_5_deviation_next = ((&theta_5_deviation_next_difference[25:24]) | ~(|theta_5_deviation_next_difference[25:24])) ? theta_5_deviation_next_difference[24:0] : {theta_5_deviation_next_difference[25], {24{~theta_5_deviation_next_difference[25]}}}; // s25.26, step 18
+    wire signed [29:0] gradient_1 = y_c_times_rho_c; // s30.29, step 15
+    wire signed [23:0] step_1_geared = shifted_1; // s24.26, step 15
+    wire signed [23:0] step_1_now = fresh ? step_1_geared : 24'sd0; // s24.26, step 15
+    wire signed [26:0] theta_1_deviation_next_difference = {theta_1_deviation[25], theta_1_deviation} - {{3{step_1[23]}}, step_1}; // s27.26, step 16
     wire signed [25:0] theta_1_deviation_next_now = ((&theta_1_deviation_next_difference[26:25]) | ~(|theta_1_deviation_next_difference[26:25])) ? theta_1_deviation_next_difference[25:0] : {theta_1_deviation_next_difference[26], {25{~theta_1_deviation_next_difference[26]}}}; // s26.26, step 16
     wire signed [17:0] gradient_2 = rho_c; // s18.20, step 13
-    wire signed [26:0] step_2_geared = shifted_1; // s27.26, step 13
-    wire signed [23:0] step_2_now = fresh ? step_2_geared[23:0] : 24'sd0; // s24.26, step 13
+    wire signed [23:0] step_2_geared = shifted_1; // s24.26, step 13
+    wire signed [23:0] step_2_now = fresh ? step_2_geared : 24'sd0; // s24.26, step 13
     wire signed [25:0] theta_2_deviation_next_difference = {theta_2_deviation[24], theta_2_deviation} - {{2{step_2[23]}}, step_2}; // s26.26, step 14
     wire signed [24:0] theta_2_deviation_next_now = ((&theta_2_deviation_next_difference[25:24]) | ~(|theta_2_deviation_next_difference[25:24])) ? theta_2_deviation_next_difference[24:0] : {theta_2_deviation_next_difference[25], {24{~theta_2_deviation_next_difference[25]}}}; // s25.26, step 14
-    wire signed [29:0] y_s_times_rho_s = product_0[29:0]; // s30.27, step 16
-    wire signed [29:0] gradient_3 = y_s_times_rho_s; // s30.30, step 16
-    wire signed [26:0] step_3_geared = shifted_1; // s27.26, step 16
-    wire signed [25:0] step_3_now = fresh ? step_3_geared[25:0] : 26'sd0; // s26.26, step 16
-    wire signed [26:0] theta_3_deviation_next_difference = {theta_3_deviation[25], theta_3_deviation} - {step_3[25], step_3}; // s27.26, step 17
+    wire signed [29:0] gradient_3 = y_s_times_rho_s; // s30.29, step 16
+    wire signed [23:0] step_3_geared = shifted_1; // s24.26, step 16
+    wire signed [23:0] step_3_now = fresh ? step_3_geared : 24'sd0; // s24.26, step 16
+    wire signed [26:0] theta_3_deviation_next_difference = {theta_3_deviation[25], theta_3_deviation} - {{3{step_3[23]}}, step_3}; // s27.26, step 17
     wire signed [25:0] theta_3_deviation_next_now = ((&theta_3_deviation_next_difference[26:25]) | ~(|theta_3_deviation_next_difference[26:25])) ? theta_3_deviation_next_difference[25:0] : {theta_3_deviation_next_difference[26], {25{~theta_3_deviation_next_difference[26]}}}; // s26.26, step 17
     wire signed [17:0] gradient_4 = rho_s; // s18.20, step 14
-    wire signed [26:0] step_4_geared = shifted_1; // s27.26, step 14
-    wire signed [23:0] step_4_now = fresh ? step_4_geared[23:0] : 24'sd0; // s24.26, step 14
+    wire signed [23:0] step_4_geared = shifted_1; // s24.26, step 14
+    wire signed [23:0] step_4_now = fresh ? step_4_geared : 24'sd0; // s24.26, step 14
     wire signed [25:0] theta_4_deviation_next_difference = {theta_4_deviation[24], theta_4_deviation} - {{2{step_4[23]}}, step_4}; // s26.26, step 15
     wire signed [24:0] theta_4_deviation_next_now = ((&theta_4_deviation_next_difference[25:24]) | ~(|theta_4_deviation_next_difference[25:24])) ? theta_4_deviation_next_difference[24:0] : {theta_4_deviation_next_difference[25], {24{~theta_4_deviation_next_difference[25]}}}; // s25.26, step 15
 
@@ -507,18 +507,18 @@ module optical (
     wire lock_lost_next_now = lock_lost_next_condition_3 | lock_lost_next_condition; // step 14
 
     // Shifter 1, shared: gamma is a power of two
-    reg signed [27:0] unshifted_1;
+    reg signed [30:0] unshifted_1;
     always @*
         case (step)
-            5'd13: unshifted_1 = {{3{gradient_2[17]}}, gradient_2, 7'b0}; // step_2_geared
-            5'd14: unshifted_1 = {{3{gradient_4[17]}}, gradient_4, 7'b0}; // step_4_geared
-            5'd15: unshifted_1 = {gradient_1[29], gradient_1[29:3]}; // step_1_geared
-            5'd16: unshifted_1 = {gradient_3[29], gradient_3[29:3]}; // step_3_geared
-            default: unshifted_1 = gradient_5[29:2];
+            5'd13: unshifted_1 = {{6{gradient_2[17]}}, gradient_2, 7'b0}; // step_2_geared
+            5'd14: unshifted_1 = {{6{gradient_4[17]}}, gradient_4, 7'b0}; // step_4_geared
+            5'd15: unshifted_1 = {{3{gradient_1[29]}}, gradient_1[29:2]}; // step_1_geared
+            5'd16: unshifted_1 = {{3{gradient_3[29]}}, gradient_3[29:2]}; // step_3_geared
+            default: unshifted_1 = {gradient_5, 1'b0};
         endcase
-    wire signed [27:0] shift_1 = unshifted_1 >>> gamma_gear[2:0];
-    wire signed [26:0] shifted_1_rounded = shift_1[27:1] + {26'b0, shift_1[0]};
-    wire signed [26:0] shifted_1 = shifted_1_rounded;
+    wire signed [30:0] shift_1 = unshifted_1 >>> gamma_gear[2:0];
+    wire signed [29:0] shifted_1_rounded = shift_1[30:1] + {29'b0, shift_1[0]};
+    wire signed [23:0] shifted_1 = ((&shifted_1_rounded[29:23]) | ~(|shifted_1_rounded[29:23])) ? shifted_1_rounded[23:0] : {shifted_1_rounded[29], {23{~shifted_1_rounded[29]}}};
 
     // Multiplier 0
     always @(posedge clk)
@@ -756,13 +756,8 @@ module optical (
         sector_relative_difference[8],
         cos_hat_times_rho[14:0],
         sin_hat_times_rho[14:0],
-        gradient_5[1:0],
-        gradient_1[2:0],
-        step_1_geared[26],
-        step_2_geared[26:24],
-        gradient_3[2:0],
-        step_3_geared[26],
-        step_4_geared[26:24],
+        gradient_1[1:0],
+        gradient_3[1:0],
         gamma_gear_next_sum[4:3],
         gear_periods_next_sum[2:1],
         product_0[35]

@@ -16,7 +16,7 @@ use nonius_model::reference::recursive::StartConfig;
 use nonius_model::reference::start::Start;
 use nonius_model::reference::sum_of_squares::Smoothing;
 use nonius_model::reference::{Config, Parameters, Reference, Steps, Theta};
-use nonius_model::spec::Spec;
+use nonius_model::spec::{CalibrationMethod, Spec};
 
 use super::scenario::SPEED;
 
@@ -132,6 +132,18 @@ impl Method {
             "chip, bit-true, five".to_owned(),
             Self::Chip(Box::new(OnChip::of(design))),
         ));
+        for (name, method) in [
+            ("exact", CalibrationMethod::Exact),
+            ("sum of squares", CalibrationMethod::SumOfSquares),
+            ("batch", CalibrationMethod::Batch),
+        ] {
+            let mut spec = design.spec.clone();
+            spec.calibration.method = method;
+            if let Ok(other) = Design::new(&spec) {
+                let chip = Self::Chip(Box::new(OnChip::of(&other)));
+                list.push((format!("chip, bit-true, {name}, five"), chip));
+            }
+        }
         list
     }
 
@@ -162,7 +174,7 @@ impl Method {
 impl OnChip {
     fn step(&mut self, y: [f64; 2]) -> Said {
         let (middle, amplitude) = (self.spec.adc.middle, self.spec.sensor.amplitude);
-        let [one, two, three, four, five] = physical::theta(&self.spec, self.chip.theta());
+        let [one, two, three, four, five, ..] = physical::theta(&self.spec, self.chip.theta());
         // For signals of amplitude 1 about 0, from those in volts.
         let mut theta = Theta::zeros();
         theta[0] = one * amplitude;

@@ -3,15 +3,15 @@
 use std::f64::consts::TAU;
 
 use super::{Acquisition, DesignError, Loop, Words, normalisation};
-use crate::format::{Format, Overflow, Quantiser, Rounding, exp2};
+use crate::format::{Format, Quantiser, exp2};
 use crate::kernel::{Coefficients, Constant, Formats, Method, Structure};
 use crate::rom::{Column, Rom};
-use crate::spec::{Coding, Spec};
+use crate::spec::{CalibrationMethod, Coding, Spec};
 
 /// What the parameters can reach: the promise of the design, a quarter more, up to a power of two.
 struct Ranges {
-    /// log2 of the largest deviation of θ1 … θ5.
-    deviation: [i32; 5],
+    /// log2 of the largest deviation of θ1 … θ9.
+    deviation: [i32; 9],
     nominal: f64,
 }
 
@@ -29,7 +29,16 @@ fn ranges(spec: &Spec) -> Ranges {
             power(shift),
             power(gain),
             power(shift),
-            power(phase),
+            if spec.calibration.parameters >= 8 {
+                // It acts on the corrected cosine.
+                power(beta.tan() / (1.0 - m))
+            } else {
+                power(phase)
+            },
+            power(spec.sensor.bend_max),
+            power(spec.sensor.bend_max),
+            power(spec.sensor.bend_max),
+            power(spec.sensor.bend_max),
         ],
         nominal,
     }
@@ -41,6 +50,12 @@ fn power_of(value: f64) -> i32 {
 
 fn level_bits(tracking: &Loop) -> u32 {
     (power_of(4.0 / tracking.omega).clamp(5, 12)) as u32
+}
+
+/// Samples of a period of travel at a fifth of the loop's bandwidth: below that the loop follows what the completion
+/// should see.
+fn travel_samples(spec: &Spec) -> u32 {
+    (5.0 * spec.adc.sample_rate_hz / spec.tracking.bandwidth_hz) as u32
 }
 
 /// Format of a counter from 0 to `last`.
@@ -71,11 +86,7 @@ pub(super) fn structure(
     };
     let multiplied = |largest: f64| {
         let format = Format::signed(width, bits(width as i32 - 1 - power_of(largest)));
-        Quantiser {
-            format,
-            rounding: Rounding::Nearest,
-            overflow: Overflow::Saturate,
-        }
+        Quantiser::saturating(format)
     };
     let gain = multiplied(r.nominal + exp2(r.deviation[0].into()));
     let fp = words.phase_bits;
@@ -96,8 +107,18 @@ pub(super) fn structure(
         )),
         count: Format::signed(spec.chip.count_bits, spec.chip.count_bits),
         theta: [gain, gain, multiplied(exp2(r.deviation[4].into()))],
+        theta_bend: multiplied(exp2(r.deviation[5].into())),
+        theta_cubic: multiplied(exp2(i64::from(r.deviation[7]) + 3)),
         deviation: r.deviation.map(accumulator),
-        step: accumulator(r.deviation.into_iter().max().unwrap_or(0) + 1),
+        alpha_gradient: Quantiser::saturating(Format::signed(fp + 2, fp)),
+        gathered: accumulator(if spec.calibration.method == CalibrationMethod::Batch {
+            7
+        } else {
+            1
+        }),
+        travel_samples: counting_to(travel_samples(spec)),
+        // A step of more than a quarter of the range is no measurement: the word holds it there.
+        step: accumulator(r.deviation.into_iter().max().unwrap_or(0) - 2),
         level: Quantiser::saturating(Format::unsigned(level_bits(tracking), 0)),
         loop_gear: Format::unsigned(2, 0),
         gamma_gear: counting_to(spec.calibration.gamma_last - spec.calibration.gamma_first),
@@ -111,12 +132,18 @@ pub(super) fn structure(
         },
         filter_type: spec.tracking.filter_type,
         parameters: spec.calibration.parameters,
+        gradient: spec.calibration.method,
+        forgetting: spec.calibration.forgetting,
+        completion: (spec.calibration.parameters >= 8 && spec.calibration.completion)
+            .then_some(spec.calibration.completion_gamma),
         offset_binary,
         formats,
         sine: sine_table(words)?,
         loop_gears: acquisition.gears,
         loop_stride: acquisition.stride,
         gamma_first: spec.calibration.gamma_first,
+        // To the nearest power of two.
+        amplitude_shift: (-2.0 * normalisation(spec).0.log2()).round() as u32,
         gamma_gears: spec.calibration.gamma_last - spec.calibration.gamma_first,
     })
 }
@@ -188,11 +215,18 @@ pub(super) fn constants(
     let worst = s.offset_max * 1.5
         + s.amplitude_tolerance
         + s.phase_error_max_deg.to_radians()
-        + 5.0 * s.noise_rms;
+        + 5.0 * s.noise_rms
+        + if spec.calibration.parameters >= 8 {
+            2.0 * s.bend_max
+        } else {
+            0.0
+        };
     Coefficients {
         adc_middle: Constant::rounded(0.5, 1),
         loop_a: Constant::normalised(tracking.a, width, 40),
         loop_ab: Constant::normalised(tracking.ab, width, 40),
+        loop_a_radians: Constant::normalised(tracking.a * TAU, width, 40),
+        loop_ab_radians: Constant::normalised(tracking.ab * TAU, width, 40),
         loop_leak: Constant::normalised(1.0 - tracking.pole, width, 40),
         theta_1_nominal: nominal,
         theta_3_nominal: nominal,
@@ -212,6 +246,11 @@ pub(super) fn constants(
         lock_full: whole(full),
         lock_restart: whole(full / 2),
         loop_gear_last: whole(acquisition.gears.into()),
+        completion_residual: Constant::rounded(
+            exp2((6.0 * s.noise_rms).max(0.05).log2().ceil() as i64),
+            f.min(8),
+        ),
+        travel_samples_last: whole(travel_samples(spec).into()),
         gamma_gear_last: whole(structure.gamma_gears.into()),
         gear_periods_last: whole(i64::from(spec.calibration.gear_periods) - 1),
         unit_radius: corrected(1.0, exp2(-i64::from(f) - 1), f + 1),

@@ -64,13 +64,8 @@ fn hull(products: [i128; 4]) -> (i128, i128) {
 /// A quantisation's reach; `None` where the range was to be proven and does not fit.
 fn quantised(range: (i128, i128), fraction: u32, to: &Quantiser) -> Option<Reach> {
     let fits = |v: i128| v >= to.format.min_raw() && v <= to.format.max_raw();
-    let rounded = |v: i128| {
-        Quantiser {
-            overflow: Overflow::Never,
-            ..*to
-        }
-        .apply(v, fraction)
-    };
+    let rounded =
+        |v: i128| Quantiser::new(to.format, to.rounding, Overflow::Never).apply(v, fraction);
     let (low, high) = (rounded(range.0), rounded(range.1));
     let all = (to.format.min_raw(), to.format.max_raw());
     let range = match to.overflow {
@@ -205,7 +200,9 @@ pub(super) fn input_fits(name: &str, format: Format) -> Result<(), RangeError> {
 /// Refuses what the container of the bit-true reading cannot hold.
 fn in_container(op: &Op, nodes: &[Entry], reached: Reach) -> Result<Reach, RangeError> {
     let scale = if reached.kind == Kind::Wide { 2 } else { 1 };
-    let (fraction, integer) = (scale * CONTAINER_FRACTION, scale * CONTAINER_INTEGER);
+    // One integer bit fewer than there is, so that rounding up stays inside. A product's sum ends in a value, so it
+    // may have no more of them either.
+    let (fraction, integer) = (scale * CONTAINER_FRACTION, CONTAINER_INTEGER - 1);
     let limit = Format::signed(fraction + integer, fraction);
     let format = Format::covering(reached.range.0, reached.range.1, reached.format.fraction);
     let too_fine = format.fraction > fraction;

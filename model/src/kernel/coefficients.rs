@@ -85,6 +85,10 @@ coefficients! {
     loop_a,
     /// Loop coefficients a + b, turns per radian.
     loop_ab,
+    /// Loop coefficient a, radians per radian.
+    loop_a_radians,
+    /// Loop coefficients a + b, radians per radian.
+    loop_ab_radians,
     /// 1 − p, p the second pole of a type 1 filter.
     loop_leak,
     /// Nominal θ1.
@@ -115,6 +119,10 @@ coefficients! {
     lock_restart,
     /// Last loop gear.
     loop_gear_last,
+    /// |ρ| below this lets the completion learn.
+    completion_residual,
+    /// A period of travel that takes so many samples is too slow for the completion.
+    travel_samples_last,
     /// Last γ gear.
     gamma_gear_last,
     /// Periods of travel per γ gear, less one.

@@ -1,5 +1,6 @@
 //! Correction of the raw pair by Θ.
 
+use super::bend::{self, Bends};
 use super::{Coefficients, State, Structure};
 use crate::signal::{Formula, Signal, Wide};
 
@@ -19,6 +20,12 @@ static CORRECT: Formula = Formula {
     title: "Correction",
     equation: "c = theta_1 y_c + theta_2,  s = theta_3 y_s + theta_4 + theta_5 y_c",
     source: "paper section 5.3",
+};
+
+static CORRECT_BENT: Formula = Formula {
+    title: "Correction",
+    equation: "u_c = theta_1 y_c + theta_2,  u_s = theta_3 y_s + theta_4,  after the bend: s + theta_5 c",
+    source: "paper section 5.4, offset and gain first, phase last",
 };
 
 /// An ADC code, given as a fraction of the ADC's range, as a signal: `y` has the nominal amplitude between ½ and 1.
@@ -42,7 +49,7 @@ pub fn parameters<S: Signal>(
     let [first, third, fifth] = structure.formats.theta;
     let theta_1 = (k.theta_1_nominal + state.theta_1_deviation).quantise(&first);
     let theta_3 = (k.theta_3_nominal + state.theta_3_deviation).quantise(&third);
-    let theta_5 = if structure.parameters >= 5 {
+    let theta_5 = if structure.has_phase() {
         state.theta_5_deviation.quantise(&fifth)
     } else {
         k.zero
@@ -56,6 +63,33 @@ pub fn parameters<S: Signal>(
     ]
 }
 
+/// The corrected pair (c, s) of 8 and 9 parameters: offset and gain, bend, phase.
+pub fn correct_bent<S: Signal>(
+    y_c: S,
+    y_s: S,
+    theta: [S; 5],
+    bends: &Bends<S>,
+    k: &Coefficients<S>,
+    structure: &Structure,
+) -> (S, S) {
+    y_c.begin(&CORRECT_BENT);
+    let [theta_1, theta_2, theta_3, theta_4, theta_5] = theta;
+    let signal = &structure.formats.signal;
+    let u_c = (theta_1 * y_c + theta_2.widen())
+        .named("u_c_exact")
+        .quantise(signal);
+    let u_s = (theta_3 * y_s + theta_4.widen())
+        .named("u_s_exact")
+        .quantise(signal);
+    let (c, s) = bend::bend((u_c.named("u_c"), u_s.named("u_s")), bends, k, structure);
+    if !structure.has_phase() {
+        return (c, s);
+    }
+    c.begin(&CORRECT_BENT);
+    let s = s.named("s_before_phase").widen() + theta_5 * c;
+    (c, s.named("s_exact").quantise(signal))
+}
+
 /// The corrected pair (c, s).
 pub fn correct<S: Signal>(y_c: S, y_s: S, theta: [S; 5], structure: &Structure) -> (S, S) {
     y_c.begin(&CORRECT);
@@ -63,7 +97,7 @@ pub fn correct<S: Signal>(y_c: S, y_s: S, theta: [S; 5], structure: &Structure) 
     let signal = &structure.formats.signal;
     let c = theta_1 * y_c + theta_2.widen();
     let mut s = theta_3 * y_s + theta_4.widen();
-    if structure.parameters >= 5 {
+    if structure.has_phase() {
         s = s + theta_5 * y_c;
     }
     (

@@ -3,24 +3,30 @@
 //! Kernels are generic over [`Signal`]; they branch on the structure of the design (which method, how many
 //! parameters), never on data.
 
+pub mod bend;
 pub mod calibration;
 pub mod coefficients;
+pub mod completion;
 pub mod correction;
 pub mod detector;
+pub mod gradient;
 pub mod lock;
 pub mod loop_filter;
 pub mod position;
 pub mod sample;
+pub mod sensitivity;
 pub mod sine;
 pub mod state;
+pub mod sum_of_squares;
 pub mod travel;
 
 pub use coefficients::{Coefficients, Constant};
-pub use sample::sample;
+pub use sample::{advance, sample};
 pub use state::{Input, Probes, State};
 
 use crate::format::{Format, Quantiser};
 use crate::rom::Rom;
+use crate::spec::CalibrationMethod;
 
 /// The loop filter of the paper, section 4.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,8 +46,14 @@ pub struct Structure {
     pub method: Method,
     /// Poles of the filter at 1: 1 or 2.
     pub filter_type: u32,
-    /// Calibrated parameters: 0 (none), 4 or 5.
+    /// Calibrated parameters: 0 (none), 4, 5, 8 or 9.
     pub parameters: u32,
+    /// Which gradient moves them.
+    pub gradient: CalibrationMethod,
+    /// λ = 1 − 2^-`forgetting` of the sum of squares.
+    pub forgetting: u32,
+    /// γ = 2^-that of the direction that no radius shows; `None`: it is not learnt.
+    pub completion: Option<u32>,
     /// The ADC codes run from 0 (offset binary) instead of around 0.
     pub offset_binary: bool,
     /// Formats of the signals.
@@ -54,8 +66,40 @@ pub struct Structure {
     pub loop_stride: u32,
     /// First γ is 2^-`gamma_first`.
     pub gamma_first: u32,
+    /// The gradient by gains and phase carries the square of the amplitude, ¼ … 1; this power of two brings it near 1.
+    pub amplitude_shift: u32,
     /// Last γ gear; each halves γ.
     pub gamma_gears: u32,
+}
+
+impl Structure {
+    /// θ5 is calibrated.
+    #[must_use]
+    pub fn has_phase(&self) -> bool {
+        matches!(self.parameters, 5 | 9)
+    }
+
+    /// Neither bends nor another gradient than the final form.
+    #[must_use]
+    pub fn is_plain(&self) -> bool {
+        !self.has_bend() && self.gradient == CalibrationMethod::Final
+    }
+
+    /// The sum of squares, gathered over samples, moves the parameters.
+    #[must_use]
+    pub fn gathers(&self) -> bool {
+        self.parameters > 0
+            && matches!(
+                self.gradient,
+                CalibrationMethod::SumOfSquares | CalibrationMethod::Batch
+            )
+    }
+
+    /// θ6 … θ9 are calibrated.
+    #[must_use]
+    pub fn has_bend(&self) -> bool {
+        self.parameters >= 8
+    }
 }
 
 /// Formats of the signals; [`Format`] for registers and inputs, [`Quantiser`] for results.
@@ -79,8 +123,18 @@ pub struct Formats {
     pub count: Format,
     /// θ1, θ3 and θ5 as they are multiplied.
     pub theta: [Quantiser; 3],
-    /// Accumulators of the five parameters: deviation from the nominal value.
-    pub deviation: [Quantiser; 5],
+    /// θ6 and θ7 as they are multiplied.
+    pub theta_bend: Quantiser,
+    /// 4 (θ8 ± θ9) as it is multiplied.
+    pub theta_cubic: Quantiser,
+    /// Accumulators of the nine parameters: deviation from the nominal value.
+    pub deviation: [Quantiser; 9],
+    /// ∇α̂ of recursion (11) and its increment, radians.
+    pub alpha_gradient: Quantiser,
+    /// Gathered gradient of the sum of squares.
+    pub gathered: Quantiser,
+    /// Samples in a period of travel.
+    pub travel_samples: Format,
     /// One step of any parameter: one format, so that one shifter serves all.
     pub step: Quantiser,
     /// Lock level.

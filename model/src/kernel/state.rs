@@ -25,6 +25,14 @@ bundle! {
         theta_4_deviation,
         /// θ5.
         theta_5_deviation,
+        /// θ6: second-order bend of the cosine.
+        theta_6_deviation,
+        /// θ7: second-order bend of the sine.
+        theta_7_deviation,
+        /// θ8: third-order bend of both channels.
+        theta_8_deviation,
+        /// θ9: third-order bend that turns the pair and changes no radius.
+        theta_9_deviation,
         /// Confidence of the lock detector.
         lock_level,
         /// Loop gear: 0 widest, the last is the designed bandwidth.
@@ -39,6 +47,54 @@ bundle! {
         travel_low,
         /// Highest sector seen since, relative to the origin.
         travel_high,
+        /// ∇α̂ by θ1, radians (recursion 11).
+        alpha_gradient_1,
+        /// Its increment per sample, radians.
+        alpha_gradient_rate_1,
+        /// w1 − ∇α̂ one sample ago.
+        alpha_gradient_error_1,
+        /// ∇α̂ by θ2, radians (recursion 11).
+        alpha_gradient_2,
+        /// Its increment per sample, radians.
+        alpha_gradient_rate_2,
+        /// w2 − ∇α̂ one sample ago.
+        alpha_gradient_error_2,
+        /// ∇α̂ by θ3, radians (recursion 11).
+        alpha_gradient_3,
+        /// Its increment per sample, radians.
+        alpha_gradient_rate_3,
+        /// w3 − ∇α̂ one sample ago.
+        alpha_gradient_error_3,
+        /// ∇α̂ by θ4, radians (recursion 11).
+        alpha_gradient_4,
+        /// Its increment per sample, radians.
+        alpha_gradient_rate_4,
+        /// w4 − ∇α̂ one sample ago.
+        alpha_gradient_error_4,
+        /// ∇α̂ by θ5, radians (recursion 11).
+        alpha_gradient_5,
+        /// Its increment per sample, radians.
+        alpha_gradient_rate_5,
+        /// w5 − ∇α̂ one sample ago.
+        alpha_gradient_error_5,
+        /// ∇α̂ along the direction that no radius shows, radians (recursion 11).
+        null_gradient,
+        /// Its increment per sample, radians.
+        null_gradient_rate,
+        /// w − ∇α̂ along it, one sample ago.
+        null_gradient_error,
+        /// Gathered gradient by θ1.
+        gathered_1,
+        /// Gathered gradient by θ2.
+        gathered_2,
+        /// Gathered gradient by θ3.
+        gathered_3,
+        /// Gathered gradient by θ4.
+        gathered_4,
+        /// Gathered gradient by θ5.
+        gathered_5,
+        /// Samples since the last whole period of travel.
+        travel_samples,
     } {
         /// The loop follows.
         locked,
@@ -50,6 +106,8 @@ bundle! {
         direction,
         /// The residual was large in this period of travel.
         disturbed,
+        /// Whole periods of travel follow one another fast enough for the completion.
+        moving,
     }
 }
 
@@ -85,6 +143,10 @@ bundle! {
         theta_4,
         /// θ5 as multiplied.
         theta_5,
+        /// θ6 as multiplied.
+        theta_6,
+        /// θ7 as multiplied.
+        theta_7,
         /// Corrected cosine.
         c,
         /// Corrected sine.

@@ -2,14 +2,16 @@
 
 use std::f64::consts::TAU;
 
+use super::completed::CompletedConfig;
 use super::gate::{Gate, Window};
 use super::gradient::Form;
 use super::interpolator::{Gamma, Search};
 use super::loops::LoopConfig;
 use super::poles::Poles;
 use super::start::Start;
+use super::sum_of_squares::Smoothing;
 use super::{Config, Parameters, ReferenceError, Steps, Theta};
-use crate::spec::Spec;
+use crate::spec::{CalibrationMethod, Spec};
 
 /// From the unit of the ADC's range to y: the middle becomes 0, the nominal amplitude 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,8 +64,56 @@ pub fn tracking(spec: &Spec) -> Result<LoopConfig, ReferenceError> {
     LoopConfig::named(t.method, t.filter_type, t.pole, &poles, ts)
 }
 
-/// The whole system for a design, for signals in the unit of [`Normalise`]: final form of the residual gradient, γ
-/// and its halvings as the design says, the modes equalised, an update per sector of travel and in lock only, started from the arctangent.
+/// The gradient's modes are 1/2 for offsets, 1/4 and 1/2 for gains, 1/8 for the phase: brought to about one speed as the
+/// chip does, whose gains and phase carry the square of the amplitude at its input to the nearest power of two.
+fn equaliser(spec: &Spec, parameters: Parameters) -> Theta {
+    let octaves = 2.0 * (spec.sensor.amplitude / spec.adc.full_scale).log2();
+    let square = (octaves - octaves.round()).exp2();
+    let (gain, phase) = match spec.calibration.method {
+        _ if spec.calibration.parameters >= 8 => (2.0 * square, 4.0),
+        CalibrationMethod::Final | CalibrationMethod::Exact => (2.0 * square, 16.0 * square),
+        CalibrationMethod::SumOfSquares => (2.0 * square, 8.0 * square),
+        CalibrationMethod::Batch => (2.0, 8.0),
+    };
+    let mut equaliser = Theta::repeat(1.0);
+    let [gain_c, _, gain_s, _] = parameters.linear();
+    (equaliser[gain_c], equaliser[gain_s]) = (gain, gain);
+    if parameters.count() % 2 == 1 {
+        equaliser[parameters.count() - 1] = phase;
+    }
+    equaliser
+}
+
+fn search(spec: &Spec) -> Search {
+    let k = &spec.calibration;
+    match (k.parameters, k.method) {
+        (0, _) => Search::None,
+        (8 | 9, _) if k.completion => Search::Completed(CompletedConfig {
+            // The chip's θ9 turns the pair four times as far as v does.
+            gamma_v: 4.0 * 0.5f64.powi(k.completion_gamma as i32),
+            slowest: TAU * spec.tracking.bandwidth_hz / (5.0 * spec.adc.sample_rate_hz),
+        }),
+        (_, CalibrationMethod::Final) => Search::Residual(Form::Final),
+        (_, CalibrationMethod::Exact) => Search::Residual(Form::Exact),
+        (_, CalibrationMethod::SumOfSquares) => Search::SumOfSquares(Smoothing::Forgetting {
+            lambda: 1.0 - 0.5f64.powi(k.forgetting as i32),
+        }),
+        (_, CalibrationMethod::Batch) => Search::SumOfSquares(Smoothing::Batch { samples: 64 }),
+    }
+}
+
+/// What makes a step of the sum of squares as large as one of the residual: its gradient is eight times that along the
+/// radius, its sum under λ is the mean over 1 − λ, and a batch acts by a quarter.
+fn gathered(spec: &Spec) -> f64 {
+    match spec.calibration.method {
+        CalibrationMethod::Final | CalibrationMethod::Exact => 1.0,
+        CalibrationMethod::SumOfSquares => 0.5f64.powi(3 + spec.calibration.forgetting as i32),
+        CalibrationMethod::Batch => 0.5f64.powi(5),
+    }
+}
+
+/// The whole system for a design, for signals in the unit of [`Normalise`]: search, γ and its halvings as the design
+/// says, the modes equalised, an update per sector of travel and in lock only, started from the arctangent.
 ///
 /// # Errors
 /// As [`tracking`]; a number of parameters other than 0, 4, 5, 8, 9.
@@ -86,13 +136,7 @@ pub fn config(spec: &Spec) -> Result<Config, ReferenceError> {
         + s.amplitude_tolerance
         + s.phase_error_max_deg.to_radians()
         + 5.0 * s.noise_rms;
-    // The gradient's modes are 1/2 for offsets, 1/4 for gains, 1/8 for the phase: brought to one speed.
-    let mut equaliser = Theta::repeat(1.0);
-    let [gain_c, _, gain_s, _] = parameters.linear();
-    (equaliser[gain_c], equaliser[gain_s]) = (2.0, 2.0);
-    if parameters.count() % 2 == 1 {
-        equaliser[parameters.count() - 1] = 4.0;
-    }
+    let equaliser = equaliser(spec, parameters);
     // A loop settles within some multiples of 1/ω0.
     let omega = TAU * spec.tracking.bandwidth_hz / spec.adc.sample_rate_hz;
     let settled = (4.0 / omega).ceil().clamp(8.0, 1e6) as u32;
@@ -105,13 +149,10 @@ pub fn config(spec: &Spec) -> Result<Config, ReferenceError> {
         parameters,
         theta: parameters.nominal(1.0),
         tracking,
-        search: if k.parameters == 0 {
-            Search::None
-        } else {
-            Search::Residual(Form::Final)
-        },
+        search: search(spec),
         gamma: Gamma {
-            first: Steps::from_diagonal(&equaliser) * 0.5f64.powi(k.gamma_first as i32),
+            first: Steps::from_diagonal(&equaliser)
+                * (0.5f64.powi(k.gamma_first as i32) * gathered(spec)),
             halvings: k.gamma_last.saturating_sub(k.gamma_first),
             periods: k.gear_periods.into(),
         },

@@ -49,6 +49,9 @@ pub struct Sensor {
     /// Rms noise of each channel, as a fraction of the amplitude.
     #[serde(default)]
     pub noise_rms: f64,
+    /// Largest bend of either channel, as a fraction of the amplitude; what 8 and 9 parameters correct.
+    #[serde(default = "bend_max")]
+    pub bend_max: f64,
     /// Largest speed, scale periods per second.
     pub speed_max_periods_per_s: f64,
     /// Length of a scale period, metres (linear scales).
@@ -57,6 +60,10 @@ pub struct Sensor {
     /// Scale periods per revolution (rotary scales).
     #[serde(default)]
     pub periods_per_revolution: Option<f64>,
+}
+
+fn bend_max() -> f64 {
+    0.05
 }
 
 /// `[adc]`
@@ -112,9 +119,21 @@ fn damping() -> f64 {
 /// `[calibration]`
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Calibration {
-    /// 0 (off), 4 (gains, offsets) or 5 (and phase).
+    /// 0 (off), 4 (gains, offsets), 5 (and phase), 8 (4 and bends) or 9 (8 and phase).
     #[serde(default = "five")]
     pub parameters: u32,
+    /// Which gradient moves them.
+    #[serde(default)]
+    pub method: CalibrationMethod,
+    /// The mean gradient of `sum_of_squares` forgets 2^-`forgetting` of itself with each sample: λ = 1 − 2^-`forgetting`.
+    #[serde(default = "forgetting")]
+    pub forgetting: u32,
+    /// Whether 8 and 9 parameters learn the direction that the radius does not show.
+    #[serde(default = "yes")]
+    pub completion: bool,
+    /// γ of that direction is 2^-`completion_gamma` per sample.
+    #[serde(default = "completion_gamma")]
+    pub completion_gamma: u32,
     /// First γ is 2^-`gamma_first`.
     #[serde(default = "gamma_first")]
     pub gamma_first: u32,
@@ -132,6 +151,15 @@ pub struct Calibration {
 fn five() -> u32 {
     5
 }
+fn forgetting() -> u32 {
+    3
+}
+fn yes() -> bool {
+    true
+}
+fn completion_gamma() -> u32 {
+    10
+}
 fn gamma_first() -> u32 {
     4
 }
@@ -145,10 +173,43 @@ fn restart() -> f64 {
     0.25
 }
 
+impl Calibration {
+    /// Which of θ1 … θ9 are calibrated.
+    #[must_use]
+    pub fn thetas(&self) -> &'static [usize] {
+        match self.parameters {
+            0 => &[],
+            4 => &[1, 2, 3, 4],
+            5 => &[1, 2, 3, 4, 5],
+            8 => &[1, 2, 3, 4, 6, 7, 8, 9],
+            _ => &[1, 2, 3, 4, 5, 6, 7, 8, 9],
+        }
+    }
+}
+
+/// The gradient searches of the paper.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum CalibrationMethod {
+    /// The residual gradient in its final form (5.5.1): along the radius.
+    #[default]
+    Final,
+    /// The residual gradient with the recursion (11).
+    Exact,
+    /// The sum of squares (5.2, 5.3) with a forgetting factor.
+    SumOfSquares,
+    /// The sum of squares, gathered over a period of travel before each update.
+    Batch,
+}
+
 impl Default for Calibration {
     fn default() -> Self {
         Self {
             parameters: five(),
+            method: CalibrationMethod::default(),
+            forgetting: forgetting(),
+            completion: yes(),
+            completion_gamma: completion_gamma(),
             gamma_first: gamma_first(),
             gamma_last: gamma_last(),
             gear_periods: gear_periods(),

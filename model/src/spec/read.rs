@@ -50,6 +50,7 @@ fn known(section: &str) -> Option<&'static [&'static str]> {
             "offset_max",
             "phase_error_max_deg",
             "noise_rms",
+            "bend_max",
             "speed_max_periods_per_s",
             "scale_period_m",
             "periods_per_revolution",
@@ -58,6 +59,10 @@ fn known(section: &str) -> Option<&'static [&'static str]> {
         "loop" => &["method", "type", "bandwidth_hz", "damping", "pole"],
         "calibration" => &[
             "parameters",
+            "method",
+            "forgetting",
+            "completion",
+            "completion_gamma",
             "gamma_first",
             "gamma_last",
             "gear_periods",

@@ -89,6 +89,8 @@ fn reference(design: &Design, registers: &State<f64>, position: f64) -> Referenc
     };
     Reference::new(Config {
         theta: theta(design, registers),
+        // They stand at their nominal values where the comparison begins, and may go as far as their words.
+        bound: Theta::from_fn(|i, _| design.structure.formats.deviation[i].format.max()),
         search: match spec.calibration.parameters {
             0 => Search::None,
             _ => Search::Residual(Form::Final),
@@ -120,8 +122,16 @@ pub(crate) struct Difference {
 /// Samples of a comparison.
 pub(crate) const SAMPLES: u32 = 60_000;
 
-/// Gains by 2, offsets by 1, phase by 4: what the chip equalises the modes with.
-pub(crate) const EQUALISER: [f64; 5] = [2.0, 1.0, 2.0, 1.0, 4.0];
+/// Gains by 2, offsets by 1, phase by 16, gains and phase by the power of two nearest to the inverse square of the
+/// amplitude: what the chip equalises the modes with.
+pub(crate) fn equaliser(spec: &nonius_model::spec::Spec) -> [f64; 5] {
+    let mut amplitude: f64 = spec.sensor.amplitude / spec.adc.full_scale;
+    while amplitude < 0.5 {
+        amplitude *= 2.0;
+    }
+    let inverse = (-2.0 * amplitude.log2()).round().exp2();
+    [2.0 * inverse, 1.0, 2.0 * inverse, 1.0, 16.0 * inverse]
+}
 
 /// Runs both over `motion` (turns at sample k). The comparison begins where the chip has locked in its
 /// last gear: there the reference is put in the chip's state, once.

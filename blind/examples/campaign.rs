@@ -1,0 +1,162 @@
+//! The blind campaign: fresh seeds on all cores, truths sealed, the issue's table.
+//!
+//!     cargo run --release -p nonius-blind --example campaign -- --cases 2000 --seed 1000000 --docs docs
+//!
+//! prints, for every case, the hash of its sealed truth before the verdict and the truth after it; then the table.
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use anyhow::{Context, Result};
+use clap::Parser;
+use indicatif::{ProgressBar, ProgressStyle};
+use nonius_blind::{Case, Score, page, seal, verdict};
+use rayon::prelude::*;
+
+/// Hides causes in simulated recordings and scores what the diagnosis says.
+#[derive(Parser)]
+struct Arguments {
+    /// Recordings.
+    #[arg(long, default_value_t = 200)]
+    cases: u64,
+    /// Seed of the first; the others follow.
+    #[arg(long)]
+    seed: u64,
+    /// Samples of each.
+    #[arg(long, default_value_t = 20_000)]
+    samples: usize,
+    /// Folder for blind.md.
+    #[arg(long)]
+    docs: Option<PathBuf>,
+    /// Folder for the sealed truths; a temporary one if none is given.
+    #[arg(long)]
+    truths: Option<PathBuf>,
+    /// Writes the recording of each case there.
+    #[arg(long)]
+    recordings: Option<PathBuf>,
+}
+
+fn main() -> ExitCode {
+    match run(&Arguments::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("campaign: {error:#}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn run(arguments: &Arguments) -> Result<()> {
+    let temporary = tempfile::tempdir()?;
+    let folder = arguments.truths.as_deref().unwrap_or(temporary.path());
+    for folder in std::iter::once(folder).chain(arguments.recordings.as_deref()) {
+        std::fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
+    }
+    let bar = ProgressBar::new(arguments.cases).with_style(ProgressStyle::with_template(
+        "{bar:40} {pos}/{len} {elapsed} ({eta} left)",
+    )?);
+    let seeds = arguments.seed..arguments.seed.saturating_add(arguments.cases);
+    let results: Vec<Result<Score>> = seeds
+        .into_par_iter()
+        .map(|seed| {
+            let score = case(seed, arguments, folder);
+            bar.suspend(|| match &score {
+                Ok(score) => println!("{seed} opened: {}", line(score)),
+                Err(error) => println!("{seed} not scored: {error:#}"),
+            });
+            bar.inc(1);
+            score
+        })
+        .collect();
+    bar.finish_and_clear();
+    let refused: Vec<String> = results
+        .iter()
+        .filter_map(|r| r.as_ref().err())
+        .map(|e| format!("{e:#}"))
+        .collect();
+    let scores: Vec<Score> = results.into_iter().flatten().collect();
+    let mut text = page(&scores);
+    if !refused.is_empty() {
+        text += "\n## Not scored\n\n";
+        for why in &refused {
+            text += &format!("- {why}\n");
+        }
+    }
+    println!("\n{text}");
+    if let Some(docs) = &arguments.docs {
+        write(docs, arguments, &text)?;
+    }
+    Ok(())
+}
+
+/// One case: sealed, judged, opened, scored.
+fn case(seed: u64, arguments: &Arguments, folder: &Path) -> Result<Score> {
+    let case = Case::draw(seed, arguments.samples)?;
+    let sealed = seal(&case.truth, folder)?;
+    println!("{seed} sealed: {}", sealed.hash);
+    let csv = case.csv();
+    if let Some(folder) = &arguments.recordings {
+        std::fs::write(folder.join(format!("{seed}.csv")), &csv)?;
+    }
+    let verdict = verdict(&csv).map_err(|why| anyhow::anyhow!("seed {seed}: refused: {why}"))?;
+    Ok(Score::of(sealed.open()?, &case, &verdict))
+}
+
+fn line(score: &Score) -> String {
+    let hidden: Vec<String> = score
+        .truth
+        .hidden
+        .iter()
+        .map(|h| format!("{} (SNR {:.1})", h.name, h.snr))
+        .collect();
+    let mut text = format!(
+        "{:?} {} [{}{}{}]: {:?}, first {}",
+        score.truth.kind,
+        hidden.join(" and "),
+        score.truth.drive,
+        if score.truth.reference {
+            ", reference"
+        } else {
+            ""
+        },
+        if score.truth.vibration_rad.is_some() {
+            ", vibrating"
+        } else {
+            ""
+        },
+        score.outcomes,
+        score.first
+    );
+    if !score.wrong.is_empty() {
+        text += &format!(", WRONG {:?}", score.wrong);
+    }
+    if !score.motions.is_empty() {
+        text += &format!(", motion {:?}", score.motions);
+    }
+    for p in &score.parameters {
+        text += &format!(", {} off {:.1} errors", p.name, p.stated);
+        if let Some(bound) = p.bound {
+            text += &format!(" ({bound:.1} bounds)");
+        }
+    }
+    if score.unexplained {
+        text += &format!(", left: {}", score.signature);
+    }
+    text
+}
+
+/// Writes the page beside its place, then moves it there.
+fn write(docs: &Path, arguments: &Arguments, text: &str) -> Result<()> {
+    let last = arguments.seed + arguments.cases.saturating_sub(1);
+    let page = format!(
+        "# Blind campaign\n\n<!-- Written by the command below; do not edit. -->\n\n    cargo run --release -p nonius-blind \
+         --example campaign -- --cases {} --seed {} --samples {} --docs docs\n\nSeeds {} to {last}, {} samples each. What \
+         is hidden, and how its SNR is defined, stands in `blind/src/`.\n\n{text}",
+        arguments.cases, arguments.seed, arguments.samples, arguments.seed, arguments.samples
+    );
+    std::fs::create_dir_all(docs)?;
+    let mut file = tempfile::NamedTempFile::new_in(docs)?;
+    std::io::Write::write_all(&mut file, page.as_bytes())?;
+    file.persist(docs.join("blind.md"))?;
+    Ok(())
+}

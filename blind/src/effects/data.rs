@@ -1,0 +1,144 @@
+//! What happens to samples between ADC and file.
+
+use rand::{Rng, seq::index};
+
+use super::Draw;
+use crate::effect::Effect;
+use crate::rows::Rows;
+use crate::world::World;
+
+/// How far off a glitch is at the least, in noise: one that is no further is noise.
+const FAR: f64 = 8.0;
+
+/// Samples far off.
+struct Glitches {
+    /// Sample, channel and size in units of the magnitude (V).
+    hits: Vec<(usize, usize, f64)>,
+}
+
+impl Effect for Glitches {
+    fn name(&self) -> &'static str {
+        "glitches"
+    }
+    fn limit(&self) -> f64 {
+        0.7
+    }
+    fn damage(&self, m: f64, rows: &mut Rows, world: &World) {
+        let lsb = world.lsb();
+        for (k, channel, size) in &self.hits {
+            let value = &mut rows.volts[*channel][*k];
+            *value = (*value + ((m * size) / lsb).round() * lsb).clamp(-1.0, 1.0 - lsb);
+        }
+    }
+}
+
+/// One sample each; wild: the next one rings.
+pub(crate) fn glitches(draw: &mut Draw) -> Box<dyn Effect> {
+    let most = ((draw.snr / FAR).powi(2) as usize).clamp(1, 12);
+    let count = draw.random.random_range(1..=most);
+    let mut hits = vec![];
+    for k in index::sample(draw.random, draw.world.samples - 4, count) {
+        let channel = draw.random.random_range(0..2);
+        let sign = if draw.random.random() { 1.0 } else { -1.0 };
+        let size = sign * draw.random.random_range(1.0..1.5);
+        hits.push((k + 1, channel, size));
+        if draw.wild {
+            hits.push((k + 2, channel, -0.4 * size));
+        }
+    }
+    Box::new(Glitches { hits })
+}
+
+/// Samples lost; the magnitude, less one, is the number of the set of places.
+struct Dropped {
+    sets: Vec<Vec<usize>>,
+    clock: bool,
+}
+
+impl Effect for Dropped {
+    fn name(&self) -> &'static str {
+        "dropped_samples"
+    }
+    fn takes_reference_along(&self) -> bool {
+        true
+    }
+    fn limit(&self) -> f64 {
+        self.sets.len() as f64
+    }
+    fn choices(&self) -> Option<Vec<f64>> {
+        Some((1..=self.sets.len()).map(|k| k as f64).collect())
+    }
+    fn damage(&self, m: f64, rows: &mut Rows, _world: &World) {
+        let Some(places) = (m as usize).checked_sub(1).and_then(|k| self.sets.get(k)) else {
+            return;
+        };
+        for k in places {
+            rows.drop_sample(*k, self.clock);
+        }
+    }
+}
+
+/// Sets of places, from the last to the first, not at the ends.
+fn sets(draw: &mut Draw, most: usize) -> Vec<Vec<usize>> {
+    let samples = draw.world.samples;
+    (0..24)
+        .map(|_| {
+            let count = draw.random.random_range(1..=most);
+            let mut places: Vec<usize> =
+                index::sample(draw.random, samples - samples / 10, count).into_vec();
+            for place in &mut places {
+                *place += samples / 20;
+            }
+            places.sort_unstable_by(|a, b| b.cmp(a));
+            places
+        })
+        .collect()
+}
+
+pub(crate) fn dropped(draw: &mut Draw) -> Box<dyn Effect> {
+    let sets = sets(draw, 4);
+    // Most loggers count; some have a clock and show the gap.
+    let clock = draw.random.random_bool(0.3);
+    Box::new(Dropped { sets, clock })
+}
+
+/// Samples shown twice; wild: in the place of the next one, and the time base goes on as it should.
+struct Repeated {
+    sets: Vec<Vec<usize>>,
+    hold: bool,
+}
+
+impl Effect for Repeated {
+    fn name(&self) -> &'static str {
+        "repeated_samples"
+    }
+    fn takes_reference_along(&self) -> bool {
+        !self.hold
+    }
+    fn limit(&self) -> f64 {
+        self.sets.len() as f64
+    }
+    fn choices(&self) -> Option<Vec<f64>> {
+        Some((1..=self.sets.len()).map(|k| k as f64).collect())
+    }
+    fn damage(&self, m: f64, rows: &mut Rows, _world: &World) {
+        let Some(places) = (m as usize).checked_sub(1).and_then(|k| self.sets.get(k)) else {
+            return;
+        };
+        for k in places {
+            if self.hold {
+                rows.hold(*k);
+            } else {
+                rows.double(*k);
+            }
+        }
+    }
+}
+
+pub(crate) fn repeated(draw: &mut Draw) -> Box<dyn Effect> {
+    let sets = sets(draw, 12);
+    Box::new(Repeated {
+        sets,
+        hold: draw.wild,
+    })
+}

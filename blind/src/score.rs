@@ -1,0 +1,153 @@
+//! A verdict against the truth.
+
+use crate::baseline::{five_parameters, of_positions};
+use crate::case::Case;
+use crate::truth::{HiddenCause, Truth};
+use crate::verdict::{Named, Verdict};
+
+/// What became of a hidden cause.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Outcome {
+    /// Its name comes first.
+    First,
+    /// First comes another name, in a declared group of two with it.
+    Group,
+    /// It is named, but something else comes first.
+    Later,
+    /// Another name alone was given.
+    Misnamed,
+    /// No name was given, and it was said that something is left.
+    Unexplained,
+    /// Nothing was said.
+    Silent,
+}
+
+/// A parameter against the truth.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ParameterScore {
+    /// Which.
+    pub name: String,
+    /// Error over the stated standard error.
+    pub stated: f64,
+    /// Error over the Cramér–Rao bound, where that is |value| / SNR.
+    pub bound: Option<f64>,
+}
+
+/// What a verdict is worth.
+#[derive(Clone, Debug)]
+pub struct Score {
+    /// What was hidden.
+    pub truth: Truth,
+    /// For each hidden cause.
+    pub outcomes: Vec<Outcome>,
+    /// What came first: a name, `unexplained` or `nothing`.
+    pub first: String,
+    /// Sensor causes that were named and are not hidden, nor in a group with what is.
+    pub wrong: Vec<String>,
+    /// Motions that were named and are not hidden.
+    pub motions: Vec<String>,
+    /// Something significant was left.
+    pub unexplained: bool,
+    /// What was said of it.
+    pub signature: String,
+    /// Parameters of what was named rightly.
+    pub parameters: Vec<ParameterScore>,
+    /// Systematic position error with the five parameters alone, and by the diagnosis, rad rms.
+    pub position: Option<[f64; 2]>,
+    /// Wall-clock time of the diagnosis, s.
+    pub seconds: f64,
+}
+
+impl Score {
+    /// Scores a verdict on a case by its opened truth.
+    #[must_use]
+    pub fn of(truth: Truth, case: &Case, verdict: &Verdict) -> Self {
+        let hidden = |name: &Named| truth.hidden.iter().any(|h| name.holds(&h.name));
+        let strange = |motion: bool| -> Vec<String> {
+            let others = verdict.named.iter().filter(|n| n.motion == motion);
+            others
+                .filter(|n| !hidden(n))
+                .map(|n| n.cause.clone())
+                .collect()
+        };
+        let named: Vec<&Named> = verdict.named.iter().filter(|n| counts(&truth, n)).collect();
+        let first = match named.first() {
+            Some(n) => n.cause.clone(),
+            None if verdict.unexplained => "unexplained".into(),
+            None => "nothing".into(),
+        };
+        let outcomes = truth.hidden.iter();
+        let outcomes = outcomes.map(|h| outcome(h, &named, verdict.unexplained));
+        let electrical = !truth.hidden.is_empty() && truth.hidden.iter().all(|h| h.electrical);
+        let position = electrical
+            .then(|| of_positions(&case.world, &case.rows, &verdict.positions))
+            .flatten()
+            .map(|after| [five_parameters(&case.world, &case.rows), after]);
+        Self {
+            outcomes: outcomes.collect(),
+            first,
+            wrong: strange(false),
+            motions: strange(true),
+            unexplained: verdict.unexplained,
+            signature: verdict.signature.clone(),
+            parameters: truth
+                .hidden
+                .iter()
+                .flat_map(|h| parameters(h, &verdict.named))
+                .collect(),
+            position,
+            seconds: verdict.seconds,
+            truth,
+        }
+    }
+
+    /// SNR of the first hidden cause.
+    #[must_use]
+    pub fn snr(&self) -> Option<f64> {
+        self.truth.hidden.first().map(|h| h.snr)
+    }
+}
+
+/// A motion that is named where the axis truly vibrates is no rival of a hidden sensor cause.
+fn counts(truth: &Truth, named: &Named) -> bool {
+    let true_motion = named.motion && truth.vibration_rad.is_some();
+    !true_motion || truth.hidden.iter().any(|h| h.motion)
+}
+
+fn outcome(hidden: &HiddenCause, named: &[&Named], unexplained: bool) -> Outcome {
+    match named.first() {
+        Some(first) if first.cause == hidden.name => Outcome::First,
+        Some(first) if first.holds(&hidden.name) && first.confounded_with.len() == 1 => {
+            Outcome::Group
+        }
+        _ if named.iter().any(|n| n.holds(&hidden.name)) => Outcome::Later,
+        Some(_) => Outcome::Misnamed,
+        None if unexplained => Outcome::Unexplained,
+        None => Outcome::Silent,
+    }
+}
+
+fn parameters(hidden: &HiddenCause, named: &[Named]) -> Vec<ParameterScore> {
+    let Some(found) = named.iter().find(|n| n.cause == hidden.name) else {
+        return vec![];
+    };
+    // Another order is another cause: its amplitude says nothing about this one.
+    let value = |name: &str| found.parameters.iter().find(|(n, _, _)| n == name);
+    let order = hidden.parameters.iter().find(|p| p.name == "order");
+    if let (Some(order), Some((_, shown, _))) = (order, value("order"))
+        && order.value != *shown
+    {
+        return vec![];
+    }
+    let scores = hidden.parameters.iter().filter_map(|p| {
+        let (_, shown, error) = value(&p.name)?;
+        (*error > 0.0).then(|| ParameterScore {
+            name: p.name.clone(),
+            stated: (shown - p.value) / error,
+            bound: p
+                .bounded
+                .then(|| (shown - p.value) / (p.value.abs() / hidden.snr)),
+        })
+    });
+    scores.collect()
+}

@@ -1,0 +1,74 @@
+//! What is hidden in a recording.
+
+use serde::{Deserialize, Serialize};
+
+/// What kind of case.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Kind {
+    /// Nothing.
+    Nothing,
+    /// One cause as the textbook draws it.
+    One,
+    /// One cause as the world draws it.
+    Wild,
+    /// Two causes, of SNR 60 and 30.
+    Two,
+    /// A cause that the catalogue does not hold, of SNR 40.
+    Stranger,
+}
+
+/// A parameter of a hidden cause, by the contract's words.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct TrueParameter {
+    /// Name.
+    pub name: String,
+    /// Value.
+    pub value: f64,
+    /// The best standard error that any method can have is |value| / SNR.
+    pub bounded: bool,
+}
+
+/// One hidden cause.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct HiddenCause {
+    /// Its name.
+    pub name: String,
+    /// SNR that was drawn.
+    pub snr_asked: f64,
+    /// SNR that it has.
+    pub snr: f64,
+    /// In the unit of its own.
+    pub magnitude: f64,
+    /// Parameters.
+    pub parameters: Vec<TrueParameter>,
+    /// It is real motion.
+    pub motion: bool,
+    /// It is electrical and changes the position shown.
+    pub electrical: bool,
+}
+
+/// What is in a recording.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Truth {
+    /// All follows from it (and from the number of samples).
+    pub seed: u64,
+    /// Kind of case.
+    pub kind: Kind,
+    /// What is hidden.
+    pub hidden: Vec<HiddenCause>,
+    /// Samples.
+    pub samples: usize,
+    /// How the axis is driven.
+    pub drive: String,
+    /// Rms of the real broadband vibration, rad.
+    pub vibration_rad: Option<f64>,
+    /// A reference column.
+    pub reference: bool,
+    /// White noise, ADC included, of the mean amplitude.
+    pub noise: f64,
+    /// Of the ADC.
+    pub bits: u32,
+    /// Samples per second.
+    pub rate: f64,
+}

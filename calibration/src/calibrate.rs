@@ -1,0 +1,308 @@
+//! One calibration from beginning to end.
+
+use nalgebra::{DMatrix, SMatrix};
+use nonius_recording::Ellipse;
+
+use crate::cramer_rao::{self, Bound};
+use crate::curve::{Curve, Parameters, theta_covariance};
+use crate::method::{Error, Method, Options};
+use crate::result::{Calibration, Parameter};
+use crate::samples::{self, Samples};
+use crate::unbiased::Fit;
+use crate::{conic, extremes, gradient, unbiased, words};
+
+/// What an estimator says.
+struct Estimate {
+    ellipse: Ellipse,
+    covariance: Option<DMatrix<f64>>,
+    theta: Vec<f64>,
+    theta_covariance: Option<DMatrix<f64>>,
+    cannot_tell: Vec<String>,
+    remarks: Vec<String>,
+}
+
+impl Estimate {
+    /// Of a method that finds an ellipse.
+    fn of(ellipse: Ellipse, covariance: Option<SMatrix<f64, 5, 5>>) -> Self {
+        let sound = covariance.filter(|c| c.iter().all(|v| v.is_finite()));
+        let dynamic = |c: SMatrix<f64, 5, 5>| DMatrix::from_fn(5, 5, |i, j| c[(i, j)]);
+        Self {
+            theta: ellipse.theta().to_vec(),
+            theta_covariance: sound.map(|c| dynamic(theta_covariance(&ellipse, &c))),
+            ellipse,
+            covariance: sound.map(dynamic),
+            cannot_tell: vec![],
+            remarks: vec![],
+        }
+    }
+}
+
+/// Calibrates.
+///
+/// # Errors
+/// Where the columns are unusable, and where the samples draw no ellipse; [`undetermined`] puts the latter into a
+/// result.
+pub fn calibrate(
+    cos: &[f64],
+    sin: &[f64],
+    method: Method,
+    options: &Options,
+) -> Result<Calibration, Error> {
+    check(cos, sin, options)?;
+    let samples = Samples::of(cos, sin).ok_or(Error::NoEllipse)?;
+    let (c, s) = (&samples.cos[..], &samples.sin[..]);
+    let mut fit = unbiased::fit(c, s, &samples.start, options.noise_ratio);
+    if !fit.converged {
+        fit.ellipse = samples.start;
+        if samples::gap(&fit.ellipse, c, s) > words::GAP {
+            return Err(Error::NoEllipse);
+        }
+    }
+    let estimate = estimate(method, c, s, &fit).ok_or(Error::NoEllipse)?;
+    let angles: Vec<f64> = c
+        .iter()
+        .zip(s)
+        .map(|(c, s)| fit.ellipse.angle(*c, *s))
+        .collect();
+    let radians: Vec<f64> = angles.iter().map(|a| a * std::f64::consts::TAU).collect();
+    let bound = cramer_rao::bound(&fit.ellipse, &radians, fit.noise);
+    let gap = samples::gap(&fit.ellipse, c, s);
+    let residual_rms = residual(method, &estimate.theta, c, s);
+    let own_residual = residual(Method::Unbiased, &fit.ellipse.theta(), c, s);
+
+    let mut cannot_tell = estimate.cannot_tell;
+    cannot_tell.extend(words::of_method(method));
+    if !fit.converged && method == Method::Unbiased {
+        cannot_tell.push(
+            "a_c, b_c, a_s, b_s, beta: the geometric fit did not come to rest; the values are those of a conic, without \
+             error bars"
+                .into(),
+        );
+    }
+    if fit.converged {
+        cannot_tell.extend(words::of_arc(gap, &fit, whole(&fit, c.len())));
+    }
+    if method == Method::Unbiased && own_residual > words::ROUNDING {
+        cannot_tell.extend(words::of_ratio(&fit));
+    }
+    cannot_tell.extend(words::of_residuals(method, &fit, own_residual));
+    let mut remarks = estimate.remarks;
+    if samples.outliers > 0 {
+        let (n, s) = (
+            samples.outliers,
+            if samples.outliers > 1 {
+                "s lie"
+            } else {
+                " lies"
+            },
+        );
+        remarks.push(format!("{n} sample{s} far off the ellipse and left out"));
+    }
+    if method != Method::Unbiased && fit.converged && own_residual > words::ROUNDING {
+        let beside = words::beside_unbiased(method, &estimate.ellipse.parameters(), &fit);
+        remarks.extend(beside);
+    }
+    if method.set().cubic() {
+        remarks.push(format!(
+            "an ellipse leaves a residual of {own_residual:.4e} of the amplitude rms"
+        ));
+    }
+    let errors = estimate
+        .covariance
+        .as_ref()
+        .zip(estimate.theta_covariance.as_ref());
+    Ok(Calibration {
+        method,
+        samples: cos.len(),
+        outliers: samples.outliers,
+        residual_rms,
+        parameters: parameters(
+            method,
+            &estimate.ellipse,
+            &estimate.theta,
+            errors,
+            bound.as_ref(),
+        ),
+        ellipse: estimate.ellipse,
+        theta: estimate.theta,
+        correlations: estimate.covariance.as_ref().map(correlations),
+        noise: Some(fit.noise),
+        noise_ratio_error: (options.noise_ratio.is_none() && !fit.ratio_assumed)
+            .then(|| fit.log_ratio_error * fit.noise[1] / fit.noise[0])
+            .filter(|e| e.is_finite()),
+        shape: fit.shape.clone(),
+        scatter: fit.scatter,
+        arc: 1.0 - gap,
+        bound,
+        cannot_tell,
+        remarks,
+    })
+}
+
+/// What to say where [`calibrate`] finds no ellipse ([`Error::is_ignorance`]): half the ranges for amplitudes, no error
+/// bar, and the reason.
+#[must_use]
+pub fn undetermined(method: Method, cos: &[f64], sin: &[f64], why: &Error) -> Calibration {
+    let ellipse = extremes::extremes(cos, sin).unwrap_or(Ellipse {
+        a_c: 0.0,
+        b_c: cos.first().copied().unwrap_or_default(),
+        a_s: 0.0,
+        b_s: sin.first().copied().unwrap_or_default(),
+        beta: 0.0,
+    });
+    Calibration {
+        method,
+        samples: cos.len(),
+        outliers: 0,
+        residual_rms: if ellipse.is_sound() {
+            residual(Method::Unbiased, &ellipse.theta(), cos, sin)
+        } else {
+            0.0
+        },
+        parameters: parameters(method, &ellipse, &[], None, None),
+        ellipse,
+        theta: vec![],
+        correlations: None,
+        noise: None,
+        noise_ratio_error: None,
+        shape: None,
+        scatter: None,
+        arc: 0.0,
+        bound: None,
+        cannot_tell: vec![words::of_nothing(words::slimness(cos, sin), why)],
+        remarks: vec![],
+    }
+}
+
+fn check(cos: &[f64], sin: &[f64], options: &Options) -> Result<(), Error> {
+    if let Some(ratio) = options.noise_ratio
+        && !(ratio > 0.0 && ratio.is_finite())
+    {
+        return Err(Error::Ratio(ratio));
+    }
+    if cos.len() != sin.len() {
+        return Err(Error::Lengths(cos.len(), sin.len()));
+    }
+    if cos.len() < nonius_recording::MIN_SAMPLES {
+        return Err(Error::TooFew(cos.len()));
+    }
+    let mut pairs = cos.iter().zip(sin);
+    if let Some(k) = pairs.position(|(c, s)| !c.is_finite() || !s.is_finite()) {
+        return Err(Error::NotFinite(k));
+    }
+    for (name, values) in [("cos", cos), ("sin", sin)] {
+        if values.iter().all(|v| *v == values[0]) {
+            let why = format!("every value of {name} is {}", values[0]);
+            return Err(Error::Standstill(why));
+        }
+    }
+    Ok(())
+}
+
+fn estimate(method: Method, cos: &[f64], sin: &[f64], fit: &Fit) -> Option<Estimate> {
+    match method {
+        Method::Unbiased => Some(Estimate::of(
+            fit.ellipse,
+            fit.converged.then_some(fit.covariance),
+        )),
+        Method::Heydemann => {
+            let found = conic::heydemann(cos, sin)?;
+            Some(Estimate::of(found, conic::covariance(cos, sin, &found)))
+        }
+        Method::Extremes => {
+            let found = extremes::extremes(cos, sin)?;
+            let repeats = extremes::repeats(cos, sin, &fit.ellipse, fit.noise);
+            let mut estimate = Estimate::of(found, repeats.as_ref().map(|r| r.covariance));
+            if let Some(repeats) = repeats {
+                let bias = [
+                    repeats.bias[0] / fit.ellipse.a_c,
+                    repeats.bias[2] / fit.ellipse.a_s,
+                ];
+                let [c, s] = bias.map(|b| b * 100.0);
+                estimate.remarks.push(format!(
+                    "with this noise the extremes are off by {c:+.2} % in a_c and {s:+.2} % in a_s on average; the error \
+                     bars, from a hundred repetitions, hold the scatter about that"
+                ));
+            }
+            Some(estimate)
+        }
+        Method::Sumsq4 | Method::Sumsq5 | Method::Poly8 | Method::Poly9 => {
+            let minimum = gradient::minimise(method.set(), cos, sin, &fit.ellipse);
+            Some(Estimate {
+                cannot_tell: words::of_minimum(method, &minimum),
+                ellipse: minimum.ellipse.unwrap_or(fit.ellipse),
+                covariance: minimum.ellipse_covariance,
+                theta: minimum.theta,
+                theta_covariance: minimum.covariance,
+                remarks: vec![],
+            })
+        }
+    }
+}
+
+/// Physical parameters, then Θ; `errors` are the covariances of both.
+fn parameters(
+    method: Method,
+    ellipse: &Ellipse,
+    theta: &[f64],
+    errors: Option<(&DMatrix<f64>, &DMatrix<f64>)>,
+    bound: Option<&Bound>,
+) -> Vec<Parameter> {
+    let root = |v: f64| v.sqrt();
+    let own =
+        |c: &DMatrix<f64>, i: usize| Some(c[(i, i)].sqrt()).filter(|e| e.is_finite() && *e > 0.0);
+    let physical = words::NAMES.iter().enumerate().map(|(i, name)| Parameter {
+        name: (*name).into(),
+        value: ellipse.parameters()[i],
+        std_error: errors.and_then(|(c, _)| own(c, i)),
+        unit: if i == 4 { "rad" } else { "column" }.into(),
+        bound: bound.map(|b| root(b.covariance[(i, i)])),
+    });
+    let powers = method.set().powers();
+    let thetas = theta
+        .iter()
+        .zip(powers)
+        .enumerate()
+        .map(|(i, (value, power))| Parameter {
+            name: format!("theta_{}", i + 1),
+            value: *value,
+            std_error: errors.and_then(|(_, c)| own(c, i)),
+            unit: match power {
+                0 => "1".into(),
+                1 => "1/column".into(),
+                n => format!("1/column^{n}"),
+            },
+            // The bound is that of five parameters.
+            bound: bound
+                .filter(|_| theta.len() == 5)
+                .map(|b| root(b.theta[(i, i)])),
+        });
+    physical.chain(thetas).collect()
+}
+
+fn correlations(c: &DMatrix<f64>) -> [[f64; 5]; 5] {
+    std::array::from_fn(|i| {
+        std::array::from_fn(|j| {
+            let size = (c[(i, i)] * c[(j, j)]).sqrt();
+            if size > 0.0 { c[(i, j)] / size } else { 0.0 }
+        })
+    })
+}
+
+fn residual(method: Method, theta: &[f64], cos: &[f64], sin: &[f64]) -> f64 {
+    let radius = |(y_c, y_s): (&f64, &f64)| {
+        let (c, s) = method.set().correct(theta, *y_c, *y_s);
+        (c.hypot(s) - 1.0).powi(2)
+    };
+    let sum: f64 = cos.iter().zip(sin).map(radius).sum();
+    (sum / cos.len() as f64).sqrt()
+}
+
+/// Standard errors from as many samples over whole periods.
+fn whole(fit: &Fit, samples: usize) -> Option<Parameters> {
+    let step = std::f64::consts::TAU / 360.0;
+    let angles: Vec<f64> = (0..360).map(|k| f64::from(k) * step).collect();
+    let bound = cramer_rao::bound(&fit.ellipse, &angles, fit.noise)?;
+    let share = 360.0 / samples as f64;
+    Some(bound.covariance.diagonal().map(|v| (v * share).sqrt()))
+}

@@ -1,0 +1,148 @@
+//! Which samples to use, and an ellipse to start from.
+//!
+//! A glitch or a row of zeros before the ADC began would bend every estimate, so samples far off the ellipse are left
+//! out, for every method alike.
+
+use nonius_recording::{Ellipse, FitMethod};
+
+use crate::curve::Curve;
+
+/// Residual, in robust standard deviations, from which a sample is far off. White noise gets there once in 5·10⁸.
+const FAR: f64 = 6.0;
+/// Smallest residual that is far off, in fractions of the amplitude.
+const FLOOR: f64 = 1e-6;
+/// Radial residual, in fractions of the amplitude, of samples that draw no ellipse.
+pub(crate) const ROUND: f64 = 0.25;
+/// Sectors of the period in which the residual's size is found apart.
+const SECTORS: usize = 32;
+
+/// The samples that are used.
+pub(crate) struct Samples {
+    pub(crate) cos: Vec<f64>,
+    pub(crate) sin: Vec<f64>,
+    /// A rough ellipse.
+    pub(crate) start: Ellipse,
+    /// How many were left out.
+    pub(crate) outliers: usize,
+}
+
+impl Samples {
+    /// `None` where they draw no ellipse.
+    pub(crate) fn of(cos: &[f64], sin: &[f64]) -> Option<Self> {
+        let quick = Ellipse::fit(cos, sin);
+        // The quick fit wants half a period; a shorter arc is enough to try.
+        let start = if quick.method == FitMethod::Conic {
+            quick.ellipse
+        } else {
+            Ellipse::of_arc(cos, sin).filter(Curve::is_sound)?
+        };
+        let limit = limit(&start, cos, sin);
+        let near = |(c, s): &(&f64, &f64)| start.radial_residual(**c, **s).abs() <= limit;
+        let pairs = cos.iter().zip(sin).filter(near);
+        let (kept_cos, kept_sin): (Vec<f64>, Vec<f64>) = pairs.unzip();
+        let rho = kept_cos.iter().zip(&kept_sin);
+        let square: f64 = rho
+            .map(|(c, s)| start.radial_residual(*c, *s).powi(2))
+            .sum();
+        let rms = (square / kept_cos.len() as f64).sqrt();
+        (rms <= ROUND).then(|| Self {
+            outliers: cos.len() - kept_cos.len(),
+            cos: kept_cos,
+            sin: kept_sin,
+            start,
+        })
+    }
+}
+
+/// Sector by sector, so that a standstill at one angle does not set the scale for all others.
+fn limit(start: &Ellipse, cos: &[f64], sin: &[f64]) -> f64 {
+    let mut sectors = vec![vec![]; SECTORS];
+    for (c, s) in cos.iter().zip(sin) {
+        let sector = ((start.angle(*c, *s) + 0.5) * SECTORS as f64) as usize;
+        sectors[sector.min(SECTORS - 1)].push(start.radial_residual(*c, *s).abs());
+    }
+    let filled = sectors.iter_mut().filter(|sector| sector.len() >= 5);
+    let mut sizes: Vec<f64> = filled.map(|sector| median(sector)).collect();
+    if sizes.is_empty() {
+        return f64::INFINITY;
+    }
+    sizes.sort_unstable_by(f64::total_cmp);
+    let upper = sizes[sizes.len() * 3 / 4];
+    f64::max(FAR * 1.4826 * upper, FLOOR)
+}
+
+fn median(values: &mut [f64]) -> f64 {
+    let middle = values.len() / 2;
+    *values.select_nth_unstable_by(middle, f64::total_cmp).1
+}
+
+/// Largest arc, in turns, in which there is no sample, as the ellipse sees it.
+pub(crate) fn gap(ellipse: &Ellipse, cos: &[f64], sin: &[f64]) -> f64 {
+    let pairs = cos.iter().zip(sin);
+    let mut turns: Vec<f64> = pairs.map(|(c, s)| ellipse.angle(*c, *s)).collect();
+    turns.sort_unstable_by(f64::total_cmp);
+    let across = match (turns.first(), turns.last()) {
+        (Some(first), Some(last)) => first + 1.0 - last,
+        _ => 1.0,
+    };
+    turns.windows(2).map(|w| w[1] - w[0]).fold(across, f64::max)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SENSOR: Ellipse = Ellipse {
+        a_c: 1.0,
+        b_c: 0.3,
+        a_s: 0.8,
+        b_s: -0.2,
+        beta: 0.1,
+    };
+
+    fn turning(n: usize, turns: f64) -> (Vec<f64>, Vec<f64>) {
+        let angle = |k: usize| std::f64::consts::TAU * turns * k as f64 / n as f64;
+        // A deterministic wobble in place of noise.
+        let at = |k: usize| SENSOR.point(angle(k)) * (1.0 + 0.003 * (k as f64 * 2.4).sin());
+        (0..n).map(|k| (at(k).x, at(k).y)).unzip()
+    }
+
+    #[test]
+    fn glitches_and_zeros_are_left_out_and_nothing_else() {
+        let (mut cos, mut sin) = turning(2000, 3.3);
+        for k in [0, 1, 700, 1500] {
+            (cos[k], sin[k]) = (0.0, 0.0);
+        }
+        sin[900] = 40.0;
+        let samples = Samples::of(&cos, &sin).unwrap();
+        assert_eq!(samples.outliers, 5);
+        assert_eq!(samples.cos.len(), 1995);
+    }
+
+    #[test]
+    fn a_long_standstill_does_not_push_the_rest_out() {
+        let (mut cos, mut sin) = turning(2000, 3.0);
+        // Nine tenths of the record at one angle, without any noise.
+        let still = (cos[77], sin[77]);
+        cos.extend(vec![still.0; 18_000]);
+        sin.extend(vec![still.1; 18_000]);
+        assert_eq!(Samples::of(&cos, &sin).unwrap().outliers, 0);
+    }
+
+    #[test]
+    fn a_cloud_draws_no_ellipse() {
+        use rand::{Rng, SeedableRng, rngs::StdRng};
+        let mut random = StdRng::seed_from_u64(1);
+        let mut cloud = || -> f64 { (0..12).map(|_| random.random_range(-0.5..0.5)).sum() };
+        let (cos, sin): (Vec<f64>, Vec<f64>) = (0..4000).map(|_| (cloud(), cloud())).unzip();
+        assert!(Samples::of(&cos, &sin).is_none());
+    }
+
+    #[test]
+    fn the_gap_is_the_arc_without_samples() {
+        let (cos, sin) = turning(4000, 0.75);
+        assert!((gap(&SENSOR, &cos, &sin) - 0.25).abs() < 0.005);
+        let (cos, sin) = turning(4000, 3.0);
+        assert!(gap(&SENSOR, &cos, &sin) < 0.002);
+    }
+}

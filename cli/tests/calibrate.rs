@@ -1,0 +1,369 @@
+//! `nonius calibrate` through the binary: contract, exit codes, and words where the data cannot tell.
+
+use std::fmt::Write;
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+const METHODS: [&str; 7] = [
+    "unbiased",
+    "heydemann",
+    "extremes",
+    "sumsq4",
+    "sumsq5",
+    "poly8",
+    "poly9",
+];
+
+/// Pseudo-random numbers of unit variance, the same on every machine.
+fn noise() -> impl FnMut() -> f64 {
+    let mut state = 1u64;
+    move || {
+        let mut sum = -6.0;
+        for _ in 0..12 {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1);
+            sum += (state >> 40) as f64 / 16_777_216.0;
+        }
+        sum
+    }
+}
+
+/// A recording of a_c 0.75, b_c 0.04, a_s 0.85, b_s −0.03, β 0.03 over `periods`, with noise of cosine and sine.
+fn recording(samples: u32, periods: f64, sigma: [f64; 2]) -> String {
+    let mut noise = noise();
+    let mut text = String::from("# sample_rate_hz: 10000\ncos,sin\n");
+    for k in 0..samples {
+        let alpha = 0.4 + std::f64::consts::TAU * periods * f64::from(k) / f64::from(samples);
+        let c = 0.75 * alpha.cos() + 0.04 + sigma[0] * noise();
+        let s = 0.85 * (alpha - 0.03).sin() - 0.03 + sigma[1] * noise();
+        writeln!(text, "{c:.7},{s:.7}").expect("text");
+    }
+    text
+}
+
+fn nonius(dir: &Path, arguments: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_nonius"));
+    command
+        .current_dir(dir)
+        .arg("calibrate")
+        .args(arguments)
+        .output()
+        .expect("nonius runs")
+}
+
+fn json(text: &str, arguments: &[&str]) -> Value {
+    let dir = tempfile::tempdir().expect("scratch");
+    fs::write(dir.path().join("r.csv"), text).expect("recording");
+    let output = nonius(dir.path(), &[&["r.csv", "--json"], arguments].concat());
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{arguments:?}: {said}");
+    serde_json::from_slice(&output.stdout).expect("JSON and nothing else")
+}
+
+fn refused(text: &str, arguments: &[&str], words: &[&str]) {
+    let dir = tempfile::tempdir().expect("scratch");
+    fs::write(dir.path().join("r.csv"), text).expect("recording");
+    let output = nonius(dir.path(), &[&["r.csv"], arguments].concat());
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(output.stdout.is_empty());
+    for word in words {
+        assert!(said.contains(word), "{said}");
+    }
+}
+
+fn parameter<'a>(json: &'a Value, name: &str) -> &'a Value {
+    let all = json["parameters"].as_array().expect("parameters");
+    all.iter()
+        .find(|p| p["name"] == name)
+        .expect("the parameter")
+}
+
+fn sentences(json: &Value) -> Vec<&str> {
+    let all = json["cannot_tell"].as_array().expect("sentences");
+    all.iter()
+        .map(|s| s.as_str().expect("a sentence"))
+        .collect()
+}
+
+#[test]
+fn the_json_is_the_contract() {
+    let text = recording(4000, 7.3, [0.002; 2]);
+    for method in METHODS {
+        let json = json(&text, &["--method", method]);
+        let mut keys: Vec<&String> = json.as_object().expect("an object").keys().collect();
+        keys.sort();
+        let expected = [
+            "cannot_tell",
+            "method",
+            "parameters",
+            "residual_rms",
+            "samples",
+            "schema",
+        ];
+        assert_eq!(keys, expected);
+        assert_eq!(json["schema"], "nonius.calibration/1");
+        assert_eq!(json["method"], method);
+        assert_eq!(json["samples"], 4000);
+        assert!(
+            json["residual_rms"]
+                .as_f64()
+                .is_some_and(|r| r > 0.002 && r < 0.05)
+        );
+        let all = json["parameters"].as_array().expect("parameters");
+        let names: Vec<&str> = all.iter().filter_map(|p| p["name"].as_str()).collect();
+        let thetas = match method {
+            "sumsq4" => 4,
+            "poly8" => 8,
+            "poly9" => 9,
+            _ => 5,
+        };
+        let theta = (1..=thetas).map(|i| format!("theta_{i}"));
+        let expected: Vec<String> = ["a_c", "b_c", "a_s", "b_s", "beta"]
+            .map(String::from)
+            .into_iter()
+            .chain(theta)
+            .collect();
+        assert_eq!(names, expected);
+        for p in all {
+            let mut keys: Vec<&String> = p.as_object().expect("an object").keys().collect();
+            keys.sort();
+            assert_eq!(keys, ["name", "std_error", "unit", "value"]);
+            let name = p["name"].as_str().expect("a name");
+            let held = ["extremes", "sumsq4", "poly8"].contains(&method) && name == "beta"
+                || method == "extremes" && name == "theta_5";
+            assert_eq!(p["std_error"].is_null(), held, "{method} {p}");
+            let unit = p["unit"].as_str().expect("a unit");
+            assert_eq!(unit == "rad", name == "beta");
+            assert_eq!(unit == "column", name.len() == 3, "{p}");
+        }
+        let held = sentences(&json).iter().any(|s| s.starts_with("beta: "));
+        assert_eq!(held, ["extremes", "sumsq4", "poly8"].contains(&method));
+        let blind = sentences(&json)
+            .iter()
+            .any(|s| s.contains("changes no radius"));
+        assert_eq!(blind, method.starts_with("poly"));
+    }
+}
+
+#[test]
+fn the_default_finds_the_truth_within_its_error_bars_and_has_nothing_to_add() {
+    let json = json(&recording(4000, 7.3, [0.002; 2]), &[]);
+    assert_eq!(json["method"], "unbiased");
+    assert_eq!(sentences(&json), [""; 0]);
+    for (name, truth) in [
+        ("a_c", 0.75),
+        ("b_c", 0.04),
+        ("a_s", 0.85),
+        ("b_s", -0.03),
+        ("beta", 0.03),
+    ] {
+        let p = parameter(&json, name);
+        let error = p["std_error"].as_f64().expect("an error");
+        assert!(
+            (p["value"].as_f64().expect("a value") - truth).abs() < 4.0 * error,
+            "{p}"
+        );
+        assert!(error < 3e-4, "{p}");
+    }
+}
+
+#[test]
+fn a_noise_ratio_is_estimated_or_given() {
+    let text = recording(4000, 7.3, [0.03, 0.051]);
+    let ratio = |arguments: &[&str]| -> String {
+        let dir = tempfile::tempdir().expect("scratch");
+        fs::write(dir.path().join("r.csv"), &text).expect("recording");
+        let output = nonius(dir.path(), &[&["r.csv"], arguments].concat());
+        let said = String::from_utf8(output.stdout).expect("text");
+        let line = said
+            .lines()
+            .find(|l| l.contains("noise ratio"))
+            .expect("the line");
+        line.split_once("= ").expect("a value").1.to_owned()
+    };
+    let estimated = ratio(&[]);
+    assert!(
+        estimated.ends_with("(sin to cos, estimated)"),
+        "{estimated}"
+    );
+    let found: f64 = estimated
+        .split(' ')
+        .next()
+        .expect("a number")
+        .parse()
+        .expect("a number");
+    assert!((found - 1.7).abs() < 0.2, "{estimated}");
+    assert_eq!(
+        ratio(&["--noise-ratio", "1.7"]),
+        "1.700 (sin to cos, not estimated)"
+    );
+    for wrong in ["-1", "0", "nan", "1e9"] {
+        refused(
+            &text,
+            &[&format!("--noise-ratio={wrong}")],
+            &["--noise-ratio", "0.01 to 100"],
+        );
+    }
+}
+
+#[test]
+fn a_short_arc_says_which_parameters_it_does_not_tell() {
+    // A quarter of a period from 0.4 rad on, where sine is small: its size and centre go together.
+    let json = json(&recording(4000, 0.25, [0.03; 2]), &[]);
+    let all = sentences(&json);
+    assert!(
+        all[0].contains("of the scale period holds no sample"),
+        "{all:?}"
+    );
+    assert!(
+        all[0].contains("less well known than from whole periods: b_s"),
+        "{all:?}"
+    );
+    let truth = [
+        ("a_c", 0.75),
+        ("b_c", 0.04),
+        ("a_s", 0.85),
+        ("b_s", -0.03),
+        ("beta", 0.03),
+    ];
+    for (name, truth) in truth {
+        let p = parameter(&json, name);
+        let error = p["std_error"].as_f64().expect("an error");
+        assert!(
+            (p["value"].as_f64().expect("a value") - truth).abs() < 4.0 * error,
+            "{p}"
+        );
+        let named = all
+            .iter()
+            .any(|s| s.starts_with(&format!("{name} cannot be told")));
+        assert_eq!(named, ["a_s", "b_s"].contains(&name), "{all:?}");
+    }
+}
+
+#[test]
+fn an_arc_that_is_a_line_under_its_noise_is_an_answer_too() {
+    for method in METHODS {
+        let json = json(&recording(4000, 0.05, [0.01; 2]), &["--method", method]);
+        let said = sentences(&json).join(" ");
+        assert!(
+            said.contains("on a line") && said.contains("a_c, b_c, a_s, b_s, beta"),
+            "{said}"
+        );
+        assert!(parameter(&json, "a_c")["std_error"].is_null());
+    }
+}
+
+#[test]
+fn a_standstill_is_an_answer() {
+    let mut noise = noise();
+    let mut text = String::from("# sample_rate_hz: 1000\ncos,sin\n");
+    for _ in 0..2000 {
+        writeln!(
+            text,
+            "{:.6},{:.6}",
+            0.7 + 0.01 * noise(),
+            0.2 + 0.01 * noise()
+        )
+        .expect("text");
+    }
+    for method in METHODS {
+        let json = json(&text, &["--method", method]);
+        for p in json["parameters"].as_array().expect("parameters") {
+            assert!(p["std_error"].is_null(), "{method}: {p}");
+        }
+        let said = sentences(&json).join(" ");
+        assert!(
+            said.contains("a_c, b_c, a_s, b_s, beta") && said.contains("stands still"),
+            "{said}"
+        );
+    }
+}
+
+#[test]
+fn distortion_drift_and_glitches_are_said() {
+    let mut noise = noise();
+    let (mut bent, mut drifting, mut glitched) = ["# sample_rate_hz: 1000\ncos,sin\n"; 3]
+        .map(String::from)
+        .into();
+    for k in 0..6000u32 {
+        let alpha = 0.0123 * f64::from(k);
+        let (s, c) = alpha.sin_cos();
+        let (n, m) = (0.003 * noise(), 0.003 * noise());
+        writeln!(bent, "{:.6},{:.6}", c + 0.03 * c * c * c + n, s + m).expect("text");
+        let slow = 0.02 * (f64::from(k) / 1500.0).sin();
+        writeln!(drifting, "{:.6},{:.6}", c + slow + n, s + m).expect("text");
+        let (c, s) = if k < 3 {
+            (0.0, 0.0)
+        } else {
+            (c + n + 0.2, s + m)
+        };
+        writeln!(glitched, "{c:.6},{s:.6}").expect("text");
+    }
+    let said = |text: &str| sentences(&json(text, &[])).join(" ");
+    assert!(said(&bent).contains("no exact ellipse"), "{}", said(&bent));
+    assert!(
+        said(&drifting).contains("consecutive parts of the recording differ"),
+        "{}",
+        said(&drifting)
+    );
+    assert_eq!(said(&glitched), "");
+    let dir = tempfile::tempdir().expect("scratch");
+    fs::write(dir.path().join("r.csv"), glitched).expect("recording");
+    let output = nonius(dir.path(), &["r.csv"]);
+    let text = String::from_utf8_lossy(&output.stdout);
+    assert!(
+        text.contains("samples          = 6000, 3 of them left out"),
+        "{text}"
+    );
+}
+
+#[test]
+fn what_is_wrong_is_refused_with_place_and_way_out() {
+    let text = recording(200, 3.0, [0.0; 2]);
+    refused(&text, &["--method", "magic"], &["magic", "unbiased"]);
+    refused("cos,sin\n1,2\n1,2\n", &[], &["r.csv"]);
+    refused(&text.replacen("sin", "other", 1), &[], &["r.csv:2", "sin"]);
+    let mut lines: Vec<&str> = text.lines().collect();
+    lines[50] = "0.1,oops";
+    refused(&lines.join("\n"), &[], &["r.csv:51", "oops"]);
+    lines[50] = "0.1,NaN";
+    refused(&lines.join("\n"), &[], &["r.csv:51"]);
+    let dead: String = text
+        .lines()
+        .take(2)
+        .chain(["0.1,0.5"; 100])
+        .map(|l| format!("{l}\n"))
+        .collect();
+    refused(&dead, &[], &["dead"]);
+    let dir = tempfile::tempdir().expect("scratch");
+    let output = nonius(dir.path(), &["nowhere.csv"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("nowhere.csv"));
+}
+
+/// Sixteen encoders in one file: time starts again, and the file is refused whole with the place.
+#[test]
+fn several_records_in_one_file_are_refused() {
+    let file =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data/optical_servo_tables.csv");
+    if !file.is_file() {
+        use std::io::Write;
+        let _ = writeln!(
+            std::io::stderr(),
+            "\nNOT RUN: several records in one file: ../shared/data is not there"
+        );
+        return;
+    }
+    let output = nonius(Path::new("."), &[&file.display().to_string()]);
+    assert_eq!(output.status.code(), Some(2));
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(
+        said.contains("optical_servo_tables.csv:514") && said.contains("unit"),
+        "{said}"
+    );
+}

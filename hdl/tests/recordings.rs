@@ -1,0 +1,96 @@
+//! Every measured recording, played into the Verilog of a design that was made for it. The homodyne ones are long and
+//! go through Verilator alone.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use nonius_hdl::progress::silent;
+use nonius_hdl::verify::{Options, verify};
+use nonius_model::design::Design;
+use nonius_model::spec::Spec;
+use nonius_recording::{Overrides, Recording};
+
+/// The folder of the recordings; says past the capture of test output where it is absent.
+fn shared() -> Option<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data");
+    if folder.is_dir() {
+        return Some(folder);
+    }
+    let _ = writeln!(
+        std::io::stderr(),
+        "\nNOT RUN: recordings in Verilog: ../shared/data is not there"
+    );
+    None
+}
+
+const ICARUS: Options = Options {
+    icarus: true,
+    verilator: false,
+    time_limit: None,
+};
+const VERILATOR: Options = Options {
+    icarus: false,
+    verilator: true,
+    time_limit: None,
+};
+const BOTH: Options = Options {
+    icarus: true,
+    verilator: true,
+    time_limit: None,
+};
+
+/// What `nonius new --from` and `nonius build --play --repeat` do, and `nonius verify` after them.
+fn agrees(file: &Path, repeat: u32, options: &Options) {
+    let name = file.display();
+    let recording = Recording::read(file, &Overrides::default()).expect("a recording");
+    let text = nonius::new::fitted_text("it", file, &recording).expect("a design can follow it");
+    let spec = Spec::from_toml(&text, "it.toml").expect("a design");
+    let design = Design::new(&spec).expect("a design");
+    let played = nonius::play::stimulus(&spec, &recording, repeat);
+    let samples = played.samples.len() as u64;
+    assert!(samples >= 1000, "{name}: too little is played");
+    let package =
+        nonius_package::package_with(&design, vec![played], "recording").expect("a package");
+    let dir = tempfile::tempdir().expect("scratch folder");
+    nonius_package::write(&package.files, dir.path()).expect("a folder");
+    let report = verify(dir.path(), options, &silent).unwrap_or_else(|e| panic!("{e}"));
+    assert!(report.passed, "{name}: {report:#?}");
+    for run in &report.runs {
+        assert_eq!(run.samples, Some(samples), "{name}");
+    }
+}
+
+#[test]
+fn recordings_agree_in_every_bit() {
+    let Some(folder) = shared() else { return };
+    let recordings = [
+        ("rm44_center", 4, BOTH),
+        ("rm44_static_x500um", 4, ICARUS),
+        ("rm44_gap_z500um", 4, ICARUS),
+        ("rm44_jumps", 1, ICARUS),
+        ("interf3x3_fs", 1, ICARUS),
+        ("interf3x3_mmi", 1, ICARUS),
+        ("wheel_magnetometer", 1, ICARUS),
+        ("homodyne_settle", 1, VERILATOR),
+        ("homodyne_stop", 1, VERILATOR),
+    ];
+    for (name, repeat, simulators) in recordings {
+        agrees(&folder.join(format!("{name}.csv")), repeat, &simulators);
+    }
+}
+
+/// One period of the first encoder of the table, far from an ellipse, round and round.
+#[test]
+fn an_averaged_period_agrees_in_every_bit() {
+    let Some(folder) = shared() else { return };
+    let table =
+        std::fs::read_to_string(folder.join("optical_servo_tables.csv")).expect("the table");
+    let mut lines = table.lines();
+    let header = lines.next().expect("a header");
+    let unit: Vec<&str> = lines.filter(|l| l.ends_with(",0")).collect();
+    assert_eq!(unit.len(), 512);
+    let dir = tempfile::tempdir().expect("scratch folder");
+    let one = dir.path().join("unit_0.csv");
+    std::fs::write(&one, format!("{header}\n{}\n", unit.join("\n"))).expect("a file");
+    agrees(&one, 8, &BOTH);
+}

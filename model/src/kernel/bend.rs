@@ -1,0 +1,82 @@
+//! Bends of the two channels: polynomials of second and third order on the normalised signal.
+//!
+//! Offset and gain come first and make u, then the bend, then the phase. T2 and T3 (Chebyshev) disturb each other and
+//! the linear terms little. The third orders of the two channels are not corrected apart but as what they have in
+//! common, θ8, which changes the radius by cos 4α, and what is opposite in them, θ9, which turns the pair by 2 sin 2α and
+//! changes no radius: T3(u) − u = 4 (u³ − u) of one channel, less that of the other.
+
+use super::{Coefficients, State, Structure};
+use crate::signal::{Formula, Signal, Wide};
+
+static BEND: Formula = Formula {
+    title: "Bend",
+    equation: "c = u + theta_6 T2(u) + theta_8 T3(u) + theta_9 (T3(u) - u);  sine: theta_7, theta_8, -theta_9",
+    source: "paper section 5.4, in Chebyshev polynomials T2 = 2 u^2 - 1, T3 = 4 u^3 - 3 u",
+};
+
+/// The parameters of both bends, as they are applied.
+#[derive(Clone, Copy, Debug)]
+pub struct Bends<S: Signal> {
+    /// θ6.
+    pub theta_6: S,
+    /// θ7.
+    pub theta_7: S,
+    /// 4 (θ8 + θ9) as multiplied by u², and 4 (θ8 + θ9) − θ8.
+    cubic_c: (S, S),
+    /// 4 (θ8 − θ9) as multiplied by u², and 4 (θ8 − θ9) − θ8.
+    cubic_s: (S, S),
+}
+
+/// θ6 … θ9 as the chip applies them.
+pub fn parameters<S: Signal>(state: &State<S>, structure: &Structure) -> Bends<S> {
+    state.theta_6_deviation.begin(&BEND);
+    let formats = &structure.formats;
+    let (both, opposite) = (state.theta_8_deviation, state.theta_9_deviation);
+    let cubic = |sum: S, name: [&'static str; 2]| {
+        let by_square = sum.scale(2);
+        (
+            by_square.quantise(&formats.theta_cubic).named(name[0]),
+            (by_square - both).named(name[1]),
+        )
+    };
+    Bends {
+        theta_6: state.theta_6_deviation.quantise(&formats.theta_bend),
+        theta_7: state.theta_7_deviation.quantise(&formats.theta_bend),
+        cubic_c: cubic(both + opposite, ["cubic_c", "cubic_c_constant"]),
+        cubic_s: cubic(both - opposite, ["cubic_s", "cubic_s_constant"]),
+    }
+}
+
+/// (c, s) before the phase, of (u_c, u_s).
+pub fn bend<S: Signal>(
+    (u_c, u_s): (S, S),
+    bends: &Bends<S>,
+    k: &Coefficients<S>,
+    structure: &Structure,
+) -> (S, S) {
+    u_c.begin(&BEND);
+    let signal = &structure.formats.signal;
+    let channel = |u: S, second: S, (cubic, constant): (S, S), name: [&'static str; 3]| {
+        let square = (u * u).quantise(signal).named(name[0]);
+        let slope = (cubic * square - constant.widen())
+            .quantise(signal)
+            .named(name[1]);
+        // T2 = 2 (u² − ½)
+        let half_t2 = (square - k.half).named(name[2]);
+        (u.widen() + u * slope + (second * half_t2).scale(1)).quantise(signal)
+    };
+    (
+        channel(
+            u_c,
+            bends.theta_6,
+            bends.cubic_c,
+            ["u_c_square", "bend_c", "half_t2_c"],
+        ),
+        channel(
+            u_s,
+            bends.theta_7,
+            bends.cubic_s,
+            ["u_s_square", "bend_s", "half_t2_s"],
+        ),
+    )
+}

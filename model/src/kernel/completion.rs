@@ -1,0 +1,79 @@
+//! The completed gradient: one scalar sensitivity for θ9, the direction that no radius shows.
+//!
+//! The pair turns by 2 sin 2α per unit of θ9, so w = ½ sin 2α̂ = sin α̂ cos α̂ up to a factor that γ takes. θ9 learns at
+//! γ |S(2f)|²/2 per sample, S the loop's sensitivity at twice the signal's frequency f: what a wide loop follows, it
+//! cannot tell from motion. Hence the gate: whole periods of net travel must follow one another fast enough. Standstill,
+//! slow motion and vibration, however fast, rest.
+
+use super::sensitivity::{self, Sensitivity};
+use super::travel::Travel;
+use super::{Coefficients, State, Structure};
+use crate::format::Quantiser;
+use crate::signal::{Formula, Logic, Signal, Wide};
+
+static COMPLETION: Formula = Formula {
+    title: "Completion of the gradient",
+    equation: "theta_9 -= gamma_v (w - grad alpha_hat) e, w = sin(alpha_hat) cos(alpha_hat)",
+    source: "paper section 5.5, equation (11), along the null direction of section 5.4",
+};
+
+static MOVING: Formula = Formula {
+    title: "Travel fast enough for the completion",
+    equation: "moving from one whole period of travel to the next, while they take few samples",
+    source: "",
+};
+
+/// What the completion decides and remembers.
+pub struct Completion<S: Signal> {
+    /// What θ9 moves back by.
+    pub step: S,
+    /// ∇α̂ along the direction.
+    pub sensitivity: Sensitivity<S>,
+    /// Samples since the last whole period of travel.
+    pub samples: S,
+    /// Net travel is fast enough.
+    pub moving: S::Bool,
+}
+
+/// The completion of this sample; `w` is sin α̂ cos α̂, `open` says that the loop follows.
+pub fn complete<S: Signal>(
+    (w, e): (S, S),
+    open: S::Bool,
+    counting: S::Bool,
+    travel: &Travel<S>,
+    state: &State<S>,
+    k: &Coefficients<S>,
+    structure: &Structure,
+) -> Completion<S> {
+    let before = Sensitivity {
+        gradient: state.null_gradient,
+        rate: state.null_gradient_rate,
+        error: state.null_gradient_error,
+    };
+    let sensitivity = sensitivity::advance(w, before, "null_error", k, structure);
+    e.begin(&MOVING);
+    let late = state
+        .travel_samples
+        .less_than(k.travel_samples_last)
+        .not()
+        .named("travel_late");
+    let fast = late.not().and(counting);
+    let moving = fast.and(travel.whole_period.or(state.moving));
+    let clear = travel.whole_period.or(counting.not());
+    let samples = (state.travel_samples + S::select(late, k.zero, k.one))
+        .quantise(&Quantiser::wrapping(structure.formats.travel_samples));
+    e.begin(&COMPLETION);
+    let gamma = structure.completion.unwrap_or(0) as i32;
+    let step = (sensitivity.error * e)
+        .scale(-gamma)
+        .named("gradient_9")
+        .quantise(&structure.formats.step);
+    let allowed = state.moving.and(open);
+    Completion {
+        step: S::select(allowed, step, k.zero).named("step_9"),
+        sensitivity,
+        samples: S::select(clear, k.zero, samples)
+            .quantise(&Quantiser::wrapping(structure.formats.travel_samples)),
+        moving,
+    }
+}

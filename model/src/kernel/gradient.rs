@@ -1,0 +1,184 @@
+//! The gradient of one sample, component by component.
+
+use super::sensitivity::{self, Sensitivity};
+use super::{Coefficients, State, Structure};
+use crate::signal::{Formula, Signal, Wide};
+
+static DIRECTION: Formula = Formula {
+    title: "Gradient along the radius",
+    equation: "rho_c = cos(alpha_hat) rho,  rho_s = sin(alpha_hat) rho",
+    source: "paper section 5.5.1: r + (sin, -cos) e = n (n^T r)",
+};
+
+static ALONG: Formula = Formula {
+    title: "Gradient along the squared radius",
+    equation: "rho_c = c epsilon,  rho_s = s epsilon",
+    source: "paper sections 5.2 and 5.3",
+};
+
+static BENDS: Formula = Formula {
+    title: "Gradient by the bends",
+    equation: "theta_2: 2 rho_c (1 - cos 2a), theta_6: 2 rho_c (2 cos 2a - 1), theta_8: rho cos 4a, a = alpha_hat",
+    source: "paper section 5.5.1 for section 5.4; offset and second order decoupled",
+};
+
+static EXACT: Formula = Formula {
+    title: "Exact gradient",
+    equation: "M^T n rho + (w - grad alpha_hat)^T e, w = (-sin(alpha_hat), cos(alpha_hat)) M",
+    source: "paper equations (8), (10) and (11)",
+};
+
+/// What a sample shows.
+#[derive(Clone, Copy, Debug)]
+pub struct Seen<S: Signal> {
+    /// Normalised pair.
+    pub y: (S, S),
+    /// (cos α̂, sin α̂).
+    pub estimate: (S, S),
+    /// Phase error, radians.
+    pub e: S,
+    /// Radial residual.
+    pub rho: S,
+    /// n ρ.
+    pub along: (S, S),
+}
+
+/// n ρ, or for the sum of squares (c, s) ε.
+pub fn along<S: Signal>(rho: S, (cos, sin): (S, S), structure: &Structure) -> (S, S) {
+    rho.begin(if structure.gathers() {
+        &ALONG
+    } else {
+        &DIRECTION
+    });
+    let signal = &structure.formats.signal;
+    ((cos * rho).quantise(signal), (sin * rho).quantise(signal))
+}
+
+/// By θ1 … θ5 in the final form: Mᵀ n ρ. The last is 0 without phase.
+pub fn linear<S: Signal>(
+    seen: &Seen<S>,
+    k: &Coefficients<S>,
+    structure: &Structure,
+) -> [S::Wide; 5] {
+    let ((y_c, y_s), (rho_c, rho_s)) = (seen.y, seen.along);
+    let fifth = if structure.has_phase() {
+        y_c * rho_s
+    } else {
+        k.zero.widen()
+    };
+    [
+        y_c * rho_c,
+        rho_c.widen(),
+        y_s * rho_s,
+        rho_s.widen(),
+        fifth,
+    ]
+}
+
+/// By θ2, θ4 (which the bend of second order disturbs), θ5, θ6, θ7 and θ8; and w = sin α̂ cos α̂.
+pub struct Bent<S: Signal> {
+    /// By the offsets of both channels.
+    pub offsets: [S::Wide; 2],
+    /// By the phase.
+    pub phase: S::Wide,
+    /// By the bends of second order.
+    pub second: [S::Wide; 2],
+    /// By the common bend of third order.
+    pub third: S::Wide,
+    /// sin α̂ cos α̂.
+    pub w: S,
+}
+
+/// The bends are small, so M is taken as it is without them, in α̂: T2 is cos 2α̂ in the cosine and −cos 2α̂ in the sine.
+pub fn bent<S: Signal>(seen: &Seen<S>, k: &Coefficients<S>, structure: &Structure) -> Bent<S> {
+    seen.rho.begin(&BENDS);
+    let signal = &structure.formats.signal;
+    let ((cos_hat, sin_hat), (rho_c, rho_s)) = (seen.estimate, seen.along);
+    let w = (sin_hat * cos_hat).quantise(signal).named("half_sin_2");
+    let half_cos_2 =
+        ((cos_hat * cos_hat).quantise(signal).named("cos_square") - k.half).named("half_cos_2");
+    let square = (w * w).quantise(signal).named("half_sin_2_square");
+    let cos_4 = (k.one - square.scale(3)).quantise(signal).named("cos_4");
+    let (second_c, second_s) = (rho_c * half_cos_2, rho_s * half_cos_2);
+    let twice = |rho: S| rho.widen().scale(1);
+    Bent {
+        offsets: [
+            twice(rho_c) - second_c.scale(2),
+            twice(rho_s) + second_s.scale(2),
+        ],
+        phase: if structure.has_phase() {
+            w * seen.rho
+        } else {
+            k.zero.widen()
+        },
+        second: [
+            second_c.scale(3) - twice(rho_c),
+            twice(-rho_s) - second_s.scale(3),
+        ],
+        third: seen.rho * cos_4,
+        w,
+    }
+}
+
+/// ∇α̂ by θ1 … θ5 after this sample.
+pub fn sensitivities<S: Signal>(
+    seen: &Seen<S>,
+    state: &State<S>,
+    k: &Coefficients<S>,
+    structure: &Structure,
+) -> [Sensitivity<S>; 5] {
+    seen.e.begin(&EXACT);
+    let signal = &structure.formats.signal;
+    let ((y_c, y_s), (cos_hat, sin_hat)) = (seen.y, seen.estimate);
+    let before = [
+        (
+            state.alpha_gradient_1,
+            state.alpha_gradient_rate_1,
+            state.alpha_gradient_error_1,
+        ),
+        (
+            state.alpha_gradient_2,
+            state.alpha_gradient_rate_2,
+            state.alpha_gradient_error_2,
+        ),
+        (
+            state.alpha_gradient_3,
+            state.alpha_gradient_rate_3,
+            state.alpha_gradient_error_3,
+        ),
+        (
+            state.alpha_gradient_4,
+            state.alpha_gradient_rate_4,
+            state.alpha_gradient_error_4,
+        ),
+        (
+            state.alpha_gradient_5,
+            state.alpha_gradient_rate_5,
+            state.alpha_gradient_error_5,
+        ),
+    ]
+    .map(|(gradient, rate, error)| Sensitivity {
+        gradient,
+        rate,
+        error,
+    });
+    let next = |w: S, i: usize, error: &'static str| {
+        sensitivity::advance(w, before[i], error, k, structure)
+    };
+    let fifth = if structure.has_phase() {
+        let w = (cos_hat * y_c).quantise(signal).named("w_5");
+        next(w, 4, "w_5_error")
+    } else {
+        before[4]
+    };
+    let w_1 = (-(sin_hat * y_c).quantise(signal)).named("w_1");
+    let w_3 = (cos_hat * y_s).quantise(signal).named("w_3");
+    [
+        next(w_1, 0, "w_1_error"),
+        next((-sin_hat).named("w_2"), 1, "w_2_error"),
+        next(w_3, 2, "w_3_error"),
+        // w_4 is cos α̂.
+        next(cos_hat, 3, "w_4_error"),
+        fifth,
+    ]
+}

@@ -1,0 +1,127 @@
+//! A bit-true chip, a sensor in front of it, and how far its parameters are from the truth.
+#![allow(dead_code, reason = "each test uses its own part")]
+
+use std::f64::consts::TAU;
+
+use nonius_model::bits::Bits;
+use nonius_model::chip::Chip;
+use nonius_model::design::Design;
+use nonius_model::physical::Converter;
+use nonius_model::spec::Spec;
+use rand::{Rng, SeedableRng, rngs::StdRng};
+
+/// The shipped optical design.
+pub(crate) fn optical() -> Spec {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../designs/optical.toml");
+    let text = std::fs::read_to_string(path).expect("designs/optical.toml");
+    Spec::from_toml(&text, "optical.toml").expect("a shipped design")
+}
+
+/// White noise of unit variance.
+pub(crate) struct Noise(StdRng);
+
+impl Noise {
+    pub(crate) fn new(seed: u64) -> Self {
+        Self(StdRng::seed_from_u64(seed))
+    }
+
+    pub(crate) fn next(&mut self) -> f64 {
+        let (u, v): (f64, f64) = (self.0.random(), self.0.random());
+        (-2.0 * (1.0 - u).ln()).sqrt() * (TAU * v).cos()
+    }
+}
+
+/// A chip behind its ADC.
+pub(crate) struct Bench {
+    pub(crate) design: Design,
+    pub(crate) chip: Chip<Bits>,
+    converter: Converter,
+    noise: Noise,
+}
+
+impl Bench {
+    pub(crate) fn new(spec: &Spec, seed: u64) -> Self {
+        let design = Design::new(spec).expect("a design that works");
+        Self {
+            chip: Chip::bit_true(&design),
+            converter: Converter::of(spec),
+            noise: Noise::new(seed),
+            design,
+        }
+    }
+
+    /// One sample of a pair in units of the nominal amplitude, with noise as the design promises it.
+    pub(crate) fn step(&mut self, y: (f64, f64)) {
+        let (a, sigma) = (
+            self.design.spec.sensor.amplitude,
+            self.design.spec.sensor.noise_rms,
+        );
+        let mut code = |y: f64| self.converter.code(a * (y + sigma * self.noise.next()));
+        let (cos, sin) = (code(y.0), code(y.1));
+        self.chip.step_codes(cos, sin, false, true);
+    }
+
+    /// Angle of the noise-free corrected pair less the true one, radians, over a period, the mean removed.
+    pub(crate) fn miscalibration(&self, signals: &dyn Fn(f64) -> (f64, f64)) -> Vec<f64> {
+        let theta = self.chip.theta();
+        let bent = self.design.spec.calibration.parameters >= 8;
+        let scale = self.design.spec.sensor.amplitude / self.design.spec.adc.full_scale;
+        let power = (1.0 / scale).log2().floor().exp2().max(1.0);
+        let errors: Vec<f64> = (0..POINTS)
+            .map(|k| {
+                let alpha = TAU * k as f64 / POINTS as f64;
+                let y = signals(alpha);
+                let y = (y.0 * scale * power, y.1 * scale * power);
+                let (c, s) = if bent {
+                    bent_pair(&theta, y)
+                } else {
+                    linear_pair(&theta, y)
+                };
+                let error = s.atan2(c) - alpha;
+                error - TAU * (error / TAU).round()
+            })
+            .collect();
+        let mean = errors.iter().sum::<f64>() / POINTS as f64;
+        errors.iter().map(|e| e - mean).collect()
+    }
+}
+
+const POINTS: usize = 720;
+
+/// Section 5.3 in plain `f64`.
+fn linear_pair(theta: &[f64; 9], (y_c, y_s): (f64, f64)) -> (f64, f64) {
+    let [t1, t2, t3, t4, t5, ..] = *theta;
+    (t1 * y_c + t2, t3 * y_s + t4 + t5 * y_c)
+}
+
+/// Offset and gain, bend, phase, in plain `f64`.
+fn bent_pair(theta: &[f64; 9], (y_c, y_s): (f64, f64)) -> (f64, f64) {
+    let [t1, t2, t3, t4, t5, t6, t7, t8, t9] = *theta;
+    let (u, v) = (t1 * y_c + t2, t3 * y_s + t4);
+    let second = |u: f64| 2.0 * u * u - 1.0;
+    let third = |u: f64| 4.0 * u * u * u - 3.0 * u;
+    let c = u + t6 * second(u) + t8 * third(u) + t9 * (third(u) - u);
+    let s = v + t7 * second(v) + t8 * third(v) - t9 * (third(v) - v);
+    (c, s + t5 * c)
+}
+
+/// Amplitude of one order of an error over a period.
+pub(crate) fn order(error: &[f64], n: u32) -> f64 {
+    let (mut re, mut im) = (0.0, 0.0);
+    for (k, e) in error.iter().enumerate() {
+        let angle = TAU * f64::from(n) * k as f64 / error.len() as f64;
+        re += e * angle.cos();
+        im += e * angle.sin();
+    }
+    2.0 * re.hypot(im) / error.len() as f64
+}
+
+/// Root of the mean square.
+pub(crate) fn rms(error: &[f64]) -> f64 {
+    (error.iter().map(|e| e * e).sum::<f64>() / error.len() as f64).sqrt()
+}
+
+/// Largest magnitude.
+pub(crate) fn largest(error: &[f64]) -> f64 {
+    error.iter().fold(0.0, |m, e| m.max(e.abs()))
+}
