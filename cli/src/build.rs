@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail};
 use clap::Args;
 use nonius_model::design::Design;
 use nonius_package::{DesignJson, package_with, write};
@@ -53,6 +53,16 @@ pub(crate) fn run(args: &Build) -> Result<()> {
         stimuli.push(play::stimulus(shown, &spec, &recording, args.repeat));
     }
     let package = package_with(&design, stimuli, shown)?;
+    let needed = package.json.latency.clock_hz_min;
+    if let Some(clock) = spec.chip.clock_hz.filter(|clock| *clock < needed) {
+        bail!(
+            "{}: chip.clock_hz = {clock}: {} clocks per sample at {} samples per second need at least {needed} Hz; more \
+             multipliers need fewer clocks",
+            args.design.display(),
+            package.json.clocks_per_sample,
+            spec.adc.sample_rate_hz
+        );
+    }
     write(&package.files, &args.output)?;
     summary(&package.json, &args.output, shown);
     Ok(())
@@ -60,38 +70,41 @@ pub(crate) fn run(args: &Build) -> Result<()> {
 
 fn summary(j: &DesignJson, output: &Path, shown: &str) {
     let rate = j.spec.adc.sample_rate_hz;
-    println!("{} (design {})", j.name, j.hash);
-    println!(
+    say!("{} (design {})", j.name, j.hash);
+    say!(
         "  accuracy    {:.2e} periods rms predicted, {:.2e} simulated, {:.2e} asked",
-        j.budget.total, j.simulated.rms_periods, j.budget.asked
+        j.budget.total,
+        j.simulated.rms_periods,
+        j.budget.asked
     );
-    println!(
+    say!(
         "  speed       {:.4} MS/s need a clock of {:.4} MHz: {} clocks per sample",
         rate / 1e6,
         j.latency.clock_hz_min / 1e6,
         j.clocks_per_sample
     );
-    println!(
+    say!(
         "  hardware    {} multiplier{} for {} products, {} table bits",
         j.multipliers,
         if j.multipliers == 1 { "" } else { "s" },
         j.products,
         j.sine_table.bits
     );
-    println!(
+    say!(
         "  bandwidth   {:.4e} Hz at -3 dB, to {:.4e} periods/s",
-        j.tracking.bandwidth_3db_hz, j.tracking.speed_max_periods_per_s
+        j.tracking.bandwidth_3db_hz,
+        j.tracking.speed_max_periods_per_s
     );
     if j.simulated.rms_periods > j.budget.asked {
-        println!(
+        say!(
             "  note        the simulated accuracy misses what was asked for: calibration noise and loop noise add up; \
              a smaller last gamma or a narrower loop would help"
         );
     }
     let folder = output.display();
-    println!(
+    say!(
         "  written     {folder}/: rtl, tb, vectors, waves, coefficients, design.json, report.html"
     );
-    println!("next: nonius verify {folder}");
-    println!("      gtkwave {folder}/waves/{shown}.gtkw");
+    say!("next: nonius verify {folder}");
+    say!("      gtkwave {folder}/waves/{shown}.gtkw");
 }

@@ -105,10 +105,10 @@ pub(crate) fn run(args: &Calibrate) -> Result<()> {
             parameters: &found.parameters,
             cannot_tell: &found.cannot_tell,
         };
-        println!("{}", serde_json::to_string_pretty(&json)?);
+        say!("{}", serde_json::to_string_pretty(&json)?);
     } else {
         let adc = recording.metadata.adc;
-        print!("{}", report(&found, Some([adc.cos.lsb, adc.sin.lsb])));
+        say_as_it_is!("{}", report(&found, Some([adc.cos.lsb, adc.sin.lsb])));
     }
     Ok(())
 }

@@ -106,11 +106,15 @@ pub(crate) fn run(args: &Diagnose) -> Result<bool> {
             .ok(),
     };
     if let Some(text) = design {
+        let (text, notes) = crate::corrections::switch_on(&text, &found)?;
+        for note in notes {
+            eprintln!("note: {note}");
+        }
         files.push(("design.toml".into(), text.into_bytes()));
     }
-    nonius_package::write_marked(&files, &args.output, "findings.json")?;
+    nonius_package::write(&files, &args.output)?;
     if args.json {
-        print!("{json}");
+        say_as_it_is!("{json}");
     } else {
         summary(&found, &args.output);
     }
@@ -133,29 +137,30 @@ fn positions(recording: &Recording, found: &Diagnosis) -> String {
 
 fn summary(found: &Diagnosis, output: &Path) {
     if found.findings.is_empty() {
-        println!("nothing but the five parameters and white noise was found");
+        say!("nothing but the five parameters and white noise was found");
     }
     for finding in &found.findings {
         let with = match finding.confounded_with.first() {
             Some(other) => format!(" (or {other})"),
             None => String::new(),
         };
-        println!("{}{with}: {}", finding.cause, finding.evidence);
+        say!("{}{with}: {}", finding.cause, finding.evidence);
     }
-    println!("left: {}", found.unexplained.signature);
-    println!(
+    say!("left: {}", found.unexplained.signature);
+    say!(
         "residual on held-out data: {:.4e} -> {:.4e} of the amplitude",
-        found.simulation.held_out_residual_rms, found.extended.held_out_residual_rms
+        found.simulation.held_out_residual_rms,
+        found.extended.held_out_residual_rms
     );
     if let (Some(before), Some(after)) = (
         found.simulation.position_error_rms_rad,
         found.extended.position_error_rms_rad,
     ) {
-        println!(
+        say!(
             "angle error against the reference: {:.4} -> {:.4} degrees rms",
             before.to_degrees(),
             after.to_degrees()
         );
     }
-    println!("written: {}/", output.display());
+    say!("written: {}/", output.display());
 }

@@ -1,7 +1,24 @@
 //! The command `nonius`, as a library: `main` calls [`run`], tests call its parts.
 
+/// A line on standard output; where nobody reads any more, nobody is told.
+macro_rules! say {
+    ($($what:tt)*) => {{
+        use std::io::Write as _;
+        let _ = writeln!(std::io::stdout(), $($what)*);
+    }};
+}
+
+/// The same without an end of line.
+macro_rules! say_as_it_is {
+    ($($what:tt)*) => {{
+        use std::io::Write as _;
+        let _ = write!(std::io::stdout(), $($what)*);
+    }};
+}
+
 mod build;
 mod calibrate;
+mod corrections;
 mod design_file;
 mod diagnose;
 pub mod new;

@@ -78,13 +78,13 @@ pub(crate) fn run(args: &New) -> Result<()> {
         .write_all(draft.toml().as_bytes())
         .with_context(|| format!("cannot write {}", path.display()))?;
     target.keep_new()?;
-    println!(
+    say!(
         "{}: accuracy {:.2e} periods rms predicted, speed to {:.4e} periods/s",
         path.display(),
         design.budget.total(),
         draft.speed_max.0
     );
-    println!("next: nonius build {} -o out/{}", path.display(), args.name);
+    say!("next: nonius build {} -o out/{}", path.display(), args.name);
     Ok(())
 }
 

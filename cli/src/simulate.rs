@@ -150,6 +150,7 @@ fn exact(raw: i128, fraction: u32) -> String {
 }
 
 pub(crate) fn run(args: &Simulate) -> Result<()> {
+    apart(args)?;
     let file = args.design.display().to_string();
     let spec = crate::design_file::read(&args.design)?;
     let design = Design::new(&spec).with_context(|| format!("{file} cannot work"))?;
@@ -189,6 +190,39 @@ pub(crate) fn run(args: &Simulate) -> Result<()> {
     .with_context(|| format!("cannot write {}", args.output.display()))?;
     interpolator.finish()?;
     target.keep()
+}
+
+/// What is read is not written over, and no file is written twice.
+fn apart(args: &Simulate) -> Result<()> {
+    // A file that is not there yet is known by its folder.
+    let real = |path: &Path| {
+        path.canonicalize().unwrap_or_else(|_| {
+            let folder = path.parent().filter(|p| !p.as_os_str().is_empty());
+            let folder = folder.unwrap_or(Path::new(".")).canonicalize();
+            let name = path.file_name().unwrap_or_default();
+            folder.map_or_else(|_| path.to_owned(), |folder| folder.join(name))
+        })
+    };
+    let read = [
+        Some(&args.design),
+        args.recording.as_ref(),
+        args.sensor.as_ref(),
+    ];
+    let written = [Some(&args.output), args.vcd.as_ref()];
+    for (i, out) in written.iter().enumerate() {
+        let Some(out) = out else { continue };
+        let others = read.iter().chain(&written[..i]).flatten();
+        for other in others {
+            if real(out) == real(other) {
+                anyhow::bail!(
+                    "{} is {} too; name another file to write",
+                    out.display(),
+                    other.display()
+                );
+            }
+        }
+    }
+    Ok(())
 }
 
 /// Waves of the chip into a file.

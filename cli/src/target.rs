@@ -18,6 +18,9 @@ impl Target {
         if path.is_dir() {
             bail!("{} is a folder; name a file", path.display());
         }
+        if path.exists() && !path.is_file() {
+            bail!("{} is no ordinary file; name one", path.display());
+        }
         let folder = path
             .parent()
             .filter(|p| !p.as_os_str().is_empty())

@@ -46,7 +46,7 @@ pub(crate) fn run(args: &Verify) -> Result<bool> {
         nonius_hdl::verify::verify(&args.dir, &options, &|event| shown.follow(event))?
     };
     if args.json {
-        println!("{}", serde_json::to_string_pretty(&report)?);
+        say!("{}", serde_json::to_string_pretty(&report)?);
     } else {
         print(&report);
     }
@@ -55,22 +55,22 @@ pub(crate) fn run(args: &Verify) -> Result<bool> {
 
 fn print(report: &Report) {
     for run in &report.runs {
-        println!("{} {}: {}", run.tool, run.version, verdict(run.passed));
+        say!("{} {}: {}", run.tool, run.version, verdict(run.passed));
         for stimulus in &run.stimuli {
-            println!("  {} {}", verdict(stimulus.passed), stimulus.name);
+            say!("  {} {}", verdict(stimulus.passed), stimulus.name);
             if !stimulus.passed {
-                println!("       {}", stimulus.detail);
+                say!("       {}", stimulus.detail);
             }
         }
         if let Some(failure) = &run.failure {
-            println!("  {failure}");
+            say!("  {failure}");
         }
         for warning in &run.warnings {
-            println!("  warning: {warning}");
+            say!("  warning: {warning}");
         }
     }
     for disagreement in &report.disagreements {
-        println!("{disagreement}");
+        say!("{disagreement}");
     }
 }
 

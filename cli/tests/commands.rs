@@ -361,3 +361,96 @@ fn verify_refuses_what_it_cannot_run() {
     );
     refused(&nonius(dir.path(), &["verify", "nowhere"]), &["nowhere"]);
 }
+
+/// Writing destroys nothing: no device, no input, no file of the user's in an output folder.
+#[test]
+fn nothing_of_the_users_is_written_over() {
+    let dir = tempfile::tempdir().expect("scratch folder");
+    let at = |name: &str| dir.path().join(name);
+    fs::write(at("r.csv"), recording(4000, 50.0)).expect("a recording");
+    let before = fs::read(at("r.csv")).expect("a recording");
+    let design = design();
+    let simulate = |more: &[&str]| {
+        nonius(
+            dir.path(),
+            &[&["simulate", &design, "r.csv"], more].concat(),
+        )
+    };
+    refused(&simulate(&["-o", "r.csv"]), &["r.csv", "another file"]);
+    refused(&simulate(&["-o", "o.csv", "--vcd", "./o.csv"]), &["o.csv"]);
+    assert_eq!(fs::read(at("r.csv")).expect("a recording"), before);
+    #[cfg(unix)]
+    {
+        let socket = std::os::unix::net::UnixListener::bind(at("socket")).expect("a socket");
+        refused(&simulate(&["-o", "socket"]), &["no ordinary file"]);
+        drop(socket);
+    }
+    assert!(
+        nonius(dir.path(), &["build", &design, "-o", "chip"])
+            .status
+            .success()
+    );
+    fs::write(at("chip/notes.txt"), "mine").expect("the user's own");
+    assert!(
+        nonius(dir.path(), &["build", &design, "-o", "chip"])
+            .status
+            .success()
+    );
+    assert_eq!(
+        fs::read_to_string(at("chip/notes.txt")).expect("kept"),
+        "mine"
+    );
+    fs::create_dir(at("other")).expect("a folder");
+    fs::write(at("other/design.json"), "{}").expect("somebody's");
+    refused(
+        &nonius(dir.path(), &["build", &design, "-o", "other"]),
+        &["other"],
+    );
+}
+
+#[test]
+fn designs_that_no_chip_can_have_are_refused() {
+    let dir = tempfile::tempdir().expect("scratch folder");
+    let text = fs::read_to_string(design()).expect("a design");
+    for (from, to, words) in [
+        (
+            "name = \"optical\"",
+            "name = \"module\"",
+            ["name", "keyword"],
+        ),
+        (
+            "name = \"optical\"",
+            "name = \"chip_tb\"",
+            ["name", "testbench"],
+        ),
+        (
+            "multipliers = 1",
+            "multipliers = 1\nclock_hz = 1e6",
+            ["chip.clock_hz", "19000000"],
+        ),
+        (
+            "multipliers = 1",
+            "multipliers = 1\nclock_hz = nan",
+            ["chip.clock_hz", "NaN"],
+        ),
+        (
+            "scale_period_m = 20e-6",
+            "scale_period_m = -1",
+            ["sensor.scale_period_m", "-1"],
+        ),
+        (
+            "scale_period_m = 20e-6",
+            "periods_per_revolution = 0",
+            ["periods_per_revolution", "0"],
+        ),
+        ("= 100e3", "= -5", ["sensor.speed_max_periods_per_s", "-5"]),
+    ] {
+        assert!(text.contains(from), "{from}");
+        fs::write(dir.path().join("d.toml"), text.replacen(from, to, 1)).expect("a file");
+        refused(
+            &nonius(dir.path(), &["build", "d.toml", "-o", "out"]),
+            &words,
+        );
+        assert!(!dir.path().join("out").exists(), "{to}");
+    }
+}

@@ -340,14 +340,16 @@ pub fn generate(
             .filter(|n| n != "locked" && n != "signal_lost")
             .collect(),
     };
+    let given = design.spec.chip.clock_hz.unwrap_or(clock).max(clock);
     let constraints = Constraints {
         name,
         hash,
         clocks,
         rate,
         clock,
-        megahertz: format!("{:.3}", clock / 1e6),
-        period: format!("{:.3}", 1e9 / clock),
+        // Neither may be slower than what is needed: up for the frequency, down for the period.
+        megahertz: format!("{:.3}", (given / 1e3).ceil() / 1e3),
+        period: format!("{:.3}", (1e12 / given).floor() / 1e3),
     };
     let mut files = vec![
         (format!("rtl/{name}.v"), chip.render()? + "\n"),

@@ -247,7 +247,7 @@ fn vibration_moves_no_parameter() {
             }
             for (i, m) in moved.iter().enumerate() {
                 // The gradient's equaliser is part of a parameter's gamma; the multiplied words have a last bit.
-                let equaliser = [4.0, 1.0, 4.0, 1.0, 32.0, 1.0, 1.0, 1.0, 1.0][i];
+                let equaliser = [4.0, 1.0, 4.0, 1.0, 16.0, 1.0, 1.0, 1.0, 1.0][i];
                 let gamma = equaliser * 0.5f64.powi(spec.calibration.gamma_last as i32);
                 let noise = spec.sensor.noise_rms * (gamma / 2.0).sqrt();
                 let last_bit = bench.design.structure.formats.theta[0].format.lsb();

@@ -8,7 +8,7 @@ mod write;
 
 pub use design_json::DesignJson;
 pub use measure::{Accuracy, SineError, accuracy, sine_error};
-pub use write::{WriteError, write, write_marked};
+pub use write::{WriteError, write};
 
 use nonius_model::chip::Chip;
 use nonius_model::design::Design;

@@ -20,30 +20,22 @@ pub enum WriteError {
     },
 }
 
+/// Names of the files that were written, one a line: what else stands in the folder is the user's.
+const MANIFEST: &str = ".nonius-files";
+
 /// Writes the files into the folder `output`. A folder that was written so before is replaced; what stood in it is
-/// there until the new one is complete.
+/// there until the new one is complete, and files that were not written here stay.
 ///
 /// # Errors
 /// A folder of somebody else, or what the operating system says.
 pub fn write(files: &[(String, Vec<u8>)], output: &Path) -> Result<(), WriteError> {
-    write_marked(files, output, "design.json")
-}
-
-/// The same for folders that are known by another file.
-///
-/// # Errors
-/// As for [`write`].
-pub fn write_marked(
-    files: &[(String, Vec<u8>)],
-    output: &Path,
-    mark: &str,
-) -> Result<(), WriteError> {
     let refuse = |path: &Path| {
         let path = path.to_owned();
         move |error| WriteError::Io { path, error }
     };
     let there = output.symlink_metadata().is_ok();
-    if there && !output.join(mark).is_file() && !is_empty(output) {
+    let manifest = fs::read_to_string(output.join(MANIFEST));
+    if there && manifest.is_err() && !is_empty(output) {
         return Err(WriteError::NotOurs(output.to_owned()));
     }
     let parent = output
@@ -63,6 +55,13 @@ pub fn write_marked(
         }
         fs::write(&path, content).map_err(refuse(&path))?;
     }
+    let names: Vec<&str> = files.iter().map(|(path, _)| path.as_str()).collect();
+    let list = fresh.join(MANIFEST);
+    fs::write(&list, names.join("\n") + "\n").map_err(refuse(&list))?;
+    if let Ok(manifest) = manifest {
+        let ours: Vec<PathBuf> = manifest.lines().map(|name| output.join(name)).collect();
+        keep(output, &fresh, &ours)?;
+    }
     // The old one steps aside and comes back if the new one cannot take its place.
     let old = scratch.path().join("old");
     if there {
@@ -76,6 +75,28 @@ pub fn write_marked(
             path: output.to_owned(),
             error,
         });
+    }
+    Ok(())
+}
+
+/// Copies what is not `ours` from a folder into another, where nothing stands in its place.
+fn keep(from: &Path, to: &Path, ours: &[PathBuf]) -> Result<(), WriteError> {
+    let refuse = |path: &Path| {
+        let path = path.to_owned();
+        move |error| WriteError::Io { path, error }
+    };
+    for entry in fs::read_dir(from).map_err(refuse(from))? {
+        let (old, name) = {
+            let entry = entry.map_err(refuse(from))?;
+            (entry.path(), entry.file_name())
+        };
+        let new = to.join(name);
+        if old.is_dir() {
+            keep(&old, &new, ours)?;
+        } else if !ours.contains(&old) && !new.exists() {
+            fs::create_dir_all(to).map_err(refuse(to))?;
+            fs::copy(&old, &new).map_err(refuse(&old))?;
+        }
     }
     Ok(())
 }
@@ -101,9 +122,22 @@ mod tests {
         let dir = tempfile::tempdir().expect("scratch");
         let out = dir.path().join("deep/out");
         write(&files("1"), &out).expect("first");
-        fs::write(out.join("rtl/stale.v"), "").expect("stale");
+        let mut more = files("1");
+        more.push(("rtl/stale.v".into(), vec![]));
+        write(&more, &out).expect("once more");
+        fs::write(out.join("rtl/notes"), "mine").expect("the user's own");
+        fs::create_dir(out.join("own")).expect("the user's own");
+        fs::write(out.join("own/letter"), "dear").expect("the user's own");
         write(&files("2"), &out).expect("second");
         assert!(!out.join("rtl/stale.v").exists());
+        assert_eq!(
+            fs::read_to_string(out.join("rtl/notes")).expect("kept"),
+            "mine"
+        );
+        assert_eq!(
+            fs::read_to_string(out.join("own/letter")).expect("kept"),
+            "dear"
+        );
         assert_eq!(fs::read_to_string(out.join("rtl/a.v")).expect("a.v"), "2");
         let left: Vec<_> = fs::read_dir(dir.path().join("deep"))
             .expect("folder")
@@ -112,6 +146,7 @@ mod tests {
         let mine = dir.path().join("mine");
         fs::create_dir(&mine).expect("folder");
         fs::write(mine.join("letter"), "dear").expect("file");
+        fs::write(mine.join("design.json"), "{}").expect("file");
         assert!(matches!(
             write(&files("3"), &mine),
             Err(WriteError::NotOurs(_))

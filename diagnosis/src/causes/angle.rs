@@ -54,7 +54,12 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
         id: 0,
         exact: None,
         positive: false,
-        chip: Chip::CannotCorrect,
+        // By the bends of 8 and 9 parameters, where a scale period is not a whole revolution.
+        chip: if context.periods_per_revolution == Some(1) {
+            Chip::CannotCorrect
+        } else {
+            Chip::Corrects
+        },
         parameters: each(&["k_cos", "k_sin"], "amplitude"),
         evidence: Rc::new(move |p| {
             format!(

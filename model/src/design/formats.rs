@@ -98,6 +98,7 @@ pub(super) fn structure(
         },
         y,
         signal: Quantiser::saturating(Format::signed(width, f)),
+        residual: Quantiser::saturating(Format::signed(f - 1, f)),
         alpha: Format::unsigned(fp, fp),
         rate: Quantiser::saturating(Format::signed(fp - 1, fp)),
         rate_high: Quantiser::grid(Format::signed(width, width + 1)),
@@ -117,8 +118,7 @@ pub(super) fn structure(
             1
         }),
         travel_samples: counting_to(travel_samples(spec)),
-        // A step of more than a quarter of the range is no measurement: the word holds it there.
-        step: accumulator(r.deviation.into_iter().max().unwrap_or(0) - 2),
+        step: accumulator(r.deviation.into_iter().max().unwrap_or(0) + 0),
         level: Quantiser::saturating(Format::unsigned(level_bits(tracking), 0)),
         loop_gear: Format::unsigned(2, 0),
         gamma_gear: counting_to(spec.calibration.gamma_last - spec.calibration.gamma_first),

@@ -29,7 +29,7 @@ impl Equaliser {
         let (offset, gain, phase) = match structure.gradient {
             _ if bent => (0, 1, 2),
             // The phase waits for the others in the first periods; twice as fast it is done with them.
-            CalibrationMethod::Final | CalibrationMethod::Exact => (0, 1, 4),
+            CalibrationMethod::Final | CalibrationMethod::Exact => (0, 1, 3),
             // What is remembered lags, and must not be as fast.
             CalibrationMethod::SumOfSquares => (0, 1, 3),
             // The inverse of the modes, with [3 -1; -1 3] for the gains: a period is a step of Newton's.

@@ -50,6 +50,10 @@ pub fn along<S: Signal>(rho: S, (cos, sin): (S, S), structure: &Structure) -> (S
     } else {
         &DIRECTION
     });
+    // More than a quarter of the radius is no measurement: the word holds it there, and every step after it is short.
+    let rho = rho
+        .quantise(&structure.formats.residual)
+        .named("rho_limited");
     let signal = &structure.formats.signal;
     ((cos * rho).quantise(signal), (sin * rho).quantise(signal))
 }

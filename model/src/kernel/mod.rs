@@ -111,6 +111,8 @@ pub struct Formats {
     pub y: Format,
     /// Every signal of the sample: corrected pair, sine pair, phase error, radial residual.
     pub signal: Quantiser,
+    /// ρ as it moves the parameters.
+    pub residual: Quantiser,
     /// Phase and its increments.
     pub alpha: Format,
     /// Phase increment per sample, turns.

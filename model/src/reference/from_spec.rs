@@ -71,7 +71,7 @@ fn equaliser(spec: &Spec, parameters: Parameters) -> Theta {
     let square = (octaves - octaves.round()).exp2();
     let (gain, phase) = match spec.calibration.method {
         _ if spec.calibration.parameters >= 8 => (2.0 * square, 4.0),
-        CalibrationMethod::Final | CalibrationMethod::Exact => (2.0 * square, 16.0 * square),
+        CalibrationMethod::Final | CalibrationMethod::Exact => (2.0 * square, 8.0 * square),
         CalibrationMethod::SumOfSquares => (2.0 * square, 8.0 * square),
         CalibrationMethod::Batch => (2.0, 8.0),
     };

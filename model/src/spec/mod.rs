@@ -164,10 +164,10 @@ fn gamma_first() -> u32 {
     4
 }
 fn gamma_last() -> u32 {
-    10
+    11
 }
 fn gear_periods() -> u32 {
-    2
+    3
 }
 fn restart() -> f64 {
     0.25

@@ -122,7 +122,7 @@ pub(crate) struct Difference {
 /// Samples of a comparison.
 pub(crate) const SAMPLES: u32 = 60_000;
 
-/// Gains by 2, offsets by 1, phase by 16, gains and phase by the power of two nearest to the inverse square of the
+/// Gains by 2, offsets by 1, phase by 8, gains and phase by the power of two nearest to the inverse square of the
 /// amplitude: what the chip equalises the modes with.
 pub(crate) fn equaliser(spec: &nonius_model::spec::Spec) -> [f64; 5] {
     let mut amplitude: f64 = spec.sensor.amplitude / spec.adc.full_scale;
@@ -130,7 +130,7 @@ pub(crate) fn equaliser(spec: &nonius_model::spec::Spec) -> [f64; 5] {
         amplitude *= 2.0;
     }
     let inverse = (-2.0 * amplitude.log2()).round().exp2();
-    [2.0 * inverse, 1.0, 2.0 * inverse, 1.0, 16.0 * inverse]
+    [2.0 * inverse, 1.0, 2.0 * inverse, 1.0, 8.0 * inverse]
 }
 
 /// Runs both over `motion` (turns at sample k). The comparison begins where the chip has locked in its
