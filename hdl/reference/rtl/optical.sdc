@@ -1,9 +1,9 @@
-# Timing constraints of optical (design bfc12fa0c0dd), for Vivado, Quartus and every tool that reads SDC.
+# Timing constraints of optical (design 7bb45a1e5939), for Vivado, Quartus and every tool that reads SDC.
 #
 # 19 clocks per sample at 1000000 samples per second: the clock needs at least 19000000 Hz.
 # For nextpnr: --freq 19.000
 
-create_clock -name clk -period 52.632 [get_ports clk]
+create_clock -name clk -period 52.631 [get_ports clk]
 
 # rst_n is asynchronous; release it in step with clk.
 set_false_path -from [get_ports rst_n]

@@ -5,7 +5,7 @@
 // radial residual rho shows what the correction still misses and moves its parameters theta.
 // After S. Balemi, "Automatic calibration of sinusoidal encoder signals", IFAC 2005; equation numbers are the paper's.
 //
-// Design bfc12fa0c0dd: 16 products on 1 multiplier, 19 clocks per sample.
+// Design 7bb45a1e5939: 16 products on 1 multiplier, 19 clocks per sample.
 //
 // Formats: sW.F is a two's complement number of W bits, F of them behind the point; uW.F has no sign and is kept here
 // with a zero in front, so that every number is signed. Angles are in turns of a scale period.
@@ -28,10 +28,10 @@
 //    6 | theta_5 * y_c                | sin_magnitude sin_hat
 //    7 | c * cos_hat                  | s_exact s
 //    8 | s * sin_hat                  |
-//    9 | s * cos_hat                  | rho_exact rho flip
+//    9 | s * cos_hat                  | rho_exact rho flip rho_limited
 //   10 | c * sin_hat                  | alpha_hat_turned
-//   11 | cos_hat * rho                | e_exact e_seen e
-//   12 | sin_hat * rho                | in_window e_change fresh rho_c residual_large period_tick gamma_restart
+//   11 | cos_hat * rho_limited        | e_exact e_seen e
+//   12 | sin_hat * rho_limited        | in_window e_change fresh rho_c residual_large period_tick gamma_restart
 //      |                              | gamma_shift gear_periods_again
 //   13 | loop_a * e_change            | level_moved level_full level_empty narrower rho_s gradient_2 step_2
 //   14 | y_c * rho_c                  | kick gradient_4 step_4
@@ -57,8 +57,8 @@
 //     lock_full          63                      The full lock level.
 //     lock_restart       31                      Lock level after a change of loop gear.
 //     loop_gear_last     3                       Last loop gear.
-//     gamma_gear_last    6                       Last γ gear.
-//     gear_periods_last  1                       Periods of travel per γ gear, less one.
+//     gamma_gear_last    7                       Last γ gear.
+//     gear_periods_last  2                       Periods of travel per γ gear, less one.
 //     unit_radius        0.9999923706054688      The radius 1, less half a bit of the residual.
 //     zero               0                       0.
 //     one                1                       1.
@@ -84,9 +84,9 @@ module optical (
     input  wire calibrate, // this sample may move the parameters
     output wire [58:0] position, // periods, s59.27: whole periods and alpha_hat for the next sample
     output reg signed [17:0] theta_1, // θ1 as multiplied. s18.16
-    output reg signed [24:0] theta_2, // θ2. s25.26
+    output reg signed [25:0] theta_2, // θ2. s26.27
     output reg signed [17:0] theta_3, // θ3 as multiplied. s18.16
-    output reg signed [24:0] theta_4, // θ4. s25.26
+    output reg signed [25:0] theta_4, // θ4. s26.27
     output reg signed [17:0] theta_5, // θ5 as multiplied. s18.19
     output reg signed [25:0] speed, // Position increment of this sample, turns: the speed. s26.27
     output reg locked, // The loop follows.
@@ -101,15 +101,15 @@ module optical (
     reg signed [31:0] count; // Whole periods; the unit is the counter's whole range.
     reg signed [25:0] rate; // Phase increment per sample, turns.
     reg signed [17:0] error_previous; // e one sample ago, radians.
-    reg signed [25:0] theta_1_deviation; // θ1 less its nominal value.
-    reg signed [24:0] theta_2_deviation; // θ2.
-    reg signed [25:0] theta_3_deviation; // θ3 less its nominal value.
-    reg signed [24:0] theta_4_deviation; // θ4.
-    reg signed [24:0] theta_5_deviation; // θ5.
+    reg signed [26:0] theta_1_deviation; // θ1 less its nominal value.
+    reg signed [25:0] theta_2_deviation; // θ2.
+    reg signed [26:0] theta_3_deviation; // θ3 less its nominal value.
+    reg signed [25:0] theta_4_deviation; // θ4.
+    reg signed [25:0] theta_5_deviation; // θ5.
     reg signed [6:0] lock_level; // Confidence of the lock detector.
     reg signed [2:0] loop_gear; // Loop gear: 0 widest, the last is the designed bandwidth.
     reg signed [3:0] gamma_gear; // γ gear: 0 largest.
-    reg signed [1:0] gear_periods; // Whole periods travelled in this γ gear.
+    reg signed [2:0] gear_periods; // Whole periods travelled in this γ gear.
     reg signed [7:0] travel_origin; // Position, modulo 4 periods, where the map of sectors was last cleared.
     reg signed [7:0] travel_low; // Lowest sector seen since, relative to the origin.
     reg signed [7:0] travel_high; // Highest sector seen since, relative to the origin.
@@ -177,17 +177,18 @@ module optical (
     reg signed [7:0] travel_low_next_chosen;
     reg signed [7:0] travel_high_next_chosen;
     reg fresh;
+    reg signed [14:0] rho_limited;
     reg signed [17:0] rho_c;
     reg signed [17:0] rho_s;
-    reg signed [23:0] step_5;
-    reg signed [23:0] step_1;
-    reg signed [25:0] theta_1_deviation_next;
-    reg signed [23:0] step_2;
-    reg signed [24:0] theta_2_deviation_next;
-    reg signed [23:0] step_3;
-    reg signed [25:0] theta_3_deviation_next;
-    reg signed [23:0] step_4;
-    reg signed [24:0] theta_4_deviation_next;
+    reg signed [26:0] step_5;
+    reg signed [24:0] step_1;
+    reg signed [26:0] theta_1_deviation_next;
+    reg signed [22:0] step_2;
+    reg signed [25:0] theta_2_deviation_next;
+    reg signed [24:0] step_3;
+    reg signed [26:0] theta_3_deviation_next;
+    reg signed [22:0] step_4;
+    reg signed [25:0] theta_4_deviation_next;
     reg residual_large_condition;
     reg residual_large;
     reg gamma_restart;
@@ -197,7 +198,7 @@ module optical (
     reg signed [1:0] gear_periods_next_chosen_2;
     reg gear_periods_again;
     reg signed [3:0] gamma_gear_next;
-    reg signed [1:0] gear_periods_next;
+    reg signed [2:0] gear_periods_next;
     reg disturbed_next_condition;
     reg disturbed_next;
     reg lock_lost_next_condition_3;
@@ -291,20 +292,20 @@ module optical (
     // Parameters as multiplied
     //   theta = nominal + deviation, rounded to the width of the signals
     //   (paper section 5.3)
-    wire signed [27:0] theta_1_rounded = 28'sh5000200 + {{2{theta_1_deviation[25]}}, theta_1_deviation};
-    wire signed [17:0] theta_1_now = theta_1_rounded[27:10]; // s18.16, step 0
-    wire signed [27:0] theta_3_rounded = 28'sh5000200 + {{2{theta_3_deviation[25]}}, theta_3_deviation};
-    wire signed [17:0] theta_3_now = theta_3_rounded[27:10]; // s18.16, step 0
-    wire signed [18:0] theta_5_rounded = {theta_5_deviation[24], theta_5_deviation[24:7]} + {18'b0, theta_5_deviation[6]};
+    wire signed [28:0] theta_1_rounded = 29'sha000400 + {{2{theta_1_deviation[26]}}, theta_1_deviation};
+    wire signed [17:0] theta_1_now = theta_1_rounded[28:11]; // s18.16, step 0
+    wire signed [28:0] theta_3_rounded = 29'sha000400 + {{2{theta_3_deviation[26]}}, theta_3_deviation};
+    wire signed [17:0] theta_3_now = theta_3_rounded[28:11]; // s18.16, step 0
+    wire signed [18:0] theta_5_rounded = {theta_5_deviation[25], theta_5_deviation[25:8]} + {18'b0, theta_5_deviation[7]};
     wire signed [17:0] theta_5_now = ((&theta_5_rounded[18:17]) | ~(|theta_5_rounded[18:17])) ? theta_5_rounded[17:0] : {theta_5_rounded[18], {17{~theta_5_rounded[18]}}}; // s18.19, step 0
 
     // Correction
     //   c = theta_1 y_c + theta_2,  s = theta_3 y_s + theta_4 + theta_5 y_c
     //   (paper section 5.3)
     wire signed [28:0] theta_1_times_y_c = product_0[28:0]; // s29.27, step 3
-    wire signed [28:0] c_exact = theta_1_times_y_c + {{3{theta_2_deviation[24]}}, theta_2_deviation, 1'b0}; // s29.27, step 3
+    wire signed [28:0] c_exact = theta_1_times_y_c + {{3{theta_2_deviation[25]}}, theta_2_deviation}; // s29.27, step 3
     wire signed [28:0] theta_3_times_y_s = product_0[28:0]; // s29.27, step 5
-    wire signed [28:0] s_exact_sum_now = theta_3_times_y_s + {{3{theta_4_deviation[24]}}, theta_4_deviation, 1'b0}; // s29.27, step 5
+    wire signed [28:0] s_exact_sum_now = theta_3_times_y_s + {{3{theta_4_deviation[25]}}, theta_4_deviation}; // s29.27, step 5
     wire signed [29:0] theta_5_times_y_c = product_0[29:0]; // s30.30, step 7
     wire signed [32:0] s_exact = {s_exact_sum[28], s_exact_sum, 3'b0} + {{3{theta_5_times_y_c[29]}}, theta_5_times_y_c}; // s33.30, step 7
     wire signed [17:0] c_rounded = c_exact[28:11] + {17'b0, c_exact[10]};
@@ -437,44 +438,44 @@ module optical (
     // Gradient along the radius
     //   rho_c = cos(alpha_hat) rho,  rho_s = sin(alpha_hat) rho
     //   (paper section 5.5.1: r + (sin, -cos) e = n (n^T r))
-    wire signed [34:0] cos_hat_times_rho = product_0[34:0]; // s35.32, step 12
-    wire signed [18:0] rho_c_rounded = cos_hat_times_rho[34:16] + {18'b0, cos_hat_times_rho[15]};
-    wire signed [17:0] rho_c_now = ((&rho_c_rounded[18:17]) | ~(|rho_c_rounded[18:17])) ? rho_c_rounded[17:0] : {rho_c_rounded[18], {17{~rho_c_rounded[18]}}}; // s18.16, step 12
-    wire signed [34:0] sin_hat_times_rho = product_0[34:0]; // s35.32, step 13
-    wire signed [18:0] rho_s_rounded = sin_hat_times_rho[34:16] + {18'b0, sin_hat_times_rho[15]};
-    wire signed [17:0] rho_s_now = ((&rho_s_rounded[18:17]) | ~(|rho_s_rounded[18:17])) ? rho_s_rounded[17:0] : {rho_s_rounded[18], {17{~rho_s_rounded[18]}}}; // s18.16, step 13
+    wire signed [14:0] rho_limited_now = ((&rho_now[17:14]) | ~(|rho_now[17:14])) ? rho_now[14:0] : {rho_now[17], {14{~rho_now[17]}}}; // s15.16, step 9
+    wire signed [31:0] cos_hat_times_rho_limited = product_0[31:0]; // s32.32, step 12
+    wire signed [15:0] rho_c_rounded = cos_hat_times_rho_limited[31:16] + {15'b0, cos_hat_times_rho_limited[15]};
+    wire signed [17:0] rho_c_now = {{2{rho_c_rounded[15]}}, rho_c_rounded}; // s18.16, step 12
+    wire signed [31:0] sin_hat_times_rho_limited = product_0[31:0]; // s32.32, step 13
+    wire signed [15:0] rho_s_rounded = sin_hat_times_rho_limited[31:16] + {15'b0, sin_hat_times_rho_limited[15]};
+    wire signed [17:0] rho_s_now = {{2{rho_s_rounded[15]}}, rho_s_rounded}; // s18.16, step 13
 
     // Parameter update
     //   theta -= gamma (2 y_c rho_c, rho_c, 2 y_s rho_s, rho_s, 4 y_c rho_s)
     //   (paper section 5.5.1, M of equation (7))
-    wire signed [29:0] y_c_times_rho_s = product_0[29:0]; // s30.27, step 17
-    wire signed [29:0] y_c_times_rho_c = product_0[29:0]; // s30.27, step 15
-    wire signed [29:0] y_s_times_rho_s = product_0[29:0]; // s30.27, step 16
-    wire signed [29:0] gradient_5 = y_c_times_rho_s; // s30.26, step 17
-    wire signed [23:0] step_5_geared = shifted_1; // s24.26, step 17
-    wire signed [23:0] step_5_now = fresh ? step_5_geared : 24'sd0; // s24.26, step 17
-    wire signed [25:0] theta_5_deviation_next_difference = {theta_5_deviation[24], theta_5_deviation} - {{2{step_5[23]}}, step_5}; // s26.26, step 18
-    wire signed [24:0] theta_5_deviation_next = ((&theta_5_deviation_next_difference[25:24]) | ~(|theta_5_deviation_next_difference[25:24])) ? theta_5_deviation_next_difference[24:0] : {theta_5_deviation_next_difference[25], {24{~theta_5_deviation_next_difference[25]}}}; // s25.26, step 18
-    wire signed [29:0] gradient_1 = y_c_times_rho_c; // s30.29, step 15
-    wire signed [23:0] step_1_geared = shifted_1; // s24.26, step 15
-    wire signed [23:0] step_1_now = fresh ? step_1_geared : 24'sd0; // s24.26, step 15
-    wire signed [26:0] theta_1_deviation_next_difference = {theta_1_deviation[25], theta_1_deviation} - {{3{step_1[23]}}, step_1}; // s27.26, step 16
-    wire signed [25:0] theta_1_deviation_next_now = ((&theta_1_deviation_next_difference[26:25]) | ~(|theta_1_deviation_next_difference[26:25])) ? theta_1_deviation_next_difference[25:0] : {theta_1_deviation_next_difference[26], {25{~theta_1_deviation_next_difference[26]}}}; // s26.26, step 16
-    wire signed [17:0] gradient_2 = rho_c; // s18.20, step 13
-    wire signed [23:0] step_2_geared = shifted_1; // s24.26, step 13
-    wire signed [23:0] step_2_now = fresh ? step_2_geared : 24'sd0; // s24.26, step 13
-    wire signed [25:0] theta_2_deviation_next_difference = {theta_2_deviation[24], theta_2_deviation} - {{2{step_2[23]}}, step_2}; // s26.26, step 14
-    wire signed [24:0] theta_2_deviation_next_now = ((&theta_2_deviation_next_difference[25:24]) | ~(|theta_2_deviation_next_difference[25:24])) ? theta_2_deviation_next_difference[24:0] : {theta_2_deviation_next_difference[25], {24{~theta_2_deviation_next_difference[25]}}}; // s25.26, step 14
-    wire signed [29:0] gradient_3 = y_s_times_rho_s; // s30.29, step 16
-    wire signed [23:0] step_3_geared = shifted_1; // s24.26, step 16
-    wire signed [23:0] step_3_now = fresh ? step_3_geared : 24'sd0; // s24.26, step 16
-    wire signed [26:0] theta_3_deviation_next_difference = {theta_3_deviation[25], theta_3_deviation} - {{3{step_3[23]}}, step_3}; // s27.26, step 17
-    wire signed [25:0] theta_3_deviation_next_now = ((&theta_3_deviation_next_difference[26:25]) | ~(|theta_3_deviation_next_difference[26:25])) ? theta_3_deviation_next_difference[25:0] : {theta_3_deviation_next_difference[26], {25{~theta_3_deviation_next_difference[26]}}}; // s26.26, step 17
-    wire signed [17:0] gradient_4 = rho_s; // s18.20, step 14
-    wire signed [23:0] step_4_geared = shifted_1; // s24.26, step 14
-    wire signed [23:0] step_4_now = fresh ? step_4_geared : 24'sd0; // s24.26, step 14
-    wire signed [25:0] theta_4_deviation_next_difference = {theta_4_deviation[24], theta_4_deviation} - {{2{step_4[23]}}, step_4}; // s26.26, step 15
-    wire signed [24:0] theta_4_deviation_next_now = ((&theta_4_deviation_next_difference[25:24]) | ~(|theta_4_deviation_next_difference[25:24])) ? theta_4_deviation_next_difference[24:0] : {theta_4_deviation_next_difference[25], {24{~theta_4_deviation_next_difference[25]}}}; // s25.26, step 15
+    wire signed [26:0] gradient_5 = product_0[26:0]; // s27.27, step 17
+    wire signed [26:0] y_c_times_rho_c = product_0[26:0]; // s27.27, step 15
+    wire signed [26:0] y_s_times_rho_s = product_0[26:0]; // s27.27, step 16
+    wire signed [26:0] step_5_geared = shifted_1; // s27.27, step 17
+    wire signed [26:0] step_5_now = fresh ? step_5_geared : 27'sd0; // s27.27, step 17
+    wire signed [27:0] theta_5_deviation_next_difference = {{2{theta_5_deviation[25]}}, theta_5_deviation} - {step_5[26], step_5}; // s28.27, step 18
+    wire signed [25:0] theta_5_deviation_next = ((&theta_5_deviation_next_difference[27:25]) | ~(|theta_5_deviation_next_difference[27:25])) ? theta_5_deviation_next_difference[25:0] : {theta_5_deviation_next_difference[27], {25{~theta_5_deviation_next_difference[27]}}}; // s26.27, step 18
+    wire signed [26:0] gradient_1 = y_c_times_rho_c; // s27.29, step 15
+    wire signed [26:0] step_1_geared = shifted_1; // s27.27, step 15
+    wire signed [24:0] step_1_now = fresh ? step_1_geared[24:0] : 25'sd0; // s25.27, step 15
+    wire signed [27:0] theta_1_deviation_next_difference = {theta_1_deviation[26], theta_1_deviation} - {{3{step_1[24]}}, step_1}; // s28.27, step 16
+    wire signed [26:0] theta_1_deviation_next_now = ((&theta_1_deviation_next_difference[27:26]) | ~(|theta_1_deviation_next_difference[27:26])) ? theta_1_deviation_next_difference[26:0] : {theta_1_deviation_next_difference[27], {26{~theta_1_deviation_next_difference[27]}}}; // s27.27, step 16
+    wire signed [15:0] gradient_2 = rho_c[15:0]; // s16.20, step 13
+    wire signed [26:0] step_2_geared = shifted_1; // s27.27, step 13
+    wire signed [22:0] step_2_now = fresh ? step_2_geared[22:0] : 23'sd0; // s23.27, step 13
+    wire signed [26:0] theta_2_deviation_next_difference = {theta_2_deviation[25], theta_2_deviation} - {{4{step_2[22]}}, step_2}; // s27.27, step 14
+    wire signed [25:0] theta_2_deviation_next_now = ((&theta_2_deviation_next_difference[26:25]) | ~(|theta_2_deviation_next_difference[26:25])) ? theta_2_deviation_next_difference[25:0] : {theta_2_deviation_next_difference[26], {25{~theta_2_deviation_next_difference[26]}}}; // s26.27, step 14
+    wire signed [26:0] gradient_3 = y_s_times_rho_s; // s27.29, step 16
+    wire signed [26:0] step_3_geared = shifted_1; // s27.27, step 16
+    wire signed [24:0] step_3_now = fresh ? step_3_geared[24:0] : 25'sd0; // s25.27, step 16
+    wire signed [27:0] theta_3_deviation_next_difference = {theta_3_deviation[26], theta_3_deviation} - {{3{step_3[24]}}, step_3}; // s28.27, step 17
+    wire signed [26:0] theta_3_deviation_next_now = ((&theta_3_deviation_next_difference[27:26]) | ~(|theta_3_deviation_next_difference[27:26])) ? theta_3_deviation_next_difference[26:0] : {theta_3_deviation_next_difference[27], {26{~theta_3_deviation_next_difference[27]}}}; // s27.27, step 17
+    wire signed [15:0] gradient_4 = rho_s[15:0]; // s16.20, step 14
+    wire signed [26:0] step_4_geared = shifted_1; // s27.27, step 14
+    wire signed [22:0] step_4_now = fresh ? step_4_geared[22:0] : 23'sd0; // s23.27, step 14
+    wire signed [26:0] theta_4_deviation_next_difference = {theta_4_deviation[25], theta_4_deviation} - {{4{step_4[22]}}, step_4}; // s27.27, step 15
+    wire signed [25:0] theta_4_deviation_next_now = ((&theta_4_deviation_next_difference[26:25]) | ~(|theta_4_deviation_next_difference[26:25])) ? theta_4_deviation_next_difference[25:0] : {theta_4_deviation_next_difference[26], {25{~theta_4_deviation_next_difference[26]}}}; // s26.27, step 15
 
     // Gears of gamma
     //   gamma halves after some periods of travel, starts again when the residual was large
@@ -482,21 +483,21 @@ module optical (
     wire residual_large_now = residual_large_condition & fresh_now; // step 12
     wire period_tick = whole_period & fresh_now; // step 12
     wire gamma_restart_now = period_tick & disturbed; // step 12
-    wire value_condition_2_now = $signed(gamma_gear[3:1]) < 3'sd3; // step 0
-    wire gamma_shift_condition_2_now = ~(gear_periods < 2'sd1); // step 0
+    wire value_condition_2_now = gamma_gear < 4'sd7; // step 0
+    wire gamma_shift_condition_2_now = ~($signed(gear_periods[2:1]) < 2'sd1); // step 0
     wire gamma_shift_condition = period_tick & gamma_shift_condition_2; // step 12
     wire gamma_shift_now = gamma_shift_condition & value_condition_2; // step 12
     wire signed [1:0] gamma_gear_next_chosen_2 = gamma_shift ? 2'sd1 : 2'sd0; // s2.0, step 13
     wire signed [4:0] gamma_gear_next_sum = {gamma_gear[3], gamma_gear} + {{3{gamma_gear_next_chosen_2[1]}}, gamma_gear_next_chosen_2}; // s5.0, step 13
     wire signed [3:0] gamma_gear_next_bits = {1'b0, gamma_gear_next_sum[2:0]}; // u3.0, step 13
     wire signed [1:0] gear_periods_next_chosen_2_now = period_tick ? 2'sd1 : 2'sd0; // s2.0, step 12
-    wire signed [2:0] gear_periods_next_sum = {gear_periods[1], gear_periods} + {gear_periods_next_chosen_2[1], gear_periods_next_chosen_2}; // s3.0, step 13
-    wire signed [1:0] gear_periods_next_bits = {1'b0, gear_periods_next_sum[0]}; // u1.0, step 13
+    wire signed [3:0] gear_periods_next_sum = {gear_periods[2], gear_periods} + {{2{gear_periods_next_chosen_2[1]}}, gear_periods_next_chosen_2}; // s4.0, step 13
+    wire signed [2:0] gear_periods_next_bits = {1'b0, gear_periods_next_sum[1:0]}; // u2.0, step 13
     wire gear_periods_again_now = gamma_restart_now | gamma_shift_condition; // step 12
     wire signed [3:0] gamma_gear_next_chosen = gamma_restart ? 4'sd0 : gamma_gear_next_bits; // s4.0, step 13
     wire signed [3:0] gamma_gear_next_now = gamma_gear_next_chosen; // u3.0, step 13
-    wire signed [1:0] gear_periods_next_chosen = gear_periods_again ? 2'sd0 : gear_periods_next_bits; // s2.0, step 13
-    wire signed [1:0] gear_periods_next_now = gear_periods_next_chosen; // u1.0, step 13
+    wire signed [2:0] gear_periods_next_chosen = gear_periods_again ? 3'sd0 : gear_periods_next_bits; // s3.0, step 13
+    wire signed [2:0] gear_periods_next_now = gear_periods_next_chosen; // u2.0, step 13
     wire disturbed_next_condition_now = disturbed & ~period_tick; // step 12
     wire disturbed_next_now = residual_large | disturbed_next_condition; // step 13
 
@@ -507,18 +508,18 @@ module optical (
     wire lock_lost_next_now = lock_lost_next_condition_3 | lock_lost_next_condition; // step 14
 
     // Shifter 1, shared: gamma is a power of two
-    reg signed [30:0] unshifted_1;
+    reg signed [27:0] unshifted_1;
     always @*
         case (step)
-            5'd13: unshifted_1 = {{6{gradient_2[17]}}, gradient_2, 7'b0}; // step_2_geared
-            5'd14: unshifted_1 = {{6{gradient_4[17]}}, gradient_4, 7'b0}; // step_4_geared
-            5'd15: unshifted_1 = {{3{gradient_1[29]}}, gradient_1[29:2]}; // step_1_geared
-            5'd16: unshifted_1 = {{3{gradient_3[29]}}, gradient_3[29:2]}; // step_3_geared
+            5'd13: unshifted_1 = {{4{gradient_2[15]}}, gradient_2, 8'b0}; // step_2_geared
+            5'd14: unshifted_1 = {{4{gradient_4[15]}}, gradient_4, 8'b0}; // step_4_geared
+            5'd15: unshifted_1 = {{2{gradient_1[26]}}, gradient_1[26:1]}; // step_1_geared
+            5'd16: unshifted_1 = {{2{gradient_3[26]}}, gradient_3[26:1]}; // step_3_geared
             default: unshifted_1 = {gradient_5, 1'b0};
         endcase
-    wire signed [30:0] shift_1 = unshifted_1 >>> gamma_gear[2:0];
-    wire signed [29:0] shifted_1_rounded = shift_1[30:1] + {29'b0, shift_1[0]};
-    wire signed [23:0] shifted_1 = ((&shifted_1_rounded[29:23]) | ~(|shifted_1_rounded[29:23])) ? shifted_1_rounded[23:0] : {shifted_1_rounded[29], {23{~shifted_1_rounded[29]}}};
+    wire signed [27:0] shift_1 = unshifted_1 >>> gamma_gear[2:0];
+    wire signed [26:0] shifted_1_rounded = shift_1[27:1] + {26'b0, shift_1[0]};
+    wire signed [26:0] shifted_1 = shifted_1_rounded;
 
     // Multiplier 0
     always @(posedge clk)
@@ -526,23 +527,23 @@ module optical (
 
     always @(posedge clk)
         case (step)
-            5'd0: operand_a_0 <= error_previous;
+            5'd0: operand_a_0 <= 18'sh13b1b;
             5'd1, 5'd5, 5'd13, 5'd15: operand_a_0 <= {{6{y_c[11]}}, y_c};
-            5'd2: operand_a_0 <= {{3{cos_slope[14]}}, cos_slope};
+            5'd2: operand_a_0 <= {{7{cos_inside[10]}}, cos_inside};
             5'd3, 5'd14: operand_a_0 <= {{6{y_s[11]}}, y_s};
             5'd4: operand_a_0 <= {{3{sin_slope[14]}}, sin_slope};
             5'd6, 5'd9: operand_a_0 <= c;
             5'd7: operand_a_0 <= s_now;
             5'd8: operand_a_0 <= s;
-            5'd10, 5'd11: operand_a_0 <= rho;
+            5'd10, 5'd11: operand_a_0 <= {{3{rho_limited[14]}}, rho_limited};
             default: operand_a_0 <= 18'sh1cf1c;
         endcase
 
     always @(posedge clk)
         case (step)
-            5'd0: operand_b_0 <= 18'sh13b1b;
+            5'd0: operand_b_0 <= error_previous;
             5'd1: operand_b_0 <= theta_1;
-            5'd2: operand_b_0 <= {{7{cos_inside[10]}}, cos_inside};
+            5'd2: operand_b_0 <= {{3{cos_slope[14]}}, cos_slope};
             5'd3: operand_b_0 <= theta_3;
             5'd4: operand_b_0 <= {{7{sin_inside[10]}}, sin_inside};
             5'd5: operand_b_0 <= theta_5;
@@ -620,6 +621,7 @@ module optical (
             rho <= rho_now;
             in_window_condition_3 <= in_window_condition_3_now;
             alpha_hat_turned_chosen <= alpha_hat_turned_chosen_now;
+            rho_limited <= rho_limited_now;
             residual_large_condition <= residual_large_condition_now;
         end
         if (step == 5'd10) begin
@@ -741,11 +743,12 @@ module optical (
         cos_address[16],
         cos_inside_sum[11],
         cos_magnitude_sum[13:0],
-        theta_1_rounded[9:0],
-        theta_3_rounded[9:0],
+        theta_1_rounded[10:0],
+        theta_3_rounded[10:0],
         c_exact[9:0],
         s_exact[12:0],
         rho_exact[15:0],
+        rho,
         e_exact[14:0],
         in_window,
         loop_gear_next_sum[3:2],
@@ -754,12 +757,16 @@ module optical (
         carry[2],
         count_next_sum[32],
         sector_relative_difference[8],
-        cos_hat_times_rho[14:0],
-        sin_hat_times_rho[14:0],
-        gradient_1[1:0],
-        gradient_3[1:0],
+        cos_hat_times_rho_limited[14:0],
+        sin_hat_times_rho_limited[14:0],
+        gradient_1[0],
+        step_1_geared[26:25],
+        step_2_geared[26:23],
+        gradient_3[0],
+        step_3_geared[26:25],
+        step_4_geared[26:23],
         gamma_gear_next_sum[4:3],
-        gear_periods_next_sum[2:1],
+        gear_periods_next_sum[3:2],
         product_0[35]
     };
 
