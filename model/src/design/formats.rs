@@ -118,7 +118,7 @@ pub(super) fn structure(
             1
         }),
         travel_samples: counting_to(travel_samples(spec)),
-        step: accumulator(r.deviation.into_iter().max().unwrap_or(0) + 0),
+        step: accumulator(r.deviation.into_iter().max().unwrap_or(0)),
         level: Quantiser::saturating(Format::unsigned(level_bits(tracking), 0)),
         loop_gear: Format::unsigned(2, 0),
         gamma_gear: counting_to(spec.calibration.gamma_last - spec.calibration.gamma_first),
