@@ -50,6 +50,13 @@ fn recording(samples: usize, hidden: Hidden) -> Recording {
     Recording::from_samples(time, cos, sin, &described).expect("a usable recording")
 }
 
+/// Seconds that this process had a processor, where the system tells: what it takes on a core of its own.
+fn processor_seconds() -> Option<f64> {
+    let text = std::fs::read_to_string("/proc/self/schedstat").ok()?;
+    let nanoseconds: f64 = text.split_whitespace().next()?.parse().ok()?;
+    Some(nanoseconds * 1e-9)
+}
+
 /// The most memory this process ever held, in megabytes, where the system tells.
 fn peak_megabytes() -> Option<f64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
@@ -71,9 +78,9 @@ fn main() {
         "# Speed of the diagnosis\n\n\
          Written by `cargo run --release -p nonius-diagnosis --example speed -- docs`; do not edit. One core; reversing motion,\n\
          14 bits, noise of 0.1 %, without reference, 32 periods per revolution. Time from the recording in memory to findings\n\
-         and positions; memory is the most that the process ever held, recording included. Other work on the machine makes\n\
-         every line longer.\n\n\
-         | samples | hidden | found | seconds | megabytes |\n|---|---|---|---|---|\n",
+         and positions, by the clock and on the processor: other work on the machine makes the first longer. Memory is the\n\
+         most that the process ever held, recording included.\n\n\
+         | samples | hidden | found | seconds by the clock | on the processor | megabytes |\n|---|---|---|---|---|---|\n",
     );
     for samples in sizes {
         for (hidden, what) in [
@@ -81,9 +88,13 @@ fn main() {
             (Hidden::Two, "third harmonic and line"),
         ] {
             let recording = recording(samples, hidden);
-            let start = Instant::now();
+            let (start, before) = (Instant::now(), processor_seconds());
             let found = diagnose(&recording).expect("an ellipse");
             let seconds = start.elapsed().as_secs_f64();
+            let own = processor_seconds()
+                .zip(before)
+                .map(|(after, before)| after - before);
+            let own = own.map_or("unknown".into(), |s| format!("{s:.2}"));
             let mut names: Vec<&str> = found.findings.iter().map(|f| f.cause.as_str()).collect();
             if found.unexplained.significant {
                 names.push("unexplained");
@@ -93,7 +104,7 @@ fn main() {
             }
             let memory = peak_megabytes().map_or("unknown".into(), |m| format!("{m:.0}"));
             let row = format!(
-                "| {samples} | {what} | {} | {seconds:.2} | {memory} |",
+                "| {samples} | {what} | {} | {seconds:.2} | {own} | {memory} |",
                 names.join(", ")
             );
             println!("{row}");

@@ -17,6 +17,8 @@ pub(crate) struct Block<'a> {
     pub sin: &'a [f64],
     /// Smooth speed, radians per second.
     pub speed: &'a [f64],
+    /// Smooth acceleration, radians per second squared.
+    pub acceleration: &'a [f64],
     /// Angle of the revolution, radians.
     pub phi: Option<&'a [f64]>,
     /// Temperature, centred and of unit spread.
@@ -58,6 +60,7 @@ impl Context {
             cos: &self.cos[range.clone()],
             sin: &self.sin[range.clone()],
             speed: &self.speed[range.clone()],
+            acceleration: &self.acceleration[range.clone()],
             phi: self.phi.as_deref().map(|v| &v[range.clone()]),
             temperature: self.temperature.as_deref().map(|v| &v[range]),
             beta: self.ellipse.beta,

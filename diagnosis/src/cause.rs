@@ -2,9 +2,8 @@
 
 use std::rc::Rc;
 
-use crate::block::Block;
 use crate::finding::{Chip, Parameter};
-use crate::library::Shape;
+use crate::library::{Library, Shape};
 
 /// Where a cause lives; what no cause of a domain explains is measured with a generic basis of that domain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -31,10 +30,27 @@ pub(crate) struct Estimate<'a> {
     pub x: &'a [f64],
     /// Its standard error.
     pub error: &'a [f64],
+    /// Numbers that are no amounts.
+    pub inner: &'a [f64],
+    /// Their standard errors, where they were fitted.
+    pub inner_error: Option<&'a [f64]>,
 }
 
-/// Makes the changes of the corrected pair of inner parameters.
-pub(crate) type Exact = Rc<dyn Fn(&Block, &[f64], &mut [f64], &mut [f64])>;
+/// Makes the shapes of inner parameters, as functions of their own.
+pub(crate) type Make = Rc<dyn Fn(&[f64], &mut Library) -> Vec<Shape>>;
+
+/// How the shapes of a cause depend on numbers that are no amounts.
+#[derive(Clone)]
+pub(crate) struct Exact {
+    /// The shapes.
+    pub make: Make,
+    /// The numbers: a frequency, a threshold, a place.
+    pub inner: Vec<f64>,
+    /// Changes of them that are small.
+    pub steps: Vec<f64>,
+    /// The one inner number is the amount itself.
+    pub follows: bool,
+}
 /// Makes parameters of an estimate.
 pub(crate) type Reads = Rc<dyn Fn(&Estimate) -> Vec<Parameter>>;
 /// Makes a sentence of parameters.
@@ -51,15 +67,16 @@ pub(crate) struct Candidate {
     pub trials: f64,
     /// The shapes.
     pub shapes: Vec<Shape>,
+    /// Its number in the catalogue.
+    pub id: usize,
     /// The shapes are real motion: they do not come from the sensor.
     pub motion: bool,
     /// The amounts cannot be negative.
     pub positive: bool,
     /// What the chip can do.
     pub chip: Chip,
-    /// The change of the pair at an amount of one, given that the amount is about so large, where the shape changes with
-    /// its size.
-    pub refine: Option<Exact>,
+    /// How the shapes depend on numbers that are no amounts, where they do.
+    pub exact: Option<Exact>,
     /// Parameters from the estimate.
     pub parameters: Reads,
     /// The middle of the sentence: what was seen, from the parameters.

@@ -36,6 +36,10 @@ pub struct Context {
     pub measured: Vec<f64>,
     /// Smooth speed in radians per second, signed.
     pub speed: Vec<f64>,
+    /// Its change, radians per second squared.
+    pub acceleration: Vec<f64>,
+    /// Real motion that is faster than the spline and known, radians.
+    pub fast: Vec<f64>,
     /// Angle of the revolution in radians, where periods per revolution are known.
     pub phi: Option<Vec<f64>>,
     /// Temperature, centred and of unit spread.
@@ -108,6 +112,8 @@ impl Context {
             alpha: vec![],
             measured: vec![],
             speed: vec![],
+            acceleration: vec![],
+            fast: vec![0.0; recording.samples()],
             phi: None,
             temperature,
             against_reference: None,
@@ -148,12 +154,17 @@ impl Context {
             self.spline = Some(Spline::new(n, spacing, &self.weight));
         }
         if let Some(spline) = &self.spline {
-            let fit = spline.fit(&self.measured, &self.weight);
+            let slow: Vec<f64> = self.slow();
+            let fit = spline.fit(&slow, &self.weight);
             let rate = self.rate;
-            self.alpha = spline.values(&fit);
-            self.cos = self.alpha.iter().map(|a| a.cos()).collect();
-            self.sin = self.alpha.iter().map(|a| a.sin()).collect();
-            self.speed = spline.derivative(&fit).iter().map(|v| v * rate).collect();
+            let smooth = spline.values(&fit).into_iter().zip(&self.fast);
+            self.alpha = smooth.map(|(a, f)| a + f).collect();
+            (self.sin, self.cos) = self.alpha.iter().map(|a| a.sin_cos()).unzip();
+            let change = spline.derivative(&fit).into_iter();
+            let fast = gradient(&self.fast);
+            self.speed = change.zip(fast).map(|(v, f)| (v + f) * rate).collect();
+            self.acceleration = gradient(&self.speed);
+            self.acceleration.iter_mut().for_each(|a| *a *= rate);
         }
         let per = self.periods_per_revolution.map(f64::from);
         self.phi = per.map(|n| self.alpha.iter().map(|a| a / n).collect());
@@ -202,10 +213,58 @@ impl Context {
     pub fn tangential(&self) -> Vec<f64> {
         match (&self.against_reference, &self.spline) {
             (Some(d), _) => d.iter().zip(&self.weight).map(|(d, w)| d * w).collect(),
-            (None, Some(spline)) => spline.residual(&self.measured, &self.weight),
+            (None, Some(spline)) => spline.residual(&self.slow(), &self.weight),
             (None, None) => vec![0.0; self.samples()],
         }
     }
+
+    /// The angle of the pair without known fast motion, radians.
+    fn slow(&self) -> Vec<f64> {
+        let pairs = self.measured.iter().zip(&self.fast);
+        pairs.map(|(m, f)| m - f).collect()
+    }
+
+    /// Takes what is known off the raw signals, corrected by another ellipse.
+    pub(crate) fn without(&mut self, ellipse: Ellipse, known: Known, reference: Option<&[f64]>) {
+        self.ellipse = ellipse;
+        let n = self.samples();
+        let (mut c, mut s) = (Vec::with_capacity(n), Vec::with_capacity(n));
+        for k in 0..n {
+            let (x, y) = ellipse.corrected(self.raw[0][k], self.raw[1][k]);
+            let (cos, sin) = (self.cos[k], self.sin[k]);
+            let (r, t) = (known.radial[k], known.tangential[k]);
+            let (x, y) = (x - r * cos + t * sin, y - r * sin - t * cos);
+            // An error of the angle turns the pair.
+            let (sin, cos) = known.angle[k].sin_cos();
+            c.push(x * cos + y * sin);
+            s.push(y * cos - x * sin);
+        }
+        self.fast = known.fast;
+        self.set_pair(c, s, reference);
+    }
+}
+
+/// What is known of a recording, one value per sample.
+pub(crate) struct Known {
+    /// Added along the radius, in amplitudes.
+    pub(crate) radial: Vec<f64>,
+    /// Added along the circle, in amplitudes.
+    pub(crate) tangential: Vec<f64>,
+    /// Errors of the angle, radians.
+    pub(crate) angle: Vec<f64>,
+    /// Fast real motion, radians.
+    pub(crate) fast: Vec<f64>,
+}
+
+/// Change per sample.
+fn gradient(values: &[f64]) -> Vec<f64> {
+    let last = values.len().saturating_sub(1);
+    (0..values.len())
+        .map(|k| {
+            let (a, b) = (k.saturating_sub(1), (k + 1).min(last));
+            (values[b] - values[a]) / (b - a).max(1) as f64
+        })
+        .collect()
 }
 
 fn r_first(reference: Option<&[f64]>) -> f64 {

@@ -1,17 +1,23 @@
 //! The whole diagnosis of a recording.
 
+use nonius_calibration::Ellipse;
 use nonius_recording::Recording;
 use serde::Serialize;
 
-use crate::causes::Catalogue;
-use crate::checks;
-use crate::context::{Context, ContextError, unwrapped};
+use crate::checks::{self, Checked};
+use crate::context::{Context, ContextError};
+use crate::exact;
 use crate::finding::{Finding, Parameter};
+use crate::flicker::Flicker;
 use crate::library::Row;
-use crate::model::{System, above_motion};
+use crate::model::System;
 use crate::noise;
-use crate::repair::repair;
+use crate::repair::{Repaired, repair};
 use crate::select::select;
+use crate::selection::{Accepted, Selection};
+
+/// Most times that a recording is looked at anew.
+const ROUNDS: usize = 10;
 
 /// The sensor with its five fitted parameters and white noise.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -88,24 +94,46 @@ pub fn diagnose(recording: &Recording) -> Result<Diagnosis, ContextError> {
     let checked = checks::check(recording);
     let repaired = repair(recording, &checked.weight, &checked.gaps);
     let recording = &repaired.recording;
-    let context = Context::new(recording, repaired.weight.clone())?;
-    let notes = recording.notes.clone();
-    let reference = recording.reference_rad.as_ref();
-    let motion = reference.map(|r| above_motion(&context, &unwrapped(r.clone())));
-    let mut catalogue = Catalogue::new(&context, motion.is_some());
-    let mut system = System::new(&context, motion, &mut catalogue);
-    let selection = select(&context, &mut system, &catalogue);
+    let mut context = Context::new(recording, repaired.weight.clone())?;
+    let mut carried: Vec<Accepted> = vec![];
+    // Large causes are taken off the signals themselves, and what is left is looked at anew.
+    let mut round = 0;
+    loop {
+        round += 1;
+        let known = {
+            let (mut system, catalogue) = exact::look(&context, &mut carried, recording);
+            let last = round == ROUNDS;
+            let selection = select(&context, &mut system, &catalogue, carried.clone(), last);
+            match exact::best(&context, selection.again.clone(), recording) {
+                Some(known) => known,
+                None => return Ok(conclude(&system, &selection, checked, &repaired)),
+            }
+        };
+        (context, carried) = known;
+    }
+}
+
+/// Findings, gains and positions of a search that has come to its end.
+fn conclude(
+    system: &System,
+    selection: &Selection,
+    checked: Checked,
+    repaired: &Repaired,
+) -> Diagnosis {
+    let context = system.context;
+    let notes = repaired.recording.notes.clone();
     let all = [selection.base.shapes.as_slice(), &selection.fit.shapes].concat();
     let halves = system.halves(&all);
     let mut findings = checked.findings;
-    let named = selection.findings(&system, &halves);
+    let named = selection.findings(system, &halves);
     let left = system.residual(&selection.fit);
     // Only what is noise can be noise of a kind.
-    let noisy = if selection.unnamed.is_empty() {
-        noise::findings(&context, &left)
+    let mut noisy = if selection.unnamed.is_empty() {
+        noise::findings(context, &left)
     } else {
         vec![]
     };
+    noisy.extend(system.flicker.iter().map(Flicker::finding));
     let (held_before, held_after) = (
         halves.held_out(&selection.base.shapes),
         halves.held_out(&selection.fit.shapes),
@@ -151,8 +179,8 @@ pub fn diagnose(recording: &Recording) -> Result<Diagnosis, ContextError> {
     let was = system.residual(&selection.base);
     let residuals = [(was.radial, was.tangential), (left.radial, left.tangential)];
     let simulation = simulation(
-        &context,
-        &system,
+        exact::ellipse(&context.ellipse, &selection.base.solution.x),
+        system,
         held_before,
         halves.rms(&selection.base),
         position_before,
@@ -170,9 +198,10 @@ pub fn diagnose(recording: &Recording) -> Result<Diagnosis, ContextError> {
         .filter(|k| repaired.original[*k])
         .map(|k| (context.measured[k] - change[k]) / std::f64::consts::TAU)
         .collect();
-    let periods_travelled = travelled(&context);
-    drop(system);
-    Ok(Diagnosis {
+    let periods_travelled = travelled(context);
+    let mut context = context.clone();
+    context.ellipse = exact::ellipse(&context.ellipse, &selection.fit.solution.x);
+    Diagnosis {
         simulation,
         findings,
         unexplained,
@@ -182,18 +211,17 @@ pub fn diagnose(recording: &Recording) -> Result<Diagnosis, ContextError> {
         context,
         residuals,
         notes,
-    })
+    }
 }
 
 fn simulation(
-    context: &Context,
+    e: Ellipse,
     system: &System,
     held_out: f64,
     rms: f64,
     position: Option<f64>,
 ) -> Simulation {
-    let e = context.ellipse;
-    let n = context.samples() as f64;
+    let n = system.context.samples() as f64;
     let noise = system.noise();
     // Of an average over that many samples with that noise.
     let amplitude = noise * (2.0 / n).sqrt() * e.amplitude();

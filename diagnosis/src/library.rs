@@ -200,6 +200,11 @@ impl Shape {
         Self(known.collect())
     }
 
+    /// So many times the shape.
+    pub(crate) fn scaled(&self, by: f64) -> Self {
+        Self(self.0.iter().map(|(i, x)| (*i, x * by)).collect())
+    }
+
     /// The sum of two.
     pub(crate) fn plus(&self, other: &Self) -> Self {
         Self(self.0.iter().chain(&other.0).copied().collect())

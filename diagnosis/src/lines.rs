@@ -44,6 +44,22 @@ pub(crate) fn pair_spectrum(a: &[f64], b: &[f64]) -> (Vec<f64>, usize) {
     (x.iter().zip(&y).map(|(x, y)| x + y).collect(), length)
 }
 
+/// A spectrum over the median of what is near in it.
+pub(crate) fn flattened(power: &[f64]) -> Vec<f64> {
+    // Frequencies that are near: closer to each other than to zero.
+    let mut flat = Vec::with_capacity(power.len());
+    while flat.len() < power.len() {
+        let start = flat.len();
+        let end = (start + (start / 4).clamp(16, 512)).min(power.len());
+        let mut near = power[start..end].to_vec();
+        let middle = near.len() / 2;
+        let (_, median, _) = near.select_nth_unstable_by(middle, f64::total_cmp);
+        let median = median.max(f64::MIN_POSITIVE);
+        flat.extend(power[start..end].iter().map(|p| p / median));
+    }
+    flat
+}
+
 /// Frequency in cycles per sample of the highest peak between two frequencies.
 pub(crate) fn peak(power: &[f64], length: usize, low: f64, high: f64) -> Option<f64> {
     let index = |f: f64| ((f * length as f64) as usize).min(power.len() - 1);

@@ -4,7 +4,9 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::causes::Catalogue;
 use crate::context::Context;
+use crate::flicker::{self, Flicker};
 use crate::library::{ROWS, Row, Shape};
+use crate::selection::Accepted;
 use crate::solve::{Normal, Solution};
 use crate::sweep::Samples;
 use crate::whiten::Whitener;
@@ -40,6 +42,8 @@ pub(crate) struct System<'a> {
     pub(crate) samples: Samples<'a>,
     /// Products of all atoms, whitened.
     pub(crate) total: Normal,
+    /// Flicker noise in what everything that any cause could explain leaves.
+    pub(crate) flicker: Option<Flicker>,
 }
 
 /// The sums of either half of interleaved blocks, for some atoms only.
@@ -68,17 +72,26 @@ impl<'a> System<'a> {
         context: &'a Context,
         motion: Option<Vec<f64>>,
         catalogue: &mut Catalogue,
+        carried: &[Accepted],
     ) -> Self {
         let data = [
             context.radial(),
             context.tangential(),
             motion.unwrap_or_default(),
         ];
-        let samples = Samples::new(context, std::mem::take(&mut catalogue.library), data);
+        let mut samples = Samples::new(context, std::mem::take(&mut catalogue.library), data);
+        // What is known was taken off exactly, and comes back as it is to first order: so the fit is of the whole.
+        let known: Vec<(usize, f64)> = carried.iter().flat_map(Accepted::amounts).collect();
+        let back = known.iter().map(|(i, x)| (*i, -x)).collect::<Vec<_>>();
+        let motion = std::mem::take(&mut samples.data[Row::Motion as usize]);
+        samples.data = samples.left(&back);
+        // The reference moves as it did.
+        samples.data[Row::Motion as usize] = motion;
         let mut this = Self {
             context,
             samples,
             total: Normal::new(DMatrix::zeros(0, 0), DVector::zeros(0), 0.0),
+            flicker: None,
         };
         let atoms: Vec<usize> = (0..this.samples.library.atoms.len()).collect();
         for (whitener, data) in this.samples.whiteners.iter_mut().zip(&this.samples.data) {
@@ -87,14 +100,18 @@ impl<'a> System<'a> {
         }
         let plain = this.moments(&atoms);
         this.total = this.without_nothing(this.normal(&plain, &atoms, true), &atoms);
-        let broad: Vec<Shape> = catalogue
-            .broad
-            .iter()
-            .map(|i| Shape(vec![(*i, 1.0)]))
-            .collect();
-        let x = this.total.of(&broad).solve().x;
-        let amounts: Vec<(usize, f64)> = catalogue.broad.iter().copied().zip(x).collect();
+        let mut broad = catalogue.broad.clone();
+        broad.extend(
+            known
+                .iter()
+                .map(|k| k.0)
+                .filter(|i| !catalogue.broad.contains(i)),
+        );
+        let shapes: Vec<Shape> = broad.iter().map(|i| Shape(vec![(*i, 1.0)])).collect();
+        let x = this.total.of(&shapes).solve().x;
+        let amounts: Vec<(usize, f64)> = broad.into_iter().zip(x).collect();
         let left = this.samples.left(&amounts);
+        this.flicker = flicker::find(context, &left[0]);
         for (row, left) in ROWS.iter().zip(&left).filter(|(_, l)| !l.is_empty()) {
             let gone = match (&context.spline, row) {
                 (_, Row::Radial) => 0.0,
@@ -294,6 +311,13 @@ impl Halves {
         let sum = self.square(fit, 0) + self.square(fit, 1);
         let count = 2.0 * (self.counts[0] + self.counts[1]);
         (sum.max(0.0) / count.max(1.0)).sqrt()
+    }
+
+    /// Log-likelihood of what a fit leaves of either row, its noise free.
+    pub(crate) fn log_likelihood(&self, fit: &Fit) -> f64 {
+        let count = self.counts[0] + self.counts[1];
+        let of = |row| -0.5 * count * (self.square(fit, row) / count).max(1e-300).ln();
+        of(0) + of(1)
     }
 
     /// Position error against the reference, rms in radians.

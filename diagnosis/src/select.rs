@@ -2,41 +2,39 @@
 
 use crate::cause::{Candidate, Domain};
 use crate::causes::{self, Catalogue};
+use crate::contender::{Contender, contender, lives};
 use crate::context::Context;
+use crate::exact::{self, Start};
 use crate::library::Shape;
 use crate::model::{Fit, System, atoms_of};
 use crate::selection::{Accepted, Selection, Unnamed};
-use crate::solve::Normal;
+use crate::solve::{Normal, Solution};
 use crate::statistics::{after_trials, log_tail};
 
 /// Global probability below which a cause is shown.
 pub(crate) const SHOWN: f64 = 3e-4;
 /// Kinds of cause that are tried.
 pub(crate) const KINDS: f64 = 22.0;
-/// A cause must hold this share of what a generic basis of its domain explains.
-const HOLDS: f64 = 0.75;
 /// Most causes of one recording.
 const MOST: usize = 8;
 /// Share of the best gain below which another cause is no rival.
-const RIVALS: f64 = 0.6;
-/// A cause that adds less than this probability says nothing new.
-const NOTHING_NEW: f64 = 1e-3;
+pub(crate) const RIVALS: f64 = 0.6;
 
-struct Scored {
-    candidate: Candidate,
-    gain: f64,
-    freedom: usize,
-    log_p: f64,
+pub(crate) struct Scored {
+    pub(crate) candidate: Candidate,
+    pub(crate) gain: f64,
+    pub(crate) freedom: usize,
+    pub(crate) log_p: f64,
 }
 
 /// The normal equations with the fit taken off, and how much it explains.
-struct Beside<'a> {
+pub(crate) struct Beside<'a> {
     whole: &'a Normal,
     rest: Normal,
 }
 
 impl<'a> Beside<'a> {
-    fn new(whole: &'a Normal, shapes: &[Shape]) -> Self {
+    pub(crate) fn new(whole: &'a Normal, shapes: &[Shape]) -> Self {
         Self {
             whole,
             rest: whole.deflated(shapes),
@@ -44,19 +42,24 @@ impl<'a> Beside<'a> {
     }
 
     /// What shapes explain beside the fit, and how many numbers they have for it.
-    fn gain(&self, shapes: &[Shape]) -> (f64, usize) {
-        let solution = self.rest.solve_beside(self.whole, shapes);
+    pub(crate) fn gain(&self, shapes: &[Shape]) -> (f64, usize) {
+        let solution = self.solve(shapes);
         (solution.gain(), solution.rank)
+    }
+
+    /// The amounts of shapes beside the fit.
+    pub(crate) fn solve(&self, shapes: &[Shape]) -> Solution {
+        self.rest.solve_beside(self.whole, shapes)
     }
 }
 
 /// Shapes of one list, then of the other.
-fn both(a: &[Shape], b: &[Shape]) -> Vec<Shape> {
+pub(crate) fn both(a: &[Shape], b: &[Shape]) -> Vec<Shape> {
     a.iter().chain(b).cloned().collect()
 }
 
 fn score(beside: &Beside, candidate: Candidate) -> Option<Scored> {
-    let solution = beside.rest.solve_beside(beside.whole, &candidate.shapes);
+    let solution = beside.solve(&candidate.shapes);
     let (gain, freedom) = (solution.gain(), solution.rank);
     if freedom == 0 || !gain.is_finite() {
         return None;
@@ -115,180 +118,144 @@ fn take_in(system: &mut System, fixed: usize, fit: &Fit, mut list: Vec<Scored>) 
     list
 }
 
-/// Accepts causes one after the other.
-pub(crate) fn select(context: &Context, system: &mut System, catalogue: &Catalogue) -> Selection {
+/// The five parameters, and the causes that are known.
+pub(crate) fn begin(
+    system: &mut System,
+    catalogue: &Catalogue,
+    carried: Vec<Accepted>,
+) -> Selection {
     let base = system.fit(catalogue.parameters.clone());
+    let mut accepted = carried;
+    accepted.retain(|a| !a.candidate.shapes.is_empty());
     let mut fit = base.clone();
-    let mut accepted: Vec<Accepted> = vec![];
-    let mut unnamed: Vec<Unnamed> = vec![];
+    for one in &mut accepted {
+        one.first = fit.shapes.len();
+        fit = system.fit(both(&fit.shapes, &one.candidate.shapes));
+    }
+    // What stands beside a cause has changed since its numbers were fitted.
+    for one in &mut accepted {
+        let range = one.range();
+        let shapes = fit.shapes.iter().enumerate();
+        let others = shapes.filter(|(k, _)| !range.contains(k));
+        let others: Vec<Shape> = others.map(|(_, s)| s.clone()).collect();
+        let gain = fit.solution.gain() - system.fit(others.clone()).solution.gain();
+        exact::tuned(system, &others, one, gain);
+        let mut shapes = fit.shapes.clone();
+        shapes.splice(range, one.candidate.shapes.iter().cloned());
+        fit = system.fit(shapes);
+    }
+    let mut found = Selection {
+        fit,
+        base,
+        accepted,
+        unnamed: vec![],
+        again: vec![],
+    };
+    // Functions that were made for the known causes and that no shape uses.
+    keep_used(system, catalogue.atoms, &mut found);
+    if !found.accepted.is_empty() && !exact::tangents_do(system, &found.fit, &found.accepted) {
+        found.again = vec![exact::start(system, &found.fit, &found.accepted)];
+    }
+    found
+}
+
+/// Accepts causes one after the other, beside those that are known; ends where the tangents do not do, unless this is
+/// the last look.
+pub(crate) fn select(
+    context: &Context,
+    system: &mut System,
+    catalogue: &Catalogue,
+    carried: Vec<Accepted>,
+    last: bool,
+) -> Selection {
+    let fixed = catalogue.atoms;
+    let mut found = begin(system, catalogue, carried);
+    if !last && !found.again.is_empty() {
+        return found;
+    }
+    found.again.clear();
     let mut closed: Vec<Domain> = vec![];
     let mut refused: Vec<&'static str> = vec![];
-    let fixed = system.samples.library.atoms.len();
-    while accepted.len() + unnamed.len() < MOST {
-        let residual = system.residual(&fit);
-        let shown = causes::shown(context, &residual, &mut system.samples.library);
+    if system.flicker.is_some() {
+        // What is slow in the channels is that noise: it cannot be told from drift here.
+        closed.extend([Domain::Time]);
+        refused.extend(["hysteresis", "ac_coupling"]);
+    }
+    while found.accepted.len() + found.unnamed.len() < MOST {
+        let residual = system.residual(&found.fit);
+        let coloured = system.flicker.is_some();
+        let shown = causes::shown(context, &residual, coloured, &mut system.samples.library);
         let open = |c: &Candidate| !closed.contains(&c.domain) && !refused.contains(&c.name);
-        let beside = Beside::new(&system.total, &fit.shapes);
+        let beside = Beside::new(&system.total, &found.fit.shapes);
         let known = catalogue.candidates.iter().filter(|c| open(c));
         let mut scored: Vec<Scored> = known.filter_map(|c| score(&beside, c.clone())).collect();
         let most = scored.iter().map(|s| s.gain).fold(0.0, f64::max);
-        let worth = worth(system, &fit, shown.into_iter().filter(open).collect(), most);
-        scored.extend(take_in(system, fixed, &fit, worth));
+        let shown = shown.into_iter().filter(open).collect();
+        let worth = worth(system, &found.fit, shown, most);
+        scored.extend(take_in(system, fixed, &found.fit, worth));
         scored.sort_by(|a, b| a.log_p.total_cmp(&b.log_p));
         if scored.is_empty() || scored[0].log_p > SHOWN.ln() {
             break;
         }
-        let best = scored.remove(0);
-        let best = refined(system, &fit, best);
-        let beside = Beside::new(&system.total, &fit.shapes);
-        let rivals = rivals(&beside, &best, &scored);
-        let held = holds(system, catalogue, &fit, &best, &scored);
-        if rivals.len() > 1 || held < HOLDS {
-            let nearest = best.candidate.name.replace('_', " ");
-            let why = if held < HOLDS {
-                format!(
-                    "it holds {:.0} % of what any shape there explains",
-                    held * 100.0
-                )
-            } else {
-                format!("{} explain it as well", rivals.join(", ").replace('_', " "))
-            };
-            unnamed.push(Unnamed {
-                log_p: best.log_p,
-                signature: format!(
-                    "{}; nearest likeness: {nearest}, but {why}",
-                    lives(best.candidate.domain)
-                ),
-            });
-            closed.push(best.candidate.domain);
-            let generic = both(&fit.shapes, catalogue.basis(best.candidate.domain));
-            fit = system.fit(both(&generic, &best.candidate.shapes));
-        } else {
-            let shapes = both(&fit.shapes, &best.candidate.shapes);
-            let halves = system.halves(&shapes);
-            // What does not hold on data that was not fitted is no cause.
-            if halves.held_out(&shapes) > halves.held_out(&fit.shapes) * 1.01 {
-                refused.push(best.candidate.name);
-            } else {
-                accepted.push(Accepted {
-                    candidate: best.candidate,
-                    first: fit.shapes.len(),
-                    confounded: rivals,
-                });
-                fit = system.fit(shapes);
+        match contender(system, catalogue, &found.fit, scored) {
+            Contender::Unnamed(unnamed, domain, shapes) => {
+                found.unnamed.push(unnamed);
+                closed.push(domain);
+                let generic = both(&found.fit.shapes, catalogue.basis(domain));
+                found.fit = system.fit(both(&generic, &shapes));
+            }
+            Contender::Named(mut cause, others) => {
+                cause.first = found.fit.shapes.len();
+                let shapes = both(&found.fit.shapes, &cause.candidate.shapes);
+                let halves = system.halves(&shapes);
+                // What does not hold on data that was not fitted is no cause.
+                if halves.held_out(&shapes) > halves.held_out(&found.fit.shapes) * 1.01 {
+                    refused.push(cause.candidate.name);
+                } else {
+                    let before = found.fit;
+                    found.accepted.push(*cause);
+                    found.fit = system.fit(shapes);
+                    if !last && !exact::tangents_do(system, &found.fit, &found.accepted) {
+                        found.again = starts(system, &before, &found, others);
+                    }
+                }
             }
         }
-        keep_used(system, fixed, &mut fit, &mut accepted);
+        keep_used(system, fixed, &mut found);
+        if !found.again.is_empty() {
+            return found;
+        }
     }
-    unnamed.extend(leftover(system, catalogue, &fit, &closed));
-    keep_used(system, fixed, &mut fit, &mut accepted);
-    Selection {
-        fit,
-        base,
-        accepted,
-        unnamed,
+    let left = leftover(system, catalogue, &found.fit, &closed);
+    found.unnamed.extend(left);
+    keep_used(system, fixed, &mut found);
+    found
+}
+
+/// Where to look anew from: with the cause that was accepted last, or with another in its place.
+fn starts(system: &System, before: &Fit, found: &Selection, others: Vec<Accepted>) -> Vec<Start> {
+    let mut list = vec![exact::start(system, &found.fit, &found.accepted)];
+    for mut other in others {
+        other.first = before.shapes.len();
+        let fit = system.fit(both(&before.shapes, &other.candidate.shapes));
+        let mut accepted = found.accepted.clone();
+        accepted.pop();
+        accepted.push(other);
+        list.push(exact::start(system, &fit, &accepted));
     }
+    list
 }
 
 /// Drops the functions that were only tried.
-fn keep_used(system: &mut System, fixed: usize, fit: &mut Fit, accepted: &mut [Accepted]) {
-    let used = atoms_of(&fit.shapes);
+fn keep_used(system: &mut System, fixed: usize, found: &mut Selection) {
+    let used = atoms_of(&found.fit.shapes);
     let map = system.retain(|i| i < fixed || used.binary_search(&i).is_ok());
-    for shape in &mut fit.shapes {
+    for shape in &mut found.fit.shapes {
         *shape = shape.mapped(&map);
     }
-    for one in accepted {
-        let count = one.candidate.shapes.len();
-        one.candidate.shapes = fit.shapes[one.first..one.first + count].to_vec();
+    for one in &mut found.accepted {
+        one.candidate.shapes = found.fit.shapes[one.range()].to_vec();
     }
-}
-
-/// The same cause with the shapes of its own size.
-fn refined(system: &mut System, fit: &Fit, mut best: Scored) -> Scored {
-    let Some(refine) = best.candidate.refine.clone() else {
-        return best;
-    };
-    for _ in 0..3 {
-        let beside = Beside::new(&system.total, &fit.shapes);
-        let own = beside
-            .rest
-            .solve_beside(beside.whole, &best.candidate.shapes)
-            .x;
-        if own.iter().any(|x| !x.is_finite() || *x <= 0.0) {
-            break;
-        }
-        let refine = refine.clone();
-        let fill = move |block: &crate::block::Block, c: &mut [f64], s: &mut [f64]| {
-            refine(block, &own, c, s);
-        };
-        best.candidate.shapes = vec![system.samples.library.pair(fill)];
-        system.extend();
-        let beside = Beside::new(&system.total, &fit.shapes);
-        best.gain = beside.gain(&best.candidate.shapes).0;
-        let log_p = log_tail(2.0 * best.gain, best.freedom);
-        best.log_p = after_trials(log_p, best.candidate.trials * KINDS);
-    }
-    best
-}
-
-/// Causes of other names to which the best adds nothing, and that need no more parameters.
-fn rivals(beside: &Beside, best: &Scored, others: &[Scored]) -> Vec<String> {
-    let mut names: Vec<String> = vec![];
-    for other in others {
-        let name = other.candidate.name;
-        if name == best.candidate.name || names.iter().any(|n| n == name) {
-            continue;
-        }
-        // Far behind, or bought with more parameters: no rival.
-        if other.gain < RIVALS * best.gain || other.freedom > best.freedom + 1 {
-            continue;
-        }
-        let together = both(&other.candidate.shapes, &best.candidate.shapes);
-        let (gain, rank) = beside.gain(&together);
-        let (adds, freedom) = (gain - other.gain, rank.saturating_sub(other.freedom));
-        if freedom == 0 || log_tail(2.0 * adds, freedom) > NOTHING_NEW.ln() {
-            names.push(name.to_owned());
-        }
-    }
-    names
-}
-
-/// Share of what a generic basis of the domain explains that named shapes hold: the best one, and others of the catalogue
-/// that stand beside it.
-fn holds(
-    system: &System,
-    catalogue: &Catalogue,
-    fit: &Fit,
-    best: &Scored,
-    others: &[Scored],
-) -> f64 {
-    let basis = catalogue.basis(best.candidate.domain);
-    if basis.is_empty() {
-        return 1.0;
-    }
-    let mut named = both(&fit.shapes, &best.candidate.shapes);
-    let mut held = best.gain;
-    let mut beside = Beside::new(&system.total, &named);
-    for _ in 0..3 {
-        let next = others
-            .iter()
-            .filter(|o| o.candidate.domain == best.candidate.domain)
-            .filter_map(|o| {
-                let (gain, freedom) = beside.gain(&o.candidate.shapes);
-                let log_p = after_trials(log_tail(2.0 * gain, freedom), o.candidate.trials * KINDS);
-                (freedom > 0 && log_p < SHOWN.ln()).then_some((log_p, gain, o))
-            })
-            .min_by(|a, b| a.0.total_cmp(&b.0));
-        let Some((_, gain, other)) = next else { break };
-        named.extend(other.candidate.shapes.iter().cloned());
-        held += gain;
-        beside = Beside::new(&system.total, &named);
-    }
-    let (beyond, freedom) = beside.gain(basis);
-    // What as many free numbers explain of noise alone does not count against it.
-    let spread = (2.0 * freedom as f64).sqrt();
-    let beyond = (beyond - freedom as f64 / 2.0 - 2.0 * spread).max(0.0);
-    held / (held + beyond)
 }
 
 /// Domains in which something significant is left that no cause was found for.
@@ -310,16 +277,4 @@ fn leftover(system: &System, catalogue: &Catalogue, fit: &Fit, closed: &[Domain]
     };
     let left = open.into_iter().filter(|d| !closed.contains(d));
     left.filter_map(tell).collect()
-}
-
-fn lives(domain: Domain) -> &'static str {
-    match domain {
-        Domain::Angle => "something repeats with the scale period",
-        Domain::Code => "something depends on the ADC code",
-        Domain::Speed => "something depends on the speed",
-        Domain::Time => "something changes slowly with time",
-        Domain::Line => "something stands at a fixed frequency",
-        Domain::Revolution => "something repeats with the revolution",
-        Domain::Motion => "something moves that the motion's spline does not follow",
-    }
 }

@@ -1,20 +1,41 @@
 //! The end of the search: what was accepted, as findings.
 
 use crate::cause::{Candidate, Estimate};
+use crate::exact::Start;
 use crate::finding::{Finding, Gain};
-use crate::library::Shape;
 use crate::model::{Fit, Halves, System, amounts};
 use crate::select::{KINDS, SHOWN};
 use crate::statistics::{after_trials, log_tail};
 
 /// A cause that was accepted; its shapes stand in the fit from `first` on.
+#[derive(Clone)]
 pub(crate) struct Accepted {
     pub(crate) candidate: Candidate,
     pub(crate) first: usize,
     pub(crate) confounded: Vec<String>,
+    /// The amounts at which its shapes are tangents; what is known of them is off the signals.
+    pub(crate) x: Vec<f64>,
+    /// Standard errors of inner numbers, where they were fitted.
+    pub(crate) inner_error: Option<Vec<f64>>,
 }
 
 impl Accepted {
+    /// A cause that is not known yet.
+    pub(crate) fn new(candidate: Candidate) -> Self {
+        Self {
+            first: 0,
+            confounded: vec![],
+            x: vec![0.0; candidate.shapes.len()],
+            inner_error: None,
+            candidate,
+        }
+    }
+
+    /// How much of each atom is known.
+    pub(crate) fn amounts(&self) -> Vec<(usize, f64)> {
+        amounts(&self.candidate.shapes, &self.x)
+    }
+
     /// Where its shapes stand.
     pub(crate) fn range(&self) -> std::ops::Range<usize> {
         self.first..self.first + self.candidate.shapes.len()
@@ -34,6 +55,8 @@ pub(crate) struct Selection {
     pub(crate) base: Fit,
     pub(crate) accepted: Vec<Accepted>,
     pub(crate) unnamed: Vec<Unnamed>,
+    /// Where to look anew from, the likeliest first: something is too large for the tangents of this context.
+    pub(crate) again: Vec<Start>,
 }
 
 impl Selection {
@@ -49,6 +72,8 @@ impl Selection {
             let parameters = (accepted.candidate.parameters)(&Estimate {
                 x: &self.fit.solution.x[range.clone()],
                 error: &error,
+                inner: accepted.candidate.exact.as_ref().map_or(&[], |e| &e.inner),
+                inner_error: accepted.inner_error.as_deref(),
             });
             let shapes = self.fit.shapes.iter().enumerate();
             let others = shapes.filter(|(k, _)| !range.contains(k));
@@ -83,13 +108,19 @@ impl Selection {
         list
     }
 
-    /// The five parameters and every accepted cause that is no motion, with their amounts.
+    /// The five parameters and every accepted cause that is no motion, with what they are beyond what is known.
     pub(crate) fn sensor_amounts(&self) -> Vec<(usize, f64)> {
         let own = self.base.shapes.len();
-        let sensor = self.accepted.iter().filter(|a| !a.candidate.motion);
-        let kept: Vec<usize> = (0..own).chain(sensor.flat_map(Accepted::range)).collect();
-        let shapes: Vec<Shape> = kept.iter().map(|k| self.fit.shapes[*k].clone()).collect();
-        let x: Vec<f64> = kept.iter().map(|k| self.fit.solution.x[*k]).collect();
-        amounts(&shapes, &x)
+        let x = &self.fit.solution.x;
+        let mut sum = amounts(&self.fit.shapes[..own], &x[..own]);
+        for one in self.accepted.iter().filter(|a| !a.candidate.motion) {
+            let beyond: Vec<f64> = x[one.range()]
+                .iter()
+                .zip(&one.x)
+                .map(|(x, x0)| x - x0)
+                .collect();
+            sum.extend(amounts(&one.candidate.shapes, &beyond));
+        }
+        sum
     }
 }

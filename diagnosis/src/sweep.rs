@@ -51,6 +51,18 @@ impl<'a> Samples<'a> {
         this
     }
 
+    /// Functions without their motion and without data: for sums of them alone.
+    pub(crate) fn unfitted(context: &'a Context, library: Library) -> Self {
+        Self {
+            context,
+            library,
+            data: Default::default(),
+            whiteners: Default::default(),
+            motions: vec![],
+            squares: vec![],
+        }
+    }
+
     fn projector(&self, row: Row) -> Projector<'_> {
         let against = self.context.against_reference.is_some();
         match (row, &self.context.spline) {

@@ -1,7 +1,8 @@
 //! Every row of the catalogue, hidden in simulated data and found.
 //!
 //! The simulation here is direct: continuous motion, the effect as physics has it, noise, ADC. It shares no code with the
-//! diagnosis.
+//! diagnosis. What needs more than this stands beside it: `large.rs` has effects far above the noise, `flicker.rs` noise
+//! with a memory.
 #![allow(clippy::unwrap_used)]
 
 use std::f64::consts::TAU;

@@ -4,13 +4,32 @@ use std::rc::Rc;
 
 use super::{Catalogue, ORDERS};
 use crate::block::Block;
-use crate::cause::{Candidate, Domain, each, polar};
+use crate::cause::{Candidate, Domain, Exact, each, polar};
 use crate::context::Context;
 use crate::finding::{Chip, Parameter};
-use crate::library::{Shape, Use};
+use crate::library::{Library, Shape, Use};
 use crate::trig::{Trig, channel, normalised};
 
 const THRESHOLDS: [f64; 7] = [0.5, 0.6, 0.7, 0.8, 0.85, 0.9, 0.95];
+
+/// How far a threshold may be off its grid.
+const GRID: f64 = 0.05;
+
+/// Shapes of a variant, of each channel's upper and lower rail.
+type Variant = fn(&[Shape]) -> Vec<Shape>;
+
+/// What is beyond a threshold, in amplitudes: cos above, cos below, sin above, sin below.
+fn rails(threshold: f64, library: &mut Library) -> Vec<Shape> {
+    let rail = |i: usize| {
+        let (which, sign) = (i / 2, if i.is_multiple_of(2) { 1.0 } else { -1.0 });
+        library.pair(move |block: &Block, c, s| {
+            let over = |v: &f64| -(v * sign - threshold).max(0.0) * sign;
+            let change: Vec<f64> = block.u[which].iter().map(over).collect();
+            block.channel(which, &change, c, s);
+        })
+    };
+    (0..4).map(rail).collect()
+}
 
 pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
     let beta = context.ellipse.beta;
@@ -32,7 +51,8 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
         trials: 2.0,
         shapes,
         motion: false,
-        refine: None,
+        id: 0,
+        exact: None,
         positive: false,
         chip: Chip::CannotCorrect,
         parameters: each(&["k_cos", "k_sin"], "amplitude"),
@@ -61,7 +81,8 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
             trials: 6.0,
             shapes,
             motion: false,
-            refine: None,
+            id: 0,
+            exact: None,
             positive: false,
             chip: Chip::CannotCorrect,
             parameters: Rc::new(move |e| {
@@ -81,44 +102,46 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
         });
     }
     for threshold in THRESHOLDS {
-        // Each channel, each rail.
-        let rails: Vec<Shape> = (0..4)
-            .map(|i| {
-                let (which, sign) = (i / 2, if i % 2 == 0 { 1.0 } else { -1.0 });
-                catalogue.library.pair(move |block: &Block, c, s| {
-                    let u = block.u[which];
-                    let over = |v: &f64| -(v * sign - threshold).max(0.0) * sign;
-                    block.channel(which, &u.iter().map(over).collect::<Vec<_>>(), c, s);
-                })
-            })
-            .collect();
-        let (upper, lower) = (rails[0].plus(&rails[2]), rails[1].plus(&rails[3]));
-        let variants: [(&'static str, Vec<Shape>); 4] = [
-            ("both rails", vec![upper.plus(&lower)]),
-            ("the upper rail", vec![upper]),
-            ("the lower rail", vec![lower]),
-            ("the rails, each by itself", rails),
+        let rails = rails(threshold, &mut catalogue.library);
+        let variants: [(&'static str, Variant); 4] = [
+            ("both rails", |r| {
+                vec![r[0].plus(&r[2]).plus(&r[1].plus(&r[3]))]
+            }),
+            ("the upper rail", |r| vec![r[0].plus(&r[2])]),
+            ("the lower rail", |r| vec![r[1].plus(&r[3])]),
+            ("the rails, each by itself", <[Shape]>::to_vec),
         ];
-        for (where_, shapes) in variants {
+        for (where_, of) in variants {
             catalogue.candidates.push(Candidate {
                 name: "saturation",
                 domain: Domain::Angle,
                 trials: 4.0 * THRESHOLDS.len() as f64,
-                shapes,
+                shapes: of(&rails),
                 motion: false,
-                refine: None,
+                id: 0,
+                exact: Some(Exact {
+                    make: Rc::new(move |inner, library| of(&self::rails(inner[0], library))),
+                    inner: vec![threshold],
+                    steps: vec![0.005],
+                    follows: false,
+                }),
                 positive: true,
                 chip: Chip::CannotCorrect,
                 parameters: Rc::new(move |e| {
                     let most = e.x.iter().copied().fold(0.0, f64::max);
                     let error = e.error.iter().copied().fold(0.0, f64::max);
                     vec![
-                        Parameter::exact("threshold", threshold, "amplitude"),
+                        Parameter::measured(
+                            "threshold",
+                            e.inner[0],
+                            e.inner_error.map_or(GRID, |d| d[0]),
+                            "amplitude",
+                        ),
                         Parameter::measured("compression", most, error, "1"),
                     ]
                 }),
                 evidence: Rc::new(move |p| {
-                    format!("the signals are compressed at {where_}, from {threshold} of the amplitude on by {:.2} % of what is beyond", p[1].value * 100.0)
+                    format!("the signals are compressed at {where_}, from {:.3} of the amplitude on by {:.2} % of what is beyond", p[0].value, p[1].value * 100.0)
                 }),
             });
         }

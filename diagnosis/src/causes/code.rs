@@ -58,7 +58,8 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
             trials: 8.0,
             shapes,
             motion: false,
-            refine: None,
+            id: 0,
+            exact: None,
             positive: false,
             chip: Chip::CannotCorrect,
             parameters: Rc::new(move |e| {

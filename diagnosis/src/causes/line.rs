@@ -4,16 +4,18 @@ use std::f64::consts::TAU;
 use std::rc::Rc;
 
 use crate::block::Block;
-use crate::cause::{Candidate, Domain, polar};
+use crate::cause::{Candidate, Domain, Estimate, Exact, Make, polar};
 use crate::context::Context;
 use crate::finding::{Chip, Parameter};
 use crate::library::{Fill, Library, Place, Shape, Use};
-use crate::lines::{pair_spectrum, peak, two_spectra};
+use crate::lines::{flattened, pair_spectrum, peak, two_spectra};
 use crate::model::Residual;
 
 /// Lowest frequency of a line, in cycles per recording: below, it is drift.
 const SLOWEST: f64 = 4.0;
 
+/// So many times what is near it in the spectrum, a line stands out of noise of any colour.
+const STANDS_OUT: f64 = 40.0;
 /// Samples between two evaluations of a line's sine; between them it is rotated on.
 const ROTATED: usize = 64;
 /// Share of a sample by which the time base may be off to be regular.
@@ -69,12 +71,32 @@ fn two(place: Place, shape: fn(&Place, usize) -> Shape) -> Vec<Shape> {
 pub(crate) fn candidates(
     context: &Context,
     residual: &Residual,
+    coloured: bool,
     library: &mut Library,
 ) -> Vec<Candidate> {
     let n = context.samples();
     let trials = n as f64;
     let low = SLOWEST / n as f64;
     let mut list = vec![];
+    let line = |power: Vec<f64>, length: usize| {
+        if coloured {
+            let level = flattened(&power);
+            let f = peak(&level, length, low, 0.499)?;
+            let highest = level[(f * length as f64).round() as usize];
+            return (highest > STANDS_OUT).then_some(f);
+        }
+        peak(&power, length, low, 0.499)
+    };
+    // A line's frequency is known to a small part of one cycle per recording.
+    let duration = n as f64 / context.rate;
+    let exact = |hertz: f64, make: Make| {
+        Some(Exact {
+            make,
+            inner: vec![hertz],
+            steps: vec![0.02 / duration],
+            follows: false,
+        })
+    };
     // In the frame of the channels.
     let frame = |k: usize| {
         let (r, t) = (residual.radial[k], residual.tangential[k]);
@@ -83,7 +105,7 @@ pub(crate) fn candidates(
     };
     let (in_c, in_s): (Vec<f64>, Vec<f64>) = (0..n).map(frame).unzip();
     let (power, length) = pair_spectrum(&in_c, &in_s);
-    if let Some(f) = peak(&power, length, low, 0.499) {
+    if let Some(f) = line(power, length) {
         let hertz = f * context.rate;
         let mut all = vec![];
         for harmonics in [1, 3] {
@@ -93,14 +115,19 @@ pub(crate) fn candidates(
             for harmonic in all.len() / 4 + 1..=harmonics {
                 all.extend(in_channels(hertz * harmonic as f64, library));
             }
-            let shapes = all.clone();
+            let make: Make = Rc::new(move |inner, library| {
+                (1..=harmonics)
+                    .flat_map(|harmonic| in_channels(inner[0] * harmonic as f64, library))
+                    .collect()
+            });
             list.push(Candidate {
                 name: "interference",
                 domain: Domain::Line,
                 trials,
-                shapes,
+                shapes: all.clone(),
                 motion: false,
-                refine: None,
+                id: 0,
+                exact: exact(hertz, make),
                 positive: false,
                 chip: Chip::CannotCorrect,
                 parameters: Rc::new(move |e| {
@@ -108,7 +135,7 @@ pub(crate) fn candidates(
                     let (a_s, d_s, p_s, e_s) = polar(&e.x[2..4], &e.error[2..4]);
                     let strongest = a_c.hypot(a_s) / d_c.hypot(d_s).max(f64::MIN_POSITIVE);
                     vec![
-                        frequency(hertz, strongest, n, f),
+                        frequency(e, strongest, duration),
                         Parameter::measured("amplitude_cos", a_c, d_c, "amplitude"),
                         Parameter::measured("phase_cos", p_c, e_c, "rad"),
                         Parameter::measured("amplitude_sin", a_s, d_s, "amplitude"),
@@ -123,22 +150,25 @@ pub(crate) fn candidates(
         }
     }
     let ([radial, fast], length) = two_spectra(&residual.radial, residual.fast());
-    if let Some(f) = peak(&radial, length, low, 0.499) {
+    if let Some(f) = line(radial, length) {
         let hertz = f * context.rate;
-        let shapes = two(library.add(2, Use::Radial, wave(hertz)), Place::radial);
+        let make: Make = Rc::new(|inner, library| {
+            two(library.add(2, Use::Radial, wave(inner[0])), Place::radial)
+        });
         list.push(Candidate {
             name: "amplitude_ripple",
             domain: Domain::Line,
             trials,
-            shapes,
+            shapes: make(&[hertz], library),
             motion: false,
-            refine: None,
+            id: 0,
+            exact: exact(hertz, make),
             positive: false,
             chip: Chip::CannotCorrect,
             parameters: Rc::new(move |e| {
                 let (a, d, p, ep) = polar(e.x, e.error);
                 vec![
-                    frequency(hertz, a / d, n, f),
+                    frequency(e, a / d, duration),
                     Parameter::measured("depth", a, d, "1"),
                     Parameter::measured("phase", p, ep, "rad"),
                 ]
@@ -152,22 +182,28 @@ pub(crate) fn candidates(
             }),
         });
     }
-    if let Some(f) = peak(&fast, length, low, 0.499) {
+    if let Some(f) = line(fast, length) {
         let hertz = f * context.rate;
-        let shapes = two(library.add(2, Use::Motion, wave(hertz)), Place::tangential);
+        let make: Make = Rc::new(|inner, library| {
+            two(
+                library.add(2, Use::Motion, wave(inner[0])),
+                Place::tangential,
+            )
+        });
         list.push(Candidate {
             name: "vibration",
             domain: Domain::Motion,
             trials,
-            shapes,
+            shapes: make(&[hertz], library),
             motion: true,
-            refine: None,
+            id: 0,
+            exact: exact(hertz, make),
             positive: false,
             chip: Chip::NotASensorError,
             parameters: Rc::new(move |e| {
                 let (a, d, p, ep) = polar(e.x, e.error);
                 vec![
-                    frequency(hertz, a / d, n, f),
+                    frequency(e, a / d, duration),
                     Parameter::measured("amplitude", a, d, "rad"),
                     Parameter::measured("phase", p, ep, "rad"),
                 ]
@@ -178,9 +214,9 @@ pub(crate) fn candidates(
     list
 }
 
-/// A frequency with its Cramér–Rao error for a line of that signal-to-noise ratio.
-fn frequency(hertz: f64, snr: f64, samples: usize, cycles_per_sample: f64) -> Parameter {
-    let duration = samples as f64 * cycles_per_sample / hertz;
-    let error = 6f64.sqrt() / (std::f64::consts::PI * snr.max(1.0) * duration) / 2f64.sqrt();
-    Parameter::measured("frequency_hz", hertz, error, "Hz")
+/// A frequency: its error is that of the fit, or the Cramér–Rao bound for a line of that signal-to-noise ratio.
+fn frequency(e: &Estimate, snr: f64, duration: f64) -> Parameter {
+    let bound = 6f64.sqrt() / (std::f64::consts::PI * snr.max(1.0) * duration) / 2f64.sqrt();
+    let error = e.inner_error.map_or(bound, |error| error[0]);
+    Parameter::measured("frequency_hz", e.inner[0], error, "Hz")
 }

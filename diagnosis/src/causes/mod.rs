@@ -36,6 +36,8 @@ pub(crate) struct Catalogue {
     pub(crate) generic: BTreeMap<Domain, Vec<Shape>>,
     /// All atoms of the generic bases.
     pub(crate) broad: Vec<usize>,
+    /// Number of atoms that the catalogue itself has.
+    pub(crate) atoms: usize,
 }
 
 impl Catalogue {
@@ -48,10 +50,14 @@ impl Catalogue {
         speed::enter(context, &mut this);
         time::enter(context, &mut this);
         revolution::enter(context, &mut this);
+        for (id, candidate) in this.candidates.iter_mut().enumerate() {
+            candidate.id = id;
+        }
         let shapes = this.generic.values().flatten().chain(&this.parameters);
         this.broad = shapes.flat_map(|s| s.0.iter().map(|p| p.0)).collect();
         this.broad.sort_unstable();
         this.broad.dedup();
+        this.atoms = this.library.atoms.len();
         this
     }
 
@@ -71,13 +77,15 @@ impl Catalogue {
     }
 }
 
-/// Causes that are looked for where the residual shows something, with functions of their own.
+/// Causes that are looked for where the residual shows something, with functions of their own; where noise is
+/// `coloured`, lines have to stand out of what is near them.
 pub(crate) fn shown(
     context: &Context,
     residual: &Residual,
+    coloured: bool,
     library: &mut Library,
 ) -> Vec<Candidate> {
-    let mut list = line::candidates(context, residual, library);
+    let mut list = line::candidates(context, residual, coloured, library);
     list.extend(place::candidates(context, residual, library));
     list
 }

@@ -5,7 +5,7 @@ use std::rc::Rc;
 
 use super::revolution::{harmonic, turns};
 use crate::block::Block;
-use crate::cause::{Candidate, Domain, each};
+use crate::cause::{Candidate, Domain, Exact, Make, each};
 use crate::context::Context;
 use crate::finding::{Chip, Parameter};
 use crate::library::{Library, Shape, Use};
@@ -62,25 +62,33 @@ fn cogging(
     let order = (1..=ORDERS)
         .filter(|order| order % per != 0)
         .max_by(|a, b| power(a).total_cmp(&power(b)))?;
-    let place = library.add(
-        2,
-        Use::Motion,
-        Rc::new(move |block, out| {
-            let n = block.len();
-            for (k, phi) in block.phi.unwrap_or_default().iter().enumerate() {
-                (out[n + k], out[k]) = (order as f64 * phi).sin_cos();
-            }
-        }),
-    );
-    let shapes: Vec<Shape> = [0, 1].map(|i| place.tangential(i)).into();
+    let make: Make = Rc::new(move |_, library| {
+        let place = library.add(
+            2,
+            Use::Motion,
+            Rc::new(move |block, out| {
+                let n = block.len();
+                for (k, phi) in block.phi.unwrap_or_default().iter().enumerate() {
+                    (out[n + k], out[k]) = (order as f64 * phi).sin_cos();
+                }
+            }),
+        );
+        [0, 1].map(|i| place.tangential(i)).into()
+    });
     let order = order as u32;
     Some(Candidate {
         name: "cogging",
         domain: Domain::Motion,
         trials: ORDERS as f64,
-        shapes,
+        shapes: make(&[], library),
         motion: true,
-        refine: None,
+        id: 0,
+        exact: Some(Exact {
+            make,
+            inner: vec![],
+            steps: vec![],
+            follows: false,
+        }),
         positive: false,
         chip: Chip::NotASensorError,
         parameters: harmonic(order, "amplitude", "rad"),
@@ -91,6 +99,23 @@ fn cogging(
             )
         }),
     })
+}
+
+/// A dip of a centre and a width, in radians of the revolution.
+fn dip(inner: &[f64], library: &mut Library) -> Vec<Shape> {
+    let (centre, width) = (inner[0], inner[1].max(1e-3));
+    let place = library.add(
+        1,
+        Use::Radial,
+        Rc::new(move |block: &Block, out: &mut [f64]| {
+            for (o, p) in out.iter_mut().zip(block.phi.unwrap_or_default()) {
+                let off = (p - centre + TAU / 2.0).rem_euclid(TAU) - TAU / 2.0;
+                let x = 0.5 * (off / width).powi(2);
+                *o = if x < 40.0 { -(-x).exp() } else { 0.0 };
+            }
+        }),
+    );
+    vec![place.radial(0)]
 }
 
 /// A dip of the amplitude at one place, every revolution.
@@ -113,40 +138,28 @@ fn contamination(phi: &[f64], residual: &Residual, library: &mut Library) -> Vec
     for shift in [-0.5, 0.0, 0.5] {
         for width in WIDTHS {
             let centre = (lowest as f64 + 0.5 + shift) / PLACES as f64 * TAU;
-            let place = library.add(
-                1,
-                Use::Radial,
-                Rc::new(move |block: &Block, out: &mut [f64]| {
-                    for (o, p) in out.iter_mut().zip(block.phi.unwrap_or_default()) {
-                        let off = (p - centre + TAU / 2.0).rem_euclid(TAU) - TAU / 2.0;
-                        let x = 0.5 * (off / width).powi(2);
-                        *o = if x < 40.0 { -(-x).exp() } else { 0.0 };
-                    }
-                }),
-            );
             list.push(Candidate {
                 name: "contamination",
                 domain: Domain::Revolution,
                 trials: PLACES as f64 * 5.0,
-                shapes: vec![place.radial(0)],
+                shapes: dip(&[centre, width], library),
                 motion: false,
-                refine: None,
+                id: 0,
+                exact: Some(Exact {
+                    make: Rc::new(dip),
+                    inner: vec![centre, width],
+                    steps: vec![0.02 * width, 0.02 * width],
+                    follows: false,
+                }),
                 positive: true,
                 chip: Chip::CannotCorrect,
                 parameters: Rc::new(move |e| {
                     let mut all = each(&["depth"], "1")(e);
-                    all.push(Parameter::measured(
-                        "place",
-                        centre,
-                        width * e.error[0] / e.x[0].abs().max(1e-12),
-                        "rad",
-                    ));
-                    all.push(Parameter::measured(
-                        "width",
-                        width,
-                        width * e.error[0] / e.x[0].abs().max(1e-12),
-                        "rad",
-                    ));
+                    // For a dip of Gaussian shape.
+                    let share = e.error[0] / e.x[0].abs().max(1e-12);
+                    let bound = |i: usize| e.inner_error.map_or(e.inner[1] * share, |d| d[i]);
+                    all.push(Parameter::measured("place", e.inner[0], bound(0), "rad"));
+                    all.push(Parameter::measured("width", e.inner[1], bound(1), "rad"));
                     all
                 }),
                 evidence: Rc::new(|p| {

@@ -3,12 +3,14 @@
 use std::cell::RefCell;
 use std::rc::Rc;
 
+use rustfft::num_complex::Complex;
+
 use super::{Catalogue, Modulated, modulated};
 use crate::block::Block;
-use crate::cause::{Candidate, Domain, each};
+use crate::cause::{Candidate, Domain, Exact, each};
 use crate::context::Context;
 use crate::finding::{Chip, Parameter};
-use crate::library::Shape;
+use crate::library::{Library, Shape, Use};
 use crate::trig::{Trig, channel, derivatives};
 
 /// Share of the speed that has to change for its effects to be told from a phase error.
@@ -36,16 +38,59 @@ fn reverses(context: &Context) -> bool {
     share(1.0) > 0.01 && share(-1.0) > 0.01
 }
 
-/// What a first-order low pass of time constant `tau` takes from a channel, over `tau`.
+/// What a first-order low pass of time constant `tau` does to a channel, over `tau`: its response at the speed of the
+/// moment, and the next term, with the acceleration.
 fn low_pass(block: &Block, which: usize, tau: f64) -> Vec<f64> {
     let (u, slope) = (block.u[which], block.slope[which]);
     (0..block.len())
         .map(|k| {
-            let w = block.speed[k] * tau;
-            let lost = -w * slope[k] - w * w * u[k];
-            lost / (1.0 + w * w) / tau
+            let one = Complex::new(1.0, block.speed[k] * tau);
+            let turn = Complex::new(0.0, block.acceleration[k] * tau * tau);
+            let change = one.inv() - 1.0 + turn / (one * one * one);
+            (change.re * u[k] + change.im * slope[k]) / tau
         })
         .collect()
+}
+
+/// A channel `delay` seconds later less itself, over `delay`.
+fn later(block: &Block, which: usize, delay: f64) -> Vec<f64> {
+    let (u, slope) = (block.u[which], block.slope[which]);
+    let pairs = block.speed.iter().zip(block.acceleration);
+    pairs
+        .enumerate()
+        .map(|(k, (v, a))| {
+            if delay == 0.0 {
+                return v * slope[k];
+            }
+            let (sin, cos) = (v * delay + 0.5 * a * delay * delay).sin_cos();
+            (u[k] * (cos - 1.0) + slope[k] * sin) / delay
+        })
+        .collect()
+}
+
+/// What a low pass in both channels takes from the radius, over the square of its time constant `tau2`: its response at
+/// the speed that is seen, which is late too, and the next term, with the acceleration.
+fn falls(block: &Block, tau2: f64) -> Vec<f64> {
+    let tau = tau2.max(0.0).sqrt();
+    let pairs = block.speed.iter().zip(block.acceleration);
+    pairs
+        .map(|(v, a)| {
+            let one = 1.0 + v * v * tau2.max(0.0);
+            let root = one.sqrt();
+            // Free of cancellation where little is lost.
+            -v * v / (root * (1.0 + root)) + v * a * tau / (root * one * one)
+        })
+        .collect()
+}
+
+/// A shape that is made anew with the size of its amount.
+fn follows(inner: f64, make: impl Fn(f64, &mut Library) -> Vec<Shape> + 'static) -> Option<Exact> {
+    Some(Exact {
+        make: Rc::new(move |inner, library| make(inner[0], library)),
+        inner: vec![inner],
+        steps: vec![],
+        follows: true,
+    })
 }
 
 /// Numbers of the modulations.
@@ -74,7 +119,7 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
         catalogue.generic(Domain::Speed, orders);
     }
     let (zero, one_) = (Trig::constant(0.0), Trig::constant(1.0));
-    let scaled = |shape: Shape, by: f64| Shape(shape.0.iter().map(|(i, x)| (*i, x * by)).collect());
+    let scaled = |shape: Shape, by: f64| shape.scaled(by);
     // The speed times a change of one channel.
     let times =
         |which: usize, change: &Trig| scaled(speed.shape(ODD, &channel(beta, which, change)), top);
@@ -91,7 +136,8 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
         trials: 1.0,
         shapes: vec![shape],
         motion: false,
-        refine: None,
+        id: 0,
+        exact: None,
         positive,
         chip,
         parameters: each(parameter, unit),
@@ -130,13 +176,23 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
                 )
             },
         ));
+        if let Some(skew) = list.last_mut() {
+            skew.exact = follows(0.0, |delay, library| {
+                vec![library.pair(move |block: &Block, c, s| {
+                    block.channel(1, &later(block, 1, delay), c, s);
+                })]
+            });
+        }
         for which in [0, 1] {
             for reach in [0.003, 0.02, 0.1, 0.4, 1.0] {
                 let tau = reach / top;
                 let name: [&'static [&'static str]; 2] = [&["tau_cos_s"], &["tau_sin_s"]];
-                let shape = catalogue.library.pair(move |block: &Block, c, s| {
-                    block.channel(which, &low_pass(block, which, tau), c, s);
-                });
+                let make = move |tau: f64, library: &mut Library| {
+                    vec![library.pair(move |block: &Block, c, s| {
+                        block.channel(which, &low_pass(block, which, tau), c, s);
+                    })]
+                };
+                let shape = make(tau, &mut catalogue.library).swap_remove(0);
                 let mut candidate = one(
                     "bandwidth_mismatch",
                     shape,
@@ -152,23 +208,27 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
                     },
                 );
                 candidate.trials = 10.0;
-                candidate.refine = Some(Rc::new(
-                    move |block: &Block, inner: &[f64], c: &mut [f64], s: &mut [f64]| {
-                        block.channel(which, &low_pass(block, which, inner[0]), c, s);
-                    },
-                ));
+                candidate.exact = follows(tau, make);
                 list.push(candidate);
             }
         }
-        let falls = scaled(speed.shape(EVEN, &[one_, zero]), -0.5 * top * top);
+        let square = scaled(speed.shape(EVEN, &[one_, zero]), -0.5 * top * top);
         list.push(Candidate {
+            exact: follows(0.0, |tau2, library| {
+                let place = library.add(
+                    1,
+                    Use::Radial,
+                    Rc::new(move |block, out| out.copy_from_slice(&falls(block, tau2))),
+                );
+                vec![place.radial(0)]
+            }),
             parameters: Rc::new(|e| {
                 let tau = e.x[0].max(0.0).sqrt();
                 vec![Parameter::measured("tau_s", tau, e.error[0] / (2.0 * tau).max(f64::MIN_POSITIVE), "s")]
             }),
             ..one(
                 "common_bandwidth",
-                falls,
+                square,
                 &["tau_s"],
                 "s",
                 Chip::CannotCorrect,
@@ -178,6 +238,21 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
         });
         list.push(Candidate {
             shapes: vec![times(0, &slope[1]), times(1, &slope[0])],
+            exact: Some(Exact {
+                make: Rc::new(|inner, library| {
+                    let delay = inner[0];
+                    (0..2)
+                        .map(|which| {
+                            library.pair(move |block: &Block, c, s| {
+                                block.channel(which, &later(block, 1 - which, -delay), c, s);
+                            })
+                        })
+                        .collect()
+                }),
+                inner: vec![0.0],
+                steps: vec![0.01 / top],
+                follows: false,
+            }),
             parameters: Rc::new(|e| {
                 vec![
                     Parameter::measured("product_into_cos_s", -e.x[0], e.error[0], "s"),
@@ -223,35 +298,42 @@ fn slow(block: &Block, which: usize, rate: f64, state: &RefCell<(usize, f64)>) -
     values
 }
 
+/// What a high pass takes away, over its corner frequency in hertz.
+fn high_pass(sample_rate: f64) -> impl Fn(f64, &mut Library) -> Vec<Shape> + 'static {
+    move |corner, library| {
+        let rate = (std::f64::consts::TAU * corner / sample_rate).clamp(0.0, 0.5);
+        let states: [RefCell<(usize, f64)>; 2] = Default::default();
+        vec![library.pair(move |block: &Block, c, s| {
+            let [cos, sin] = [0, 1].map(|which| {
+                let mut lost = slow(block, which, rate, &states[which]);
+                lost.iter_mut().for_each(|v| *v /= corner.max(1e-300));
+                lost
+            });
+            block.raw(&cos, &sin, c, s);
+        })]
+    }
+}
+
 /// A first-order high pass takes the slow part of the signals away.
 fn ac_coupling(context: &Context, catalogue: &mut Catalogue) {
     let duration = context.samples() as f64 / context.rate;
     let mut corner = 0.3 / duration;
     let corners = (context.rate / 30.0 / corner).log(3.0).floor().max(1.0);
     while corner < context.rate / 30.0 {
-        let rate = (std::f64::consts::TAU * corner / context.rate).min(0.5);
-        let states: [RefCell<(usize, f64)>; 2] = Default::default();
-        let shape = catalogue.library.pair(move |block: &Block, c, s| {
-            let [cos, sin] = [0, 1].map(|which| slow(block, which, rate, &states[which]));
-            block.raw(&cos, &sin, c, s);
-        });
-        let now = corner;
+        let make = high_pass(context.rate);
+        let shapes = make(corner, &mut catalogue.library);
         catalogue.candidates.push(Candidate {
             name: "ac_coupling",
             domain: Domain::Speed,
             trials: corners,
-            shapes: vec![shape],
+            shapes,
             motion: false,
-            refine: None,
+            id: 0,
+            exact: follows(corner, make),
             positive: true,
             chip: Chip::CannotCorrect,
             parameters: Rc::new(move |e| {
-                vec![Parameter::measured(
-                    "corner_hz",
-                    e.x[0] * now,
-                    e.error[0] * now,
-                    "Hz",
-                )]
+                vec![Parameter::measured("corner_hz", e.x[0], e.error[0], "Hz")]
             }),
             evidence: Rc::new(|p| {
                 format!(

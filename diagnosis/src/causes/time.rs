@@ -82,7 +82,8 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
                 trials,
                 shapes: all,
                 motion: false,
-                refine: None,
+                id: 0,
+                exact: None,
                 positive: false,
                 chip: Chip::Corrects,
                 parameters: Rc::new(move |e| {

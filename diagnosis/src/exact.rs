@@ -1,0 +1,342 @@
+//! Large effects: numbers that are no amounts are fitted, and the recording is looked at anew where a cause stands.
+//!
+//! Shapes are tangents. Where a cause is large, its second order is above the noise and would be given the name of
+//! something else: then what it does is taken off the signals themselves, the angle followed again, and the tangents
+//! made there.
+
+use nonius_calibration::Ellipse;
+use nonius_recording::Recording;
+
+use crate::causes::Catalogue;
+use crate::context::{Context, Known, unwrapped};
+use crate::library::{Row, Shape};
+use crate::model::{Fit, System, above_motion, atoms_of};
+use crate::select::{Beside, begin};
+use crate::selection::Accepted;
+use crate::spline::Spline;
+use crate::sweep::Samples;
+
+/// Gain in log-likelihood from which on inner numbers can be fitted.
+const FITTED: f64 = 30.0;
+/// Steps of a fit of them.
+const STEPS: usize = 8;
+/// Small changes that one step may go.
+const REACH: f64 = 12.0;
+/// Share of its standard error by which a number may still move when its fit ends.
+const AT_REST: f64 = 0.05;
+/// Detection SNR of a remainder from which on a recording is looked at anew: below, nothing can be named for it.
+const SEEN: f64 = 1.0;
+/// The same once it was looked at anew: below, estimates are right to a part of their errors.
+const SETTLED: f64 = 0.3;
+/// Looks at a recording until what is known of it has come to rest.
+const SETTLING: usize = 6;
+/// Times that the angle is followed anew with the same amounts.
+const FOLLOWED: usize = 3;
+
+/// Fits the inner numbers of a cause beside a fit; its shapes are new functions of the system then.
+pub(crate) fn tuned(system: &mut System, fit: &[Shape], cause: &mut Accepted, gain: f64) {
+    let Some(exact) = cause.candidate.exact.clone() else {
+        return;
+    };
+    if gain < FITTED || exact.inner.is_empty() {
+        return;
+    }
+    let mut inner = exact.inner.clone();
+    let mut errors = None;
+    let mark = system.samples.library.atoms.len();
+    for _ in 0..STEPS {
+        let library = &mut system.samples.library;
+        let own = (exact.make)(&inner, library);
+        let mut beside_them = vec![];
+        for (j, step) in exact.steps.iter().enumerate() {
+            let moved = |by: f64| {
+                let mut moved = inner.clone();
+                moved[j] += by;
+                moved
+            };
+            let plus = (exact.make)(&moved(*step), library);
+            let minus = (exact.make)(&moved(-step), library);
+            beside_them.push((plus, minus, *step));
+        }
+        let all: Vec<Shape> = beside_them
+            .iter()
+            .flat_map(|(p, m, _)| p.iter().chain(m))
+            .chain(&own)
+            .chain(fit)
+            .cloned()
+            .collect();
+        let atoms = atoms_of(&all);
+        let whole = system.among(&atoms);
+        let among =
+            |shapes: &[Shape]| -> Vec<Shape> { shapes.iter().map(|s| s.among(&atoms)).collect() };
+        let beside = Beside::new(&whole, &among(fit));
+        let mut shapes = among(&own);
+        let x = beside.solve(&shapes).x;
+        for (plus, minus, step) in &beside_them {
+            let mut slope = Shape::default();
+            let pairs = among(plus).into_iter().zip(among(minus)).zip(&x);
+            for ((plus, minus), x) in pairs {
+                let by = x / (2.0 * step);
+                slope = slope.plus(&plus.scaled(by)).plus(&minus.scaled(-by));
+            }
+            shapes.push(slope);
+        }
+        let solution = beside.solve(&shapes);
+        system.retain(|i| i < mark);
+        let error = |i: usize| solution.covariance[(i, i)].max(0.0).sqrt();
+        let moves: Vec<(f64, f64)> = if exact.follows {
+            vec![(x[0] - inner[0], error(0))]
+        } else {
+            let first = own.len();
+            (0..inner.len())
+                .map(|j| {
+                    let most = REACH * exact.steps[j];
+                    (solution.x[first + j].clamp(-most, most), error(first + j))
+                })
+                .collect()
+        };
+        if moves.iter().any(|m| !m.0.is_finite()) {
+            break;
+        }
+        for (value, (by, _)) in inner.iter_mut().zip(&moves) {
+            *value += by;
+        }
+        if !exact.follows {
+            errors = Some(moves.iter().map(|m| m.1).collect());
+        }
+        if moves.iter().all(|(by, error)| by.abs() < AT_REST * error) {
+            break;
+        }
+    }
+    let shapes = (exact.make)(&inner, &mut system.samples.library);
+    system.extend();
+    // A fit that went astray is none.
+    let beside = Beside::new(&system.total, fit);
+    if beside.gain(&shapes).0 < beside.gain(&cause.candidate.shapes).0 - 1.0 {
+        return;
+    }
+    cause.candidate.shapes = shapes;
+    cause.inner_error = errors;
+    if let Some(exact) = &mut cause.candidate.exact {
+        exact.inner = inner;
+    }
+}
+
+/// What a cause does, along the radius and along the circle.
+fn effect(system: &System, amounts: &[(usize, f64)]) -> [Vec<f64>; 2] {
+    [Row::Radial, Row::Tangential].map(|row| system.samples.sum(amounts, row))
+}
+
+/// Detection SNR of the product of two effects: what second order leaves.
+fn product(system: &System, a: &[Vec<f64>; 2], b: &[Vec<f64>; 2]) -> f64 {
+    let square = |e: &[Vec<f64>; 2], k: usize| e[0][k].powi(2) + e[1][k].powi(2);
+    let sum: f64 = (0..system.context.samples())
+        .map(|k| system.context.weight[k] * square(a, k) * square(b, k))
+        .sum();
+    sum.sqrt() / system.noise()
+}
+
+/// Whether tangents do for causes of these amounts: the difference to where they were made leaves nothing that is seen.
+pub(crate) fn tangents_do(system: &System, fit: &Fit, accepted: &[Accepted]) -> bool {
+    let (mut middle, mut moved) = (vec![], vec![]);
+    for one in accepted {
+        let x = &fit.solution.x[one.range()];
+        for ((shape, x), x0) in one.candidate.shapes.iter().zip(x).zip(&one.x) {
+            // ½ x² less what the tangent at x₀ has of it: (x − x₀) times the middle of both.
+            middle.extend(shape.scaled(0.5 * (x + x0)).0);
+            moved.extend(shape.scaled(x - x0).0);
+        }
+    }
+    let (middle, moved) = (effect(system, &middle), effect(system, &moved));
+    let known = accepted.iter().flat_map(|a| &a.x).any(|x| *x != 0.0);
+    product(system, &middle, &moved) < if known { SETTLED } else { SEEN }
+}
+
+/// What is known of a recording: the ellipse, and causes with their amounts.
+#[derive(Clone)]
+pub(crate) struct Start {
+    ellipse: Ellipse,
+    pub(crate) carried: Vec<Accepted>,
+}
+
+/// What a fit knows.
+pub(crate) fn start(system: &System, fit: &Fit, accepted: &[Accepted]) -> Start {
+    let mut carried = accepted.to_vec();
+    for one in &mut carried {
+        one.x = fit.solution.x[one.range()].to_vec();
+        let amount = one.x.first().copied();
+        if let Some(exact) = one.candidate.exact.as_mut().filter(|e| e.follows) {
+            exact.inner = amount.into_iter().collect();
+        }
+    }
+    Start {
+        ellipse: ellipse(&system.context.ellipse, &fit.solution.x),
+        carried,
+    }
+}
+
+/// A context in which this is off the signals, and the angle followed without it, by a spline of the given spacing of
+/// knots or of its own choice.
+fn followed(
+    context: &Context,
+    start: &Start,
+    recording: &Recording,
+    spacing: Option<f64>,
+) -> Context {
+    let mut context = context.clone();
+    let reference = recording.reference_rad.as_deref();
+    for round in 0..FOLLOWED {
+        let known = effects(&context, &mut start.carried.clone(), reference.is_some());
+        // Closer knots may have been needed for what is known now.
+        if round == 0 {
+            context.spline = spacing.map(|s| Spline::new(context.samples(), s, &context.weight));
+        }
+        context.without(start.ellipse, known, reference);
+    }
+    context
+}
+
+/// The functions and sums of a context, the causes that are known among them.
+pub(crate) fn look<'a>(
+    context: &'a Context,
+    carried: &mut [Accepted],
+    recording: &Recording,
+) -> (System<'a>, Catalogue) {
+    let reference = recording.reference_rad.as_ref();
+    let motion = reference.map(|r| above_motion(context, &unwrapped(r.clone())));
+    let mut catalogue = Catalogue::new(context, motion.is_some());
+    enter(carried, &mut catalogue);
+    let system = System::new(context, motion, &mut catalogue, carried);
+    (system, catalogue)
+}
+
+/// A start whose causes have come to rest.
+struct Settled {
+    score: f64,
+    context: Context,
+    start: Start,
+}
+
+/// Looks from a start until its causes have come to rest.
+fn settled(
+    context: &Context,
+    mut start: Start,
+    recording: &Recording,
+    spacing: Option<f64>,
+) -> Settled {
+    let mut context = followed(context, &start, recording, spacing);
+    let mut score = f64::MIN;
+    for _ in 0..SETTLING {
+        let mut carried = start.carried.clone();
+        let (mut system, catalogue) = look(&context, &mut carried, recording);
+        let found = begin(&mut system, &catalogue, carried);
+        score = system.halves(&found.fit.shapes).log_likelihood(&found.fit);
+        // Free numbers and trials are paid for.
+        let price = (context.samples() as f64).ln() / 2.0;
+        let paid = |a: &Accepted| price * a.x.len() as f64 + a.candidate.trials.ln();
+        score -= found.accepted.iter().map(paid).sum::<f64>();
+        let Some(next) = found.again.into_iter().next() else {
+            break;
+        };
+        start = next;
+        let next = followed(&context, &start, recording, spacing);
+        drop(system);
+        context = next;
+    }
+    Settled {
+        score,
+        context,
+        start,
+    }
+}
+
+/// Where to go on from: of several starts, the one that explains most once its causes have come to rest.
+pub(crate) fn best(
+    context: &Context,
+    mut starts: Vec<Start>,
+    recording: &Recording,
+) -> Option<(Context, Vec<Accepted>)> {
+    if starts.len() == 1 {
+        let start = starts.remove(0);
+        return Some((followed(context, &start, recording, None), start.carried));
+    }
+    let all: Vec<Settled> = starts
+        .into_iter()
+        .map(|start| settled(context, start, recording, None))
+        .collect();
+    // Likelihoods of splines with other knots cannot be compared.
+    let spacing = |s: &Settled| s.context.spline.as_ref().map_or(0.0, Spline::spacing);
+    let common = all.iter().map(&spacing).fold(0.0, f64::max);
+    all.into_iter()
+        .map(|one| {
+            if spacing(&one) < common {
+                settled(&one.context, one.start, recording, Some(common))
+            } else {
+                one
+            }
+        })
+        .max_by(|a, b| a.score.total_cmp(&b.score))
+        .map(|best| (best.context, best.start.carried))
+}
+
+/// What the causes do at the angles of a context.
+fn effects(context: &Context, carried: &mut [Accepted], with_motion: bool) -> Known {
+    let mut catalogue = Catalogue::new(context, with_motion);
+    enter(carried, &mut catalogue);
+    let library = std::mem::take(&mut catalogue.library);
+    let samples = Samples::unfitted(context, library);
+    let of = |wanted: &dyn Fn(&Accepted, Row) -> bool, row: Row| {
+        let chosen = carried.iter().filter(|a| wanted(a, row));
+        let amounts: Vec<(usize, f64)> = chosen.flat_map(Accepted::amounts).collect();
+        samples.sum(&amounts, row)
+    };
+    // What stands along the circle alone is an error of the angle.
+    let turns = |a: &Accepted| {
+        let atoms = atoms_of(&a.candidate.shapes);
+        let row = |i: &usize| samples.library.atoms[*i].row;
+        !a.candidate.motion && atoms.iter().all(|i| row(i) == Row::Tangential)
+    };
+    let added = |a: &Accepted, _: Row| !a.candidate.motion && !turns(a);
+    let fast = if with_motion {
+        Row::Motion
+    } else {
+        Row::Tangential
+    };
+    Known {
+        radial: of(&added, Row::Radial),
+        tangential: of(&added, Row::Tangential),
+        angle: of(&|a, _| turns(a), Row::Tangential),
+        fast: of(&|a, _| a.candidate.motion, fast),
+    }
+}
+
+/// Gives causes their shapes in another catalogue; the ones that it does not hold are left out by their lack of shapes.
+pub(crate) fn enter(carried: &mut [Accepted], catalogue: &mut Catalogue) {
+    for one in carried {
+        let candidate = &mut one.candidate;
+        candidate.shapes = match &candidate.exact {
+            Some(exact) => (exact.make)(&exact.inner, &mut catalogue.library),
+            None => catalogue
+                .candidates
+                .get(candidate.id)
+                .filter(|c| c.name == candidate.name)
+                .map_or_else(Vec::new, |c| c.shapes.clone()),
+        };
+    }
+}
+
+/// The ellipse with what its five parameters were found to be off: cos into c, 1 into c, sin into s, 1 into s, cos into s.
+pub(crate) fn ellipse(e: &Ellipse, off: &[f64]) -> Ellipse {
+    let [c, one_c, s, one_s, cross] = [off[0], off[1], off[2], off[3], off[4]];
+    let (sin, cos) = e.beta.sin_cos();
+    // y_s = a_s (s cos β − c sin β) + b_s with c and s as they are: a sum of sin α, cos α and 1.
+    let along = e.a_s * (1.0 + s) * cos;
+    let across = e.a_s * ((1.0 + c) * sin - cross * cos);
+    Ellipse {
+        a_c: e.a_c * (1.0 + c),
+        b_c: e.b_c + e.a_c * one_c,
+        a_s: along.hypot(across),
+        b_s: e.b_s + e.a_s * (one_s * cos - one_c * sin),
+        beta: across.atan2(along),
+    }
+}

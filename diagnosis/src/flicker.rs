@@ -1,0 +1,283 @@
+//! Noise with a 1/f spectrum, added to the channels.
+//!
+//! It is looked for in the radius alone: real motion never shows there. With the noise of the channels as one complex
+//! number z, the radius has Re(z e^{−iα}), so twice the radial residual times e^{iα} is z + z* e^{2iα}: the spectrum of z,
+//! and its image about twice the angle. The spectrum is compared with what white noise and 1/f make of that (Whittle's
+//! likelihood). The name is given only where they hold nine tenths of what a spectrum of any shape explains: correlated
+//! noise, drift and hum are not 1/f.
+
+use rustfft::FftPlanner;
+use rustfft::num_complex::Complex;
+
+use crate::context::Context;
+use crate::finding::{Chip, Finding, Gain, Parameter};
+use crate::statistics::{after_trials, log_tail};
+
+/// Slowest part of the spectrum, cycles per recording: below, polynomials of time were taken off.
+const SLOWEST: usize = 8;
+/// Share of half the sample rate that is looked at.
+const HIGHEST: f64 = 0.98;
+/// Fewest lines of the spectrum that tell a shape.
+const FEWEST: usize = 32;
+/// Bands per octave into which lines are gathered.
+const PER_OCTAVE: f64 = 6.0;
+/// Above so many times the median near it, a line of the spectrum is hum.
+const HUM: f64 = 6.0;
+/// Lines of the spectrum on either side that are near.
+const NEAR: usize = 8;
+/// Share of what any spectrum explains that 1/f has to hold.
+const HOLDS: f64 = 0.9;
+/// Shapes of noise that could have been claimed.
+const TRIALS: f64 = 30.0;
+/// Global probability below which it is shown.
+const SHOWN: f64 = 3e-4;
+
+/// Flicker noise that was found.
+#[derive(Clone, Debug)]
+pub(crate) struct Flicker {
+    /// Amplitude density of a channel at 1 Hz, in amplitudes per √Hz, one-sided; its standard error.
+    density: [f64; 2],
+    /// Where it is as large as the white noise, hertz.
+    pub(crate) corner: f64,
+    gain: f64,
+    log_p: f64,
+}
+
+/// Lines that a band counts for at most where the shape is judged: so every octave weighs alike.
+const ALIKE: f64 = 8.0;
+/// Log-likelihood that any spectrum may explain beyond it there: an exponent a tenth off, over the octaves of a record.
+const MISFIT: f64 = 15.0;
+
+/// Lines of the spectrum that are near each other.
+#[derive(Clone)]
+struct Band {
+    /// Number of lines.
+    count: f64,
+    /// Mean power of a channel in a line.
+    power: f64,
+    /// What noise of spectrum 1/f, one at a hertz, is expected to show there.
+    flicker: f64,
+    octave: i64,
+}
+
+/// A line: hertz, mean power of a channel, what 1/f is expected to show there.
+type Line = (f64, f64, f64);
+
+/// Log-likelihood of bands given their expectations: two channels in each line.
+fn likelihood(bands: &[Band], expected: impl Fn(&Band) -> f64) -> f64 {
+    bands
+        .iter()
+        .map(|b| {
+            let s = expected(b);
+            -2.0 * b.count * (s.ln() + b.power / s)
+        })
+        .sum()
+}
+
+/// The best white level beside flicker noise of a corner frequency, and its log-likelihood.
+fn beside(bands: &[Band], corner: f64) -> (f64, f64) {
+    // White noise and its image.
+    let shape = |b: &Band| 2.0 + corner * b.flicker;
+    let sum: f64 = bands.iter().map(|b| b.count * b.power / shape(b)).sum();
+    let white = sum / bands.iter().map(|b| b.count).sum::<f64>();
+    (white, likelihood(bands, |b| white * shape(b)))
+}
+
+/// Log-likelihood of a level of its own in each octave, less what so many free levels explain of noise.
+fn octaves(bands: &[Band]) -> f64 {
+    let parts = bands.chunk_by(|a, b| a.octave == b.octave);
+    let one = |part: &[Band]| {
+        let count: f64 = part.iter().map(|b| b.count).sum();
+        let level = part.iter().map(|b| b.count * b.power).sum::<f64>() / count;
+        likelihood(part, |_| level) - 0.5
+    };
+    parts.map(one).sum::<f64>() + 0.5
+}
+
+/// The best corner frequency and its log-likelihood.
+fn corner(lines: &[Line], bands: &[Band]) -> (f64, f64) {
+    // From far below the first line to far above the last, then closer.
+    let (low, high) = (lines[0].0 * 1e-2, lines[lines.len() - 1].0 * 1e2);
+    let mut best = (low, f64::MIN);
+    let mut reach = (high / low).ln();
+    let mut centre = (low * high).sqrt();
+    for _ in 0..6 {
+        for i in -20..=20 {
+            let corner = centre * (reach / 2.0 * f64::from(i) / 20.0).exp();
+            let value = beside(bands, corner).1;
+            if value > best.1 {
+                best = (corner, value);
+            }
+        }
+        centre = best.0;
+        reach /= 6.0;
+    }
+    best
+}
+
+/// The window of a record, of unit mean square.
+fn window(k: usize, n: usize) -> f64 {
+    let x = (k as f64 + 0.5) / n as f64;
+    (std::f64::consts::PI * x).sin().powi(2) * (8.0f64 / 3.0).sqrt()
+}
+
+/// What noise of the two-sided spectrum 1/|f| is expected to show: itself, and its image about twice the angle.
+fn expected(context: &Context) -> Vec<f64> {
+    let n = context.samples();
+    let per = context.rate / n as f64;
+    let mut planner = FftPlanner::new();
+    let (forward, back) = (planner.plan_fft_forward(n), planner.plan_fft_inverse(n));
+    let mut image: Vec<Complex<f64>> = (0..n)
+        .map(|k| {
+            let once = Complex::new(context.cos[k], context.sin[k]);
+            once * once * window(k, n)
+        })
+        .collect();
+    forward.process(&mut image);
+    let total: f64 = image.iter().map(Complex::norm_sqr).sum();
+    for value in &mut image {
+        *value = Complex::new(value.norm_sqr() / total, 0.0);
+    }
+    let own = |k: usize| {
+        let cycles = k.min(n - k);
+        // Slower parts were taken off with the polynomials of time.
+        if cycles < SLOWEST / 2 {
+            0.0
+        } else {
+            1.0 / (cycles as f64 * per)
+        }
+    };
+    let mut spectrum: Vec<Complex<f64>> = (0..n).map(|k| Complex::new(own(k), 0.0)).collect();
+    back.process(&mut image);
+    back.process(&mut spectrum);
+    for (a, b) in image.iter_mut().zip(&spectrum) {
+        *a *= b;
+    }
+    forward.process(&mut image);
+    (0..n).map(|k| own(k) + image[k].re / n as f64).collect()
+}
+
+/// Lines of the spectrum of both channels. Every second one, for neighbours share the window.
+fn spectrum(context: &Context, radial: &[f64]) -> Vec<Line> {
+    let n = radial.len();
+    let mut both: Vec<Complex<f64>> = (0..n)
+        .map(|k| {
+            let r = 2.0 * radial[k] * window(k, n);
+            Complex::new(r * context.cos[k], r * context.sin[k])
+        })
+        .collect();
+    FftPlanner::new().plan_fft_forward(n).process(&mut both);
+    let flicker = expected(context);
+    let last = (HIGHEST * n as f64 / 2.0) as usize;
+    let line = |k: usize| {
+        // The two sides of the transform of the pair hold both channels.
+        let mean = |a: f64, b: f64| 0.5 * (a + b);
+        let power = mean(both[k].norm_sqr(), both[n - k].norm_sqr()) / n as f64;
+        (
+            k as f64 * context.rate / n as f64,
+            power,
+            mean(flicker[k], flicker[n - k]),
+        )
+    };
+    (SLOWEST..=last).step_by(2).map(line).collect()
+}
+
+/// Lines gathered into bands.
+fn bands(lines: &[Line]) -> Vec<Band> {
+    let octaves = |l: &Line| (l.0 / lines[0].0).log2();
+    let number = |l: &Line| (octaves(l) * PER_OCTAVE) as i64;
+    lines
+        .chunk_by(|a, b| number(a) == number(b))
+        .map(|part| {
+            let count = part.len() as f64;
+            Band {
+                count,
+                power: part.iter().map(|l| l.1).sum::<f64>() / count,
+                flicker: part.iter().map(|l| l.2).sum::<f64>() / count,
+                octave: octaves(&part[0]) as i64,
+            }
+        })
+        .collect()
+}
+
+/// Lines of the spectrum with hum cut down to what is near it.
+fn without_hum(lines: &mut [Line]) {
+    let powers: Vec<f64> = lines.iter().map(|l| l.1).collect();
+    for (k, line) in lines.iter_mut().enumerate() {
+        let mut near = powers[k.saturating_sub(NEAR)..(k + NEAR + 1).min(powers.len())].to_vec();
+        let middle = near.len() / 2;
+        let (_, median, _) = near.select_nth_unstable_by(middle, f64::total_cmp);
+        if line.1 > HUM * *median {
+            line.1 = *median;
+        }
+    }
+}
+
+/// Flicker noise in what everything else leaves of the radius.
+pub(crate) fn find(context: &Context, radial: &[f64]) -> Option<Flicker> {
+    let n = radial.len();
+    if n < 64 {
+        return None;
+    }
+    let mut lines = spectrum(context, radial);
+    if lines.len() < FEWEST {
+        return None;
+    }
+    without_hum(&mut lines);
+    let bands = bands(&lines);
+    let white = beside(&bands, 0.0).1;
+    let best = corner(&lines, &bands);
+    let gain = best.1 - white;
+    let log_p = after_trials(log_tail(2.0 * gain, 1), TRIALS);
+    if log_p > SHOWN.ln() {
+        return None;
+    }
+    let mut alike = bands.clone();
+    alike.iter_mut().for_each(|b| b.count = b.count.min(ALIKE));
+    let flat = beside(&alike, 0.0).1;
+    let (own, any) = (corner(&lines, &alike).1 - flat, octaves(&alike) - flat);
+    if own < HOLDS * any || any - own > MISFIT {
+        return None;
+    }
+    // From the curvature in the logarithm of the corner.
+    let step: f64 = 0.05;
+    let at = |by: f64| beside(&bands, best.0 * by.exp()).1;
+    let curvature = (2.0 * best.1 - at(step) - at(-step)) / (step * step);
+    let (level, _) = beside(&bands, best.0);
+    // Mean square per line, over two sides, per samples per second: per hertz, one-sided.
+    let density = (2.0 * level * best.0 / context.rate).sqrt();
+    Some(Flicker {
+        density: [density, 0.5 * density / curvature.max(1e-12).sqrt()],
+        corner: best.0,
+        gain,
+        log_p,
+    })
+}
+
+impl Flicker {
+    /// The finding; its gain in the residual is for the caller to say.
+    pub(crate) fn finding(&self) -> Finding {
+        let [density, error] = self.density;
+        Finding {
+            cause: "flicker_noise".into(),
+            confounded_with: vec![],
+            p_value: self.log_p.exp(),
+            parameters: vec![
+                Parameter::measured("density_at_1_hz", density, error, "amplitude/sqrt(Hz)"),
+                Parameter::measured(
+                    "corner_hz",
+                    self.corner,
+                    2.0 * self.corner * error / density,
+                    "Hz",
+                ),
+            ],
+            gain: Gain::default(),
+            evidence: format!(
+                "the noise of the channels rises towards low frequencies as 1/f, from {:.3e} Hz down above the white noise; it raises the log-likelihood by {:.1}",
+                self.corner, self.gain
+            ),
+            chip: Chip::CannotCorrect,
+            weight: self.gain,
+        }
+    }
+}

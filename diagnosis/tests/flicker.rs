@@ -1,0 +1,154 @@
+//! Flicker noise is found, and never claimed of noise, drift or motion of another kind.
+//!
+//! It is simulated as semiconductors make it: a sum of relaxations with time constants a factor apart, each of the same
+//! power. That has nothing of a 1/f formula in it.
+#![allow(clippy::unwrap_used)]
+
+use std::f64::consts::TAU;
+
+use nonius_diagnosis::{Diagnosis, diagnose};
+use nonius_recording::{Overrides, Recording};
+use rand::{SeedableRng, rngs::StdRng};
+use rand_distr::{Distribution, StandardNormal};
+
+const SAMPLES: usize = 20_000;
+const RATE: f64 = 50e3;
+const NOISE: f64 = 0.001;
+
+type OfTime = fn(t: f64) -> f64;
+
+/// Noise of one channel.
+enum Colour {
+    White,
+    /// Sum of relaxations; rms of each.
+    Flicker(f64),
+    /// First-order autoregression of that coefficient, and rms.
+    Regression(f64, f64),
+}
+
+/// A sum of first-order relaxations: coefficient per sample, rms of each, state.
+struct Relaxations(Vec<(f64, f64, f64)>);
+
+impl Relaxations {
+    fn new(colour: &Colour) -> Self {
+        let list = match colour {
+            Colour::White => vec![],
+            // From a tenth of a hertz to ten kilohertz, three to the factor of ten.
+            Colour::Flicker(rms) => (0..16)
+                .map(|i| {
+                    let corner = 0.1 * 10f64.powf(f64::from(i) / 3.0);
+                    ((-TAU * corner / RATE).exp(), *rms, 0.0)
+                })
+                .collect(),
+            Colour::Regression(coefficient, rms) => vec![(*coefficient, *rms, 0.0)],
+        };
+        Self(list)
+    }
+
+    fn next(&mut self, normal: &mut impl FnMut() -> f64) -> f64 {
+        for (coefficient, rms, state) in &mut self.0 {
+            let fresh = *rms * (1.0 - *coefficient * *coefficient).sqrt();
+            *state = *coefficient * *state + fresh * normal();
+        }
+        self.0.iter().map(|r| r.2).sum()
+    }
+}
+
+fn diagnosed(colour: &Colour, seed: u64, motion: OfTime, drift: OfTime) -> Diagnosis {
+    let mut random = StdRng::seed_from_u64(seed);
+    let mut normal = || -> f64 { StandardNormal.sample(&mut random) };
+    let mut noises = [Relaxations::new(colour), Relaxations::new(colour)];
+    for _ in 0..SAMPLES {
+        noises.iter_mut().for_each(|n| {
+            n.next(&mut normal);
+        });
+    }
+    let lsb = 2.0 / f64::from(1 << 14);
+    let code = |v: f64| (v / lsb).round() * lsb;
+    let mut text = String::from("# adc_bits: 14\n# full_scale: 1\ntime_s,cos,sin\n");
+    for k in 0..SAMPLES {
+        let t = k as f64 / RATE;
+        let alpha = 90.0 * (TAU * 5.3 * t + 0.2).sin() + 300.0 * t + motion(t);
+        let own = noises
+            .each_mut()
+            .map(|n| n.next(&mut normal) + NOISE * normal());
+        let (c, s) = (
+            alpha.cos() + own[0] + drift(t),
+            (alpha - 0.03).sin() + own[1] - drift(t),
+        );
+        text += &format!("{t:.7},{},{}\n", code(0.8 * c), code(0.75 * s));
+    }
+    let recording = Recording::read_from(text.as_bytes(), "test", &Overrides::default()).unwrap();
+    diagnose(&recording).unwrap()
+}
+
+fn names(found: &Diagnosis) -> Vec<&str> {
+    found.findings.iter().map(|f| f.cause.as_str()).collect()
+}
+
+#[test]
+fn it_is_found() {
+    for seed in 0..4 {
+        let found = diagnosed(&Colour::Flicker(0.0005), seed, |_| 0.0, |_| 0.0);
+        assert_eq!(names(&found), ["flicker_noise"], "seed {seed}");
+        assert!(found.findings[0].p_value < 1e-3);
+        // Equal powers a third of a decade apart: power per hertz is that of one over f times ln 10 / 3.
+        let density = 0.0005 * (3.0 / 10f64.ln()).sqrt();
+        let p = &found.findings[0].parameters[0];
+        assert!(
+            (p.value / density).ln().abs() < 0.35,
+            "seed {seed}: {} +/- {}, true {density}",
+            p.value,
+            p.std_error
+        );
+    }
+}
+
+#[test]
+fn it_is_not_claimed_of_anything_else() {
+    let still: OfTime = |_| 0.0;
+    for seed in 0..3 {
+        let cases: [(&str, Colour, OfTime, OfTime); 8] = [
+            ("white noise", Colour::White, still, still),
+            (
+                "fast regression",
+                Colour::Regression(0.6, 0.002),
+                still,
+                still,
+            ),
+            (
+                "slow regression",
+                Colour::Regression(0.9, 0.002),
+                still,
+                still,
+            ),
+            (
+                "very slow regression",
+                Colour::Regression(0.99, 0.002),
+                still,
+                still,
+            ),
+            ("straight drift", Colour::White, still, |t| 0.02 * t),
+            ("bent drift", Colour::White, still, |t| {
+                0.01 * (2.0 * t).exp()
+            }),
+            (
+                "vibration",
+                Colour::White,
+                |t| 0.004 * (TAU * 37.0 * t).sin(),
+                still,
+            ),
+            ("hum", Colour::White, still, |t| {
+                0.003 * (TAU * 50.0 * t).sin()
+            }),
+        ];
+        for (what, colour, motion, drift) in cases {
+            let found = diagnosed(&colour, seed, motion, drift);
+            assert!(
+                !names(&found).contains(&"flicker_noise"),
+                "{what}, seed {seed}: {:?}",
+                found.findings
+            );
+        }
+    }
+}
