@@ -53,6 +53,7 @@ pub(crate) fn contender(
         tried.push(one);
         let mut cause = Accepted::new(best.candidate.clone());
         exact::tuned(system, &fit.shapes, &mut cause, best.gain);
+        system.extend();
         let beside = Beside::new(&system.total, &fit.shapes);
         let own = Scored {
             gain: beside.gain(&cause.candidate.shapes).0,

@@ -23,9 +23,11 @@ const STEPS: usize = 8;
 /// Small changes that one step may go.
 const REACH: f64 = 12.0;
 /// Share of its standard error by which a number may still move when its fit ends.
-const AT_REST: f64 = 0.05;
-/// Detection SNR of a remainder from which on a recording is looked at anew: below, nothing can be named for it.
-const SEEN: f64 = 1.0;
+const AT_REST: f64 = 0.2;
+/// Detection SNR of a remainder from which on a recording is looked at anew before anything else can be named for it.
+pub(crate) const NAMED: f64 = 3.0;
+/// The same once the search is at its end.
+pub(crate) const SEEN: f64 = 1.0;
 /// The same once it was looked at anew: below, estimates are right to a part of their errors.
 const SETTLED: f64 = 0.3;
 /// Looks at a recording until what is known of it has come to rest.
@@ -44,19 +46,19 @@ pub(crate) fn tuned(system: &mut System, fit: &[Shape], cause: &mut Accepted, ga
     let mut inner = exact.inner.clone();
     let mut errors = None;
     let mark = system.samples.library.atoms.len();
-    for _ in 0..STEPS {
+    for step in 0..STEPS {
         let library = &mut system.samples.library;
         let own = (exact.make)(&inner, library);
         let mut beside_them = vec![];
-        for (j, step) in exact.steps.iter().enumerate() {
+        for (j, small) in exact.steps.iter().enumerate() {
             let moved = |by: f64| {
                 let mut moved = inner.clone();
                 moved[j] += by;
                 moved
             };
-            let plus = (exact.make)(&moved(*step), library);
-            let minus = (exact.make)(&moved(-step), library);
-            beside_them.push((plus, minus, *step));
+            let plus = (exact.make)(&moved(*small), library);
+            let minus = (exact.make)(&moved(-small), library);
+            beside_them.push((plus, minus, *small));
         }
         let all: Vec<Shape> = beside_them
             .iter()
@@ -72,11 +74,11 @@ pub(crate) fn tuned(system: &mut System, fit: &[Shape], cause: &mut Accepted, ga
         let beside = Beside::new(&whole, &among(fit));
         let mut shapes = among(&own);
         let x = beside.solve(&shapes).x;
-        for (plus, minus, step) in &beside_them {
+        for (plus, minus, small) in &beside_them {
             let mut slope = Shape::default();
             let pairs = among(plus).into_iter().zip(among(minus)).zip(&x);
             for ((plus, minus), x) in pairs {
-                let by = x / (2.0 * step);
+                let by = x / (2.0 * small);
                 slope = slope.plus(&plus.scaled(by)).plus(&minus.scaled(-by));
             }
             shapes.push(slope);
@@ -109,13 +111,19 @@ pub(crate) fn tuned(system: &mut System, fit: &[Shape], cause: &mut Accepted, ga
         if moves.iter().any(|m| !m.0.is_finite()) {
             break;
         }
-        for (value, (by, _)) in inner.iter_mut().zip(&moves) {
-            *value += by;
-        }
         if !exact.steps.is_empty() {
             errors = Some(moves.iter().map(|m| m.1).collect());
         }
-        if moves.iter().all(|(by, error)| by.abs() < AT_REST * error) {
+        let rests = moves.iter().all(|(by, error)| by.abs() < AT_REST * error);
+        if rests && step == 0 {
+            // Its shapes are good as they are.
+            cause.inner_error = errors.or(cause.inner_error.take());
+            return;
+        }
+        for (value, (by, _)) in inner.iter_mut().zip(&moves) {
+            *value += by;
+        }
+        if rests {
             break;
         }
     }
@@ -147,20 +155,29 @@ fn product(system: &System, a: &[Vec<f64>; 2], b: &[Vec<f64>; 2]) -> f64 {
     sum.sqrt() / system.noise()
 }
 
-/// Whether tangents do for causes of these amounts: the difference to where they were made leaves nothing that is seen.
-pub(crate) fn tangents_do(system: &System, fit: &Fit, accepted: &[Accepted]) -> bool {
-    let (mut middle, mut moved) = (vec![], vec![]);
+/// Whether tangents do for causes of these amounts: the difference to where they were made leaves nothing that is seen,
+/// and for causes that are not known yet nothing of a detection SNR of `least`.
+pub(crate) fn tangents_do(system: &System, fit: &Fit, accepted: &[Accepted], least: f64) -> bool {
+    let (mut middle, mut moved, mut moved_known) = (vec![], vec![], vec![]);
     for one in accepted {
+        let known = one.x.iter().any(|x| *x != 0.0);
         let x = &fit.solution.x[one.range()];
         for ((shape, x), x0) in one.candidate.shapes.iter().zip(x).zip(&one.x) {
             // ½ x² less what the tangent at x₀ has of it: (x − x₀) times the middle of both.
             middle.extend(shape.scaled(0.5 * (x + x0)).0);
-            moved.extend(shape.scaled(x - x0).0);
+            let by = shape.scaled(x - x0).0;
+            if known {
+                moved_known.extend(by);
+            } else {
+                moved.extend(by);
+            }
         }
     }
-    let (middle, moved) = (effect(system, &middle), effect(system, &moved));
-    let known = accepted.iter().flat_map(|a| &a.x).any(|x| *x != 0.0);
-    product(system, &middle, &moved) < if known { SETTLED } else { SEEN }
+    let middle = effect(system, &middle);
+    let seen = |moved: &[(usize, f64)], least: f64| {
+        !moved.is_empty() && product(system, &middle, &effect(system, moved)) > least
+    };
+    !seen(&moved, least) && !seen(&moved_known, SETTLED)
 }
 
 /// What is known of a recording: the ellipse, and causes with their amounts.

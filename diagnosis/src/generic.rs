@@ -10,7 +10,7 @@ use crate::block::Block;
 use crate::cause::{Candidate, Domain};
 use crate::causes::{line_wave, speed_varies};
 use crate::context::Context;
-use crate::library::{Library, Row, Shape, Use};
+use crate::library::{Group, Library, Row, Shape, Use};
 
 /// Knots over the recording of an amount that may change with time: for a line, as many lines around it in the spectrum.
 const TIMES: usize = 12;
@@ -60,6 +60,13 @@ fn in_time_and_speed(context: &Context) -> Modulation {
     })
 }
 
+/// What shapes take from a group.
+struct Taken {
+    group: Group,
+    /// Which shape, whether along the circle, the function, its share.
+    members: Vec<(usize, bool, usize, f64)>,
+}
+
 /// Shapes times each of `count` functions.
 fn modulated(
     shapes: &[Shape],
@@ -68,8 +75,7 @@ fn modulated(
     motion: bool,
     library: &mut Library,
 ) -> Vec<Shape> {
-    // The groups that the shapes are made of, and of what: shape, row, function, share.
-    let mut parts: Vec<(crate::library::Group, Vec<(usize, bool, usize, f64)>)> = vec![];
+    let mut parts: Vec<Taken> = vec![];
     let mut known: Vec<usize> = vec![];
     for (which, shape) in shapes.iter().enumerate() {
         for (atom, share) in &shape.0 {
@@ -77,15 +83,18 @@ fn modulated(
             let at = known.iter().position(|g| *g == atom.group);
             let at = at.unwrap_or_else(|| {
                 known.push(atom.group);
-                parts.push((library.groups[atom.group].clone(), vec![]));
+                parts.push(Taken {
+                    group: library.groups[atom.group].clone(),
+                    members: vec![],
+                });
                 known.len() - 1
             });
             let part = (which, atom.row != Row::Radial, atom.function, *share);
-            parts[at].1.push(part);
+            parts[at].members.push(part);
         }
     }
     let all = shapes.len();
-    let radial_only = |p: &(_, Vec<(usize, bool, usize, f64)>)| p.1.iter().all(|m| !m.1);
+    let radial_only = |p: &Taken| p.members.iter().all(|m| !m.1);
     let way = if motion {
         Use::Motion
     } else if parts.iter().all(radial_only) {
@@ -98,7 +107,7 @@ fn modulated(
         // The shapes themselves: along the radius, then along the circle.
         let mut plain = vec![0.0; 2 * all * n];
         let mut scratch = vec![];
-        for (group, members) in &parts {
+        for Taken { group, members } in &parts {
             scratch.clear();
             scratch.resize(group.way.values() * group.count * n, 0.0);
             group.write(block, &mut scratch);

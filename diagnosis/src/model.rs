@@ -14,6 +14,9 @@ use crate::whiten::Whitener;
 /// Share of a function's square below which it is a rounding error.
 const NOTHING: f64 = 1e-18;
 
+/// Samples that are enough to take off what is no noise, for the spectrum of the rest.
+const ENOUGH: usize = 120_000;
+
 /// What the model so far leaves of the recording.
 #[derive(Clone, Debug)]
 pub(crate) struct Residual {
@@ -98,7 +101,10 @@ impl<'a> System<'a> {
             let power = data.iter().map(|v| v * v).sum::<f64>() / data.len().max(1) as f64;
             whitener.sigma = power.sqrt().max(1e-12);
         }
+        // To see the colour of the noise, a part of a long record is enough.
+        this.samples.sparse = (context.samples() / ENOUGH).max(1);
         let plain = this.moments(&atoms);
+        let whole = std::mem::replace(&mut this.samples.sparse, 1) == 1;
         this.total = this.without_nothing(this.normal(&plain, &atoms, true), &atoms);
         let mut broad = catalogue.broad.clone();
         broad.extend(
@@ -128,7 +134,11 @@ impl<'a> System<'a> {
         }
         // White noise changes the scale of a row only.
         let white = this.samples.whiteners.iter().all(Whitener::is_white);
-        let moments = if white { plain } else { this.moments(&atoms) };
+        let moments = if white && whole {
+            plain
+        } else {
+            this.moments(&atoms)
+        };
         this.total = this.without_nothing(this.normal(&moments, &atoms, true), &atoms);
         this
     }

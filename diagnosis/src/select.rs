@@ -124,7 +124,7 @@ fn worth(system: &mut System, fit: &Fit, list: Vec<Candidate>, most: f64) -> Vec
     scored
 }
 
-/// Takes the functions of these candidates in, and drops those of all others.
+/// Keeps the functions of these candidates, and drops those of all others.
 fn take_in(system: &mut System, fixed: usize, fit: &Fit, mut list: Vec<Scored>) -> Vec<Scored> {
     let own = list.iter().flat_map(|s| &s.candidate.shapes);
     let used = atoms_of(&own.chain(&fit.shapes).cloned().collect::<Vec<_>>());
@@ -133,7 +133,6 @@ fn take_in(system: &mut System, fixed: usize, fit: &Fit, mut list: Vec<Scored>) 
     for shape in list.iter_mut().flat_map(|s| &mut s.candidate.shapes) {
         *shape = shape.mapped(&map);
     }
-    system.extend();
     list
 }
 
@@ -172,7 +171,9 @@ pub(crate) fn begin(
     };
     // Functions that were made for the known causes and that no shape uses.
     keep_used(system, catalogue.atoms, &mut found);
-    if !found.accepted.is_empty() && !exact::tangents_do(system, &found.fit, &found.accepted) {
+    if !found.accepted.is_empty()
+        && !exact::tangents_do(system, &found.fit, &found.accepted, exact::NAMED)
+    {
         found.again = vec![exact::start(system, &found.fit, &found.accepted)];
     }
     found
@@ -242,7 +243,9 @@ pub(crate) fn select(
                     let before = found.fit;
                     found.accepted.push(*cause);
                     found.fit = system.fit(shapes);
-                    if !last && !exact::tangents_do(system, &found.fit, &found.accepted) {
+                    if !last
+                        && !exact::tangents_do(system, &found.fit, &found.accepted, exact::NAMED)
+                    {
                         found.again = starts(system, &before, &found, others);
                     }
                 }
@@ -252,6 +255,10 @@ pub(crate) fn select(
         if !found.again.is_empty() {
             return found;
         }
+    }
+    if !last && !exact::tangents_do(system, &found.fit, &found.accepted, exact::SEEN) {
+        found.again = vec![exact::start(system, &found.fit, &found.accepted)];
+        return found;
     }
     let left = leftover(system, catalogue, &found.fit, &closed);
     found.unnamed.extend(left);

@@ -33,6 +33,8 @@ pub(crate) struct Samples<'a> {
     pub(crate) whiteners: [Whitener; 3],
     /// What is taken off each atom: coefficients of the motion that follows it.
     motions: Vec<Vec<f64>>,
+    /// Of so many blocks, one is looked at.
+    pub(crate) sparse: usize,
     /// Square of each atom before the motion is taken off; 0 where there is none to take off.
     pub(crate) squares: Vec<f64>,
 }
@@ -45,6 +47,7 @@ impl<'a> Samples<'a> {
             data,
             whiteners: Default::default(),
             motions: vec![],
+            sparse: 1,
             squares: vec![],
         };
         this.take_motion_off();
@@ -59,6 +62,7 @@ impl<'a> Samples<'a> {
             data: Default::default(),
             whiteners: Default::default(),
             motions: vec![],
+            sparse: 1,
             squares: vec![],
         }
     }
@@ -161,6 +165,9 @@ impl<'a> Samples<'a> {
         for first in (0..n).step_by(half) {
             let last = (first + half).min(n);
             for start in (first..last).step_by(CHUNK) {
+                if !(start / CHUNK).is_multiple_of(self.sparse) {
+                    continue;
+                }
                 let range = start..(start + CHUNK).min(last);
                 let block = self.context.block(range, &mut shared);
                 let basis = self.basis(&block);

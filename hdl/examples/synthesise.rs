@@ -1,7 +1,8 @@
 //! Area and clock frequency of generated chips, as a table for people and one for programs.
 //!
-//!     cargo run --release -p nonius-hdl --example synthesise -- DOCS DIR…
+//!     cargo run --release -p nonius-hdl --example synthesise -- DOCS DIR… [--up5k]
 //!
+//! places on the HX8K (and with `--up5k` on the UP5K too, which takes much longer) and
 //! writes DOCS/synthesis.md and DOCS/synthesis.json for the chips in the directories that
 //! `nonius build` wrote. `scripts/synthesise` calls it for all shipped designs.
 
@@ -33,12 +34,17 @@ struct Row {
 }
 
 fn main() -> ExitCode {
-    let arguments: Vec<String> = env::args().skip(1).collect();
+    let mut arguments: Vec<String> = env::args().skip(1).collect();
+    let mut devices = vec![Device::Hx8k];
+    if arguments.iter().any(|a| a == "--up5k") {
+        arguments.retain(|a| a != "--up5k");
+        devices.push(Device::Up5k);
+    }
     let Some((docs, chips)) = arguments.split_first().filter(|(_, it)| !it.is_empty()) else {
-        eprintln!("usage: synthesise DOCS DIR…");
+        eprintln!("usage: synthesise DOCS DIR… [--up5k]");
         return ExitCode::from(2);
     };
-    match run(Path::new(docs), chips) {
+    match run(Path::new(docs), chips, &devices) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("synthesise: {error}");
@@ -47,11 +53,11 @@ fn main() -> ExitCode {
     }
 }
 
-fn run(docs: &Path, chips: &[String]) -> Result<(), Box<dyn Error>> {
+fn run(docs: &Path, chips: &[String], devices: &[Device]) -> Result<(), Box<dyn Error>> {
     let mut rows = Vec::new();
     for dir in chips {
         let chip = ChipDir::open(dir)?;
-        for device in [Device::Hx8k, Device::Up5k] {
+        for &device in devices {
             eprintln!("{} on {} …", chip.name, device.name());
             let placed = place(&chip, device, &SEEDS, &silent)?;
             for warning in &placed.warnings {

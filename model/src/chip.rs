@@ -3,7 +3,7 @@
 use crate::bits::Bits;
 use crate::design::Design;
 use crate::graph::{Graph, Node, RangeError, Recorder};
-use crate::kernel::{Coefficients, Input, Probes, State, Structure, sample};
+use crate::kernel::{Coefficients, Input, Probes, State, Structure, advance, sample};
 use crate::signal::Signal;
 use crate::spec::CalibrationMethod;
 
@@ -93,9 +93,7 @@ impl<S: Signal> Chip<S> {
     /// One sample.
     #[inline]
     pub fn step(&mut self, input: &Input<S>) -> Probes<S> {
-        let (next, probes) = sample(input, &self.state, &self.coefficients, &self.structure);
-        self.state = next;
-        probes
+        advance(input, &mut self.state, &self.coefficients, &self.structure)
     }
 }
 

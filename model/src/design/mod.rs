@@ -1,6 +1,7 @@
 //! From physical units to integers: [`Spec`] becomes [`Design`].
 
 mod budget;
+mod check;
 mod formats;
 mod poles;
 
@@ -61,7 +62,7 @@ impl Design {
     /// # Errors
     /// [`DesignError`] names the field, its value, the limit and the reason.
     pub fn new(spec: &Spec) -> Result<Self, DesignError> {
-        poles::check(spec)?;
+        check::check(spec)?;
         let tracking = Loop::new(spec)?;
         let acquisition = Acquisition::new(spec, &tracking);
         let (words, budget) = budget::choose(spec, &tracking)?;

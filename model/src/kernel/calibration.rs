@@ -84,6 +84,7 @@ pub struct Update<S: Signal> {
 
 /// The parameter accumulators after this sample, all but θ9. `whole_period`: a period of travel ends. `PLAIN` as
 /// [`Structure::is_plain`].
+#[inline(always)]
 pub fn update<S: Signal, const PLAIN: bool>(
     seen: &Seen<S>,
     fresh: S::Bool,
@@ -117,6 +118,8 @@ pub fn update<S: Signal, const PLAIN: bool>(
         return this;
     }
     let mut gradient = gradient::linear(seen, k, structure);
+    // θ1 … θ4, and θ5 where there is phase.
+    let linear = if structure.has_phase() { 5 } else { 4 };
     let method = if PLAIN {
         CalibrationMethod::Final
     } else {
@@ -126,27 +129,19 @@ pub fn update<S: Signal, const PLAIN: bool>(
         CalibrationMethod::Final => {}
         CalibrationMethod::Exact => {
             this.sensitivities = gradient::sensitivities(seen, state, k, structure);
-            for i in 0..5 {
-                if i < 4 || structure.has_phase() {
-                    gradient[i] = gradient[i] + this.sensitivities[i].error * seen.e;
-                }
+            let calibrated = gradient.iter_mut().zip(&this.sensitivities);
+            for (gradient, sensitivity) in calibrated.take(linear) {
+                *gradient = *gradient + sensitivity.error * seen.e;
             }
         }
         CalibrationMethod::SumOfSquares | CalibrationMethod::Batch => {
-            for i in 0..5 {
-                if i < 4 || structure.has_phase() {
-                    let before = this.gathered[i];
-                    let gathered = sum_of_squares::gather(
-                        gradient[i],
-                        before,
-                        fresh,
-                        whole_period,
-                        k.zero,
-                        structure,
-                    );
-                    gradient[i] = gathered.gradient.widen();
-                    this.gathered[i] = gathered.next;
-                }
+            let calibrated = gradient.iter_mut().zip(&mut this.gathered);
+            for (gradient, before) in calibrated.take(linear) {
+                let (zero, whole) = (k.zero, whole_period);
+                let gathered =
+                    sum_of_squares::gather(*gradient, *before, fresh, whole, zero, structure);
+                *gradient = gathered.gradient.widen();
+                *before = gathered.next;
             }
             seen.rho.begin(&UPDATE);
         }

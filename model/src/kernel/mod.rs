@@ -21,7 +21,7 @@ pub mod sum_of_squares;
 pub mod travel;
 
 pub use coefficients::{Coefficients, Constant};
-pub use sample::sample;
+pub use sample::{advance, sample};
 pub use state::{Input, Probes, State};
 
 use crate::format::{Format, Quantiser};

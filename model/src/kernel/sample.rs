@@ -15,29 +15,42 @@ static FLAGS: Formula = Formula {
 };
 
 /// The registers after the sample and its named internal signals.
-#[inline]
 pub fn sample<S: Signal>(
     input: &Input<S>,
     state: &State<S>,
     k: &Coefficients<S>,
     structure: &Structure,
 ) -> (State<S>, Probes<S>) {
+    let mut next = *state;
+    let probes = advance(input, &mut next, k, structure);
+    (next, probes)
+}
+
+/// The same in place: the registers go on to the next sample.
+#[inline]
+pub fn advance<S: Signal>(
+    input: &Input<S>,
+    state: &mut State<S>,
+    k: &Coefficients<S>,
+    structure: &Structure,
+) -> Probes<S> {
     // The same code twice: where the design has neither bends nor another gradient than the final form, the compiler
     // leaves them out, which makes the bit-true model faster by two thirds.
     if structure.is_plain() {
-        sample_of::<S, true>(input, state, k, structure)
+        advance_of::<S, true>(input, state, k, structure)
     } else {
-        sample_of::<S, false>(input, state, k, structure)
+        advance_of::<S, false>(input, state, k, structure)
     }
 }
 
 #[inline]
-fn sample_of<S: Signal, const PLAIN: bool>(
+fn advance_of<S: Signal, const PLAIN: bool>(
     input: &Input<S>,
-    state: &State<S>,
+    registers: &mut State<S>,
     k: &Coefficients<S>,
     structure: &Structure,
-) -> (State<S>, Probes<S>) {
+) -> Probes<S> {
+    let state = &*registers;
     let (sin_hat, cos_hat) = sine::sine(state.alpha_hat, k, structure);
     let y_c = correction::normalise(input.adc_cos, k, structure);
     let y_s = correction::normalise(input.adc_sin, k, structure);
@@ -110,41 +123,40 @@ fn sample_of<S: Signal, const PLAIN: bool>(
     } else {
         rate
     };
-    let mut next = State {
-        alpha_hat: position.alpha_hat,
-        count: position.count,
-        alpha_hat_previous: if one {
-            position.from
-        } else {
-            state.alpha_hat_previous
-        },
-        rate: if one { state.rate } else { rate },
-        error_previous: e,
-        theta_1_deviation: updated.theta[0],
-        theta_2_deviation: updated.theta[1],
-        theta_3_deviation: updated.theta[2],
-        theta_4_deviation: updated.theta[3],
-        theta_5_deviation: updated.theta[4],
-        lock_level: lock.level,
-        loop_gear: lock.gear,
-        gamma_gear: gears.gear,
-        gear_periods: gears.periods,
-        travel_origin: travel.origin,
-        travel_low: travel.low,
-        travel_high: travel.high,
-        locked: lock.locked,
-        lock_lost: lost,
-        signal_lost: weak,
-        direction,
-        disturbed: gears.disturbed,
-        ..*state
+    let next_alpha_hat_previous = if one {
+        position.from
+    } else {
+        state.alpha_hat_previous
     };
+    let next_rate = if one { state.rate } else { rate };
+    registers.alpha_hat = position.alpha_hat;
+    registers.count = position.count;
+    registers.alpha_hat_previous = next_alpha_hat_previous;
+    registers.rate = next_rate;
+    registers.error_previous = e;
+    registers.theta_1_deviation = updated.theta[0];
+    registers.theta_2_deviation = updated.theta[1];
+    registers.theta_3_deviation = updated.theta[2];
+    registers.theta_4_deviation = updated.theta[3];
+    registers.theta_5_deviation = updated.theta[4];
+    registers.lock_level = lock.level;
+    registers.loop_gear = lock.gear;
+    registers.gamma_gear = gears.gear;
+    registers.gear_periods = gears.periods;
+    registers.travel_origin = travel.origin;
+    registers.travel_low = travel.low;
+    registers.travel_high = travel.high;
+    registers.locked = lock.locked;
+    registers.lock_lost = lost;
+    registers.signal_lost = weak;
+    registers.direction = direction;
+    registers.disturbed = gears.disturbed;
     if !PLAIN {
-        remember(&mut next, &updated, completed.as_ref());
+        remember(registers, &updated, completed.as_ref());
     }
     let [theta_1, theta_2, theta_3, theta_4, theta_5] = theta;
     let whole_period = travel.whole_period;
-    let probes = Probes {
+    Probes {
         y_c,
         y_s,
         theta_1,
@@ -166,8 +178,7 @@ fn sample_of<S: Signal, const PLAIN: bool>(
         in_window,
         fresh,
         whole_period,
-    };
-    (next, probes)
+    }
 }
 
 /// The registers of the searches that not every design has.

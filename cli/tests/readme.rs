@@ -1,0 +1,53 @@
+//! The README quotes numbers that commands have measured and written to docs/: each stands there as it is quoted.
+
+use std::fs;
+use std::path::Path;
+
+/// Numbers with a point, and those of two digits and more.
+fn numbers(text: &str) -> Vec<String> {
+    let inside = |c: char| c.is_ascii_digit() || c == '.' || c == 'e' || c == '-';
+    text.split(|c: char| !inside(c))
+        .map(|word| word.trim_matches(['.', '-', 'e']))
+        .filter(|word| word.len() > 1 && word.parse::<f64>().is_ok())
+        .map(str::to_owned)
+        .collect()
+}
+
+/// Pages of docs/ that a cell links to.
+fn pages(cell: &str) -> Vec<&str> {
+    cell.split("](")
+        .skip(1)
+        .filter_map(|rest| rest.split(')').next())
+        .filter(|link| link.starts_with("docs/"))
+        .collect()
+}
+
+#[test]
+fn numbers_in_the_readme_stand_in_the_pages_behind_them() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let readme = fs::read_to_string(root.join("README.md")).expect("README.md");
+    let mut compared = 0;
+    for line in readme.lines().filter(|l| l.starts_with('|')) {
+        let cells: Vec<&str> = line.split('|').collect();
+        let [_, _, measured, by, _] = cells.as_slice() else {
+            continue;
+        };
+        let pages = pages(by);
+        if pages.is_empty() {
+            continue;
+        }
+        let text: String = pages
+            .iter()
+            .map(|page| fs::read_to_string(root.join(page)).expect("a page that is linked"))
+            .collect();
+        let known = numbers(&text);
+        for number in numbers(measured) {
+            assert!(
+                known.contains(&number),
+                "{number} is not in {pages:?}: {line}"
+            );
+            compared += 1;
+        }
+    }
+    assert!(compared > 20, "only {compared} numbers were compared");
+}

@@ -1,0 +1,237 @@
+//! Every field of a design checked for sense, before anything is derived from it.
+
+use super::DesignError;
+use crate::spec::{CalibrationMethod, Multipliers, Spec};
+
+pub(super) fn refuse<T>(
+    field: &'static str,
+    value: impl ToString,
+    limit: impl ToString,
+    reason: impl ToString,
+) -> Result<T, DesignError> {
+    let (value, limit, reason) = (value.to_string(), limit.to_string(), reason.to_string());
+    Err(DesignError::Field {
+        field,
+        value,
+        limit,
+        reason,
+    })
+}
+
+pub(super) fn between(
+    field: &'static str,
+    value: f64,
+    low: f64,
+    high: f64,
+    reason: &str,
+) -> Result<(), DesignError> {
+    if value.is_finite() && value >= low && value <= high {
+        return Ok(());
+    }
+    refuse(field, value, format!("{low} … {high}"), reason)
+}
+
+/// Checks every field for sense.
+pub(super) fn check(spec: &Spec) -> Result<(), DesignError> {
+    let word = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    let first = spec.name.chars().next().unwrap_or(' ');
+    if !first.is_ascii_alphabetic() || !spec.name.chars().all(word) || spec.name.len() > 64 {
+        return refuse(
+            "name",
+            &spec.name,
+            "letters, digits and _, a letter first",
+            "it names Verilog modules",
+        );
+    }
+    between(
+        "adc.bits",
+        spec.adc.bits.into(),
+        8.0,
+        18.0,
+        "the chip is built for ADCs of 8 to 18 bits",
+    )?;
+    between(
+        "adc.full_scale",
+        spec.adc.full_scale,
+        1e-9,
+        1e12,
+        "the ADC needs a range",
+    )?;
+    between(
+        "adc.middle",
+        spec.adc.middle,
+        -1e12,
+        1e12,
+        "the middle of the range must be a number",
+    )?;
+    between(
+        "adc.sample_rate_hz",
+        spec.adc.sample_rate_hz,
+        1e-3,
+        1e10,
+        "samples per second",
+    )?;
+    let (low, high) = (spec.adc.full_scale / 64.0, spec.adc.full_scale);
+    between(
+        "sensor.amplitude",
+        spec.sensor.amplitude,
+        low,
+        high,
+        "the signal must fit the ADC's range and use some of it",
+    )?;
+    between(
+        "sensor.amplitude_tolerance",
+        spec.sensor.amplitude_tolerance,
+        0.0,
+        0.6,
+        "calibration is bounded to what is promised here",
+    )?;
+    between(
+        "sensor.offset_max",
+        spec.sensor.offset_max,
+        0.0,
+        0.6,
+        "a larger offset moves the origin out of the ellipse",
+    )?;
+    between(
+        "sensor.phase_error_max_deg",
+        spec.sensor.phase_error_max_deg,
+        0.0,
+        45.0,
+        "beyond that the two channels are nearly one",
+    )?;
+    between(
+        "sensor.noise_rms",
+        spec.sensor.noise_rms,
+        0.0,
+        0.25,
+        "no loop locks on more noise",
+    )?;
+    between(
+        "accuracy.rms_periods",
+        spec.accuracy.rms_periods,
+        1e-9,
+        0.1,
+        "accuracy in scale periods",
+    )?;
+    between(
+        "accuracy.arithmetic_share",
+        spec.accuracy.arithmetic_share,
+        1e-3,
+        1.0,
+        "a part of the accuracy",
+    )?;
+    between(
+        "chip.count_bits",
+        spec.chip.count_bits.into(),
+        32.0,
+        44.0,
+        "counted periods",
+    )?;
+    between(
+        "sensor.bend_max",
+        spec.sensor.bend_max,
+        0.0,
+        0.2,
+        "polynomials of third order mend no more",
+    )?;
+    calibration(spec)?;
+    between(
+        "calibration.gamma_first",
+        spec.calibration.gamma_first.into(),
+        3.0,
+        12.0,
+        "the sum of gamma over the 64 sectors of a period must stay below 8",
+    )?;
+    between(
+        "calibration.gamma_last",
+        spec.calibration.gamma_last.into(),
+        spec.calibration.gamma_first.into(),
+        18.0,
+        "the last gamma is not larger than the first",
+    )?;
+    between(
+        "calibration.gear_periods",
+        spec.calibration.gear_periods.into(),
+        1.0,
+        255.0,
+        "periods between gears",
+    )?;
+    between(
+        "calibration.restart_residual",
+        spec.calibration.restart_residual,
+        0.01,
+        1.5,
+        "residual as a fraction of the radius",
+    )?;
+    if let Multipliers::Count(0) = spec.chip.multipliers {
+        return refuse(
+            "chip.multipliers",
+            0,
+            "1, 2, … or \"all\"",
+            "products need a multiplier",
+        );
+    }
+    let top = spec.sensor.speed_max_periods_per_s / spec.adc.sample_rate_hz;
+    if !(top.is_finite() && top > 0.0 && top <= 0.2) {
+        let needed = spec.sensor.speed_max_periods_per_s * 5.0;
+        return refuse(
+            "adc.sample_rate_hz",
+            spec.adc.sample_rate_hz,
+            format!("at least {needed} Hz"),
+            "the loop needs five samples per period at top speed",
+        );
+    }
+    Ok(())
+}
+
+fn calibration(spec: &Spec) -> Result<(), DesignError> {
+    let c = &spec.calibration;
+    if !matches!(c.parameters, 0 | 4 | 5 | 8 | 9) {
+        return refuse(
+            "calibration.parameters",
+            c.parameters,
+            "0, 4, 5, 8 or 9",
+            "offsets and gains are 4, with the phase 5, with the bends of both channels 8 and 9",
+        );
+    }
+    let bends = c.parameters >= 8;
+    if bends && c.method == CalibrationMethod::Exact {
+        return refuse(
+            "calibration.method",
+            "exact",
+            "\"final\", which completes itself with one sensitivity, or 4 or 5 parameters",
+            "recursion (11) for each of 8 or 9 parameters costs 16 or 18 products a sample for what one scalar shows",
+        );
+    }
+    if bends && c.method != CalibrationMethod::Final {
+        return refuse(
+            "calibration.method",
+            "sum of squares",
+            "\"final\", or 4 or 5 parameters",
+            "the sum of squares sees the radius alone and cannot be completed: with bends it stands still beside the truth",
+        );
+    }
+    if bends && c.completion && spec.sensor.periods_per_revolution == Some(1.0) {
+        return refuse(
+            "calibration.completion",
+            true,
+            "false, or 5 parameters",
+            "where a scale period is a revolution, motion at two cycles per revolution looks like a bend and would be learnt",
+        );
+    }
+    between(
+        "calibration.forgetting",
+        c.forgetting.into(),
+        0.0,
+        4.0,
+        "longer memory than a quarter of a period makes the search swing",
+    )?;
+    between(
+        "calibration.completion_gamma",
+        c.completion_gamma.into(),
+        1.0,
+        18.0,
+        "a gamma of 2^-0 does not converge, and 2^-18 takes a million samples",
+    )
+}
