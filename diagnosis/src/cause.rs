@@ -48,13 +48,24 @@ pub(crate) struct Exact {
     pub inner: Vec<f64>,
     /// Changes of them that are small.
     pub steps: Vec<f64>,
-    /// The one inner number is the amount itself.
+    /// The one inner number is the first amount itself.
     pub follows: bool,
 }
 /// Makes parameters of an estimate.
 pub(crate) type Reads = Rc<dyn Fn(&Estimate) -> Vec<Parameter>>;
 /// Makes a sentence of parameters.
 pub(crate) type Says = Rc<dyn Fn(&[Parameter]) -> String>;
+
+/// What the amounts of a cause can be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Sign {
+    /// Anything.
+    Any,
+    /// Not negative.
+    Positive,
+    /// The first is the inner number itself, which the shapes know too, and at least this; the others are anything.
+    Known(f64),
+}
 
 /// A cause with one choice of its discrete parameters.
 #[derive(Clone)]
@@ -71,8 +82,8 @@ pub(crate) struct Candidate {
     pub id: usize,
     /// The shapes are real motion: they do not come from the sensor.
     pub motion: bool,
-    /// The amounts cannot be negative.
-    pub positive: bool,
+    /// What the amounts can be.
+    pub sign: Sign,
     /// What the chip can do.
     pub chip: Chip,
     /// How the shapes depend on numbers that are no amounts, where they do.
@@ -81,6 +92,16 @@ pub(crate) struct Candidate {
     pub parameters: Reads,
     /// The middle of the sentence: what was seen, from the parameters.
     pub evidence: Says,
+}
+
+impl Candidate {
+    /// Numbers that are no part of the cause, but of how it was when the recording began.
+    pub(crate) fn given(&self) -> usize {
+        match self.sign {
+            Sign::Known(_) => self.shapes.len() - 1,
+            Sign::Any | Sign::Positive => 0,
+        }
+    }
 }
 
 /// One parameter per shape, with the same unit.

@@ -92,35 +92,96 @@ fn bits_and_steps(channel: &str, codes: &[i64], bits: u32) -> Option<Finding> {
     ))
 }
 
+/// Samples on either side of the curve through the neighbours.
+const REACH: usize = 3;
+/// So many times the ninth decile is far off: six standard deviations of Gaussian noise, which not one sample in 10⁸ is.
+const FAR: f64 = 3.65;
+/// Ranges of values in each of which noise may have a size of its own.
+const RANGES: usize = 16;
+/// Samples on either side that tell how large the noise is just there.
+const AROUND: usize = 100;
+
+/// How far a sample is off the fifth-order curve through its three neighbours on either side: motion leaves the sixth power
+/// of its share of a period per sample.
+fn off_the_curve(values: &[f64], k: usize) -> f64 {
+    if k < REACH || k + REACH >= values.len() {
+        return 0.0;
+    }
+    let both = |j: usize| values[k - j] + values[k + j];
+    values[k] - (15.0 * both(1) - 6.0 * both(2) + both(3)) / 20.0
+}
+
+/// Whether what stands out at a sample is that sample, and no step of the signal before or after it: a code that the ADC
+/// gets wrong, or a time base that jumps. The next sample may ring.
+fn isolated(off: &[f64], k: usize) -> bool {
+    /// What one sample does to the ones around it, and what a step does.
+    const ONE: [f64; 7] = [-1.0, 6.0, -15.0, 20.0, -15.0, 6.0, -1.0];
+    const STEP: [f64; 6] = [-1.0, 5.0, -10.0, 10.0, -5.0, 1.0];
+    if off[k].abs() < off[k - 1].abs().max(off[k + 1].abs()) {
+        return false;
+    }
+    // The share of the square that a pattern holds.
+    let like = |pattern: &[f64], from: usize| {
+        let pairs = || pattern.iter().zip(off.iter().skip(from));
+        let along: f64 = pairs().map(|(p, o)| p * o).sum();
+        along * along / pattern.iter().map(|p| p * p).sum::<f64>()
+    };
+    let one = like(&ONE, k - REACH);
+    let step = like(&STEP, k - REACH).max(like(&STEP, k + 1 - REACH));
+    one > step
+}
+
+/// Lowest and highest value.
+fn ends(values: &[f64]) -> (f64, f64) {
+    let start = (f64::MAX, f64::MIN);
+    let fold = |(a, b): (f64, f64), v: &f64| (a.min(*v), b.max(*v));
+    values.iter().fold(start, fold)
+}
+
+/// Ninth decile of sizes.
+fn ninth(sizes: &[f64]) -> f64 {
+    let mut sizes = sizes.to_vec();
+    if sizes.is_empty() {
+        return f64::MIN_POSITIVE;
+    }
+    let at = sizes.len() * 9 / 10;
+    let (_, value, _) = sizes.select_nth_unstable_by(at, f64::total_cmp);
+    value.max(f64::MIN_POSITIVE)
+}
+
 /// Isolated samples far from what their neighbours say.
 fn glitches(recording: &Recording, checked: &mut Checked) {
     let n = recording.samples();
+    let rate = recording.metadata.sample_rate_hz;
     let mut found = vec![];
     for values in [&recording.cos, &recording.sin] {
-        // Off the line through the neighbours on both sides.
-        let off: Vec<f64> = (0..n)
-            .map(|k| {
-                if k < 2 || k + 2 >= n {
-                    return 0.0;
-                }
-                let near = (-values[k - 2] + 4.0 * values[k - 1] + 4.0 * values[k + 1]
-                    - values[k + 2])
-                    / 6.0;
-                values[k] - near
-            })
-            .collect();
-        let mut sizes: Vec<f64> = off.iter().map(|o| o.abs()).collect();
-        sizes.sort_unstable_by(f64::total_cmp);
-        let typical = sizes[(n as f64 * 0.9) as usize].max(f64::MIN_POSITIVE);
-        let floor = recording.metadata.adc.cos.lsb;
-        let limit = (6.0 * typical).max(6.0 * floor);
-        for k in 2..n.saturating_sub(2) {
-            let own = off[k].abs();
-            let beside = off[k - 1].abs().max(off[k + 1].abs());
+        let off: Vec<f64> = (0..n).map(|k| off_the_curve(values, k)).collect();
+        let sizes: Vec<f64> = off.iter().map(|o| o.abs()).collect();
+        let typical = ninth(&sizes);
+        let (low, high) = ends(values);
+        let range = |v: f64| (((v - low) / (high - low) * RANGES as f64) as usize).min(RANGES - 1);
+        let mut alike: Vec<Vec<f64>> = vec![vec![]; RANGES];
+        for (v, size) in values.iter().zip(&sizes) {
+            alike[range(*v)].push(*size);
+        }
+        let alike: Vec<f64> = alike.iter().map(|a| ninth(a) / typical).collect();
+        let floor = 6.0 * recording.metadata.adc.cos.lsb;
+        for k in REACH..n.saturating_sub(REACH) {
+            // Most samples need no look at their surroundings.
+            if sizes[k] <= (FAR * typical).max(floor) {
+                continue;
+            }
+            // Noise that grows with the signal, its slope or the speed is larger at some values and times than at others.
+            let near = &sizes[k.saturating_sub(AROUND)..(k + AROUND + 1).min(n)];
+            let larger = (ninth(near) / typical).max(1.0) * alike[range(values[k])].max(1.0);
+            let limit = (FAR * typical * larger).max(floor);
             // A doubled sample is late, not wrong.
             let doubled = (k - 1..=k + 1).any(|near| checked.weight[near] == 0.0);
-            if own > limit && own > 1.2 * beside && !doubled {
-                found.push((k, own));
+            // Across a gap in time there is no such curve.
+            let step = |j: usize| recording.time_s[j] - recording.time_s[j - 1];
+            let gap = (k + 1 - REACH..=k + REACH).any(|j| step(j) * rate > 1.5);
+            if sizes[k] > limit && isolated(&off, k) && !doubled && !gap {
+                found.push((k, sizes[k]));
             }
         }
     }
@@ -144,7 +205,7 @@ fn glitches(recording: &Recording, checked: &mut Checked) {
             Parameter::measured("share", share, error, "1"),
             Parameter::exact("largest", largest, "column"),
         ],
-        format!("{} isolated samples lie far off the line through their neighbours, by up to {largest:.4}; the first is sample {}", found.len(), found[0].0),
+        format!("{} isolated samples lie far off the curve through their neighbours, by up to {largest:.4}; the first is sample {}", found.len(), found[0].0),
     ));
 }
 

@@ -1,12 +1,13 @@
 //! Which of the causes that explain most is accepted: one that holds what any shape of its domain explains, and that no
 //! more than one other explains as well.
 
-use crate::cause::Domain;
+use crate::cause::{Domain, Sign};
 use crate::causes::Catalogue;
 use crate::exact;
+use crate::generic;
 use crate::library::Shape;
-use crate::model::{Fit, System};
-use crate::select::{Beside, KINDS, RIVALS, SHOWN, Scored, both};
+use crate::model::{Fit, System, atoms_of};
+use crate::select::{Beside, KINDS, RIVALS, SHOWN, Scored, both, score};
 use crate::selection::{Accepted, Unnamed};
 use crate::statistics::{after_trials, log_tail};
 
@@ -18,6 +19,8 @@ const LARGE: f64 = 45_000.0;
 const OTHERS: usize = 3;
 /// Share of the best gain from which on another cause may stand in for one that does not hold.
 const NEARLY: f64 = 0.8;
+/// Most causes that stand beside another.
+const MOST_BESIDE: usize = 3;
 /// A cause that adds less than this probability says nothing new.
 const NOTHING_NEW: f64 = 1e-3;
 
@@ -33,8 +36,9 @@ pub(crate) fn contender(
     system: &mut System,
     catalogue: &Catalogue,
     fit: &Fit,
-    scored: Vec<Scored>,
+    mut scored: Vec<Scored>,
 ) -> Contender {
+    off_the_grid(system, fit, &mut scored);
     let most = scored[0].gain;
     let large = most > LARGE;
     let (mut first, mut named): (Option<Contender>, Option<Box<Accepted>>) = (None, None);
@@ -58,8 +62,10 @@ pub(crate) fn contender(
         };
         let rest: Vec<&Scored> = scored[..i].iter().chain(&scored[i + 1..]).collect();
         let rivals = rivals(&beside, &own, &rest);
+        let mark = system.samples.library.atoms.len();
         let held = holds(system, catalogue, fit, &own, &rest);
-        if rivals.len() <= 1 && held >= HOLDS {
+        if rivals.len() <= 1 && held.share >= HOLDS {
+            system.retain(|i| i < mark);
             cause.confounded = rivals;
             match &named {
                 None => named = Some(Box::new(cause)),
@@ -71,10 +77,10 @@ pub(crate) fn contender(
             break;
         }
         let nearest = own.candidate.name.replace('_', " ");
-        let why = if held < HOLDS {
+        let why = if held.share < HOLDS {
             format!(
                 "it holds {:.0} % of what any shape there explains",
-                held * 100.0
+                held.share * 100.0
             )
         } else {
             format!("{} explain it as well", rivals.join(", ").replace('_', " "))
@@ -85,10 +91,16 @@ pub(crate) fn contender(
         );
         let unnamed = Unnamed {
             log_p: own.log_p,
+            gain: own.gain,
             signature,
         };
-        let domain = own.candidate.domain;
-        first.get_or_insert(Contender::Unnamed(unnamed, domain, own.candidate.shapes));
+        if first.is_some() {
+            system.retain(|i| i < mark);
+            continue;
+        }
+        system.extend();
+        let shapes = both(&own.candidate.shapes, &held.beyond);
+        first = Some(Contender::Unnamed(unnamed, own.candidate.domain, shapes));
     }
     match (named, first) {
         (Some(cause), _) => Contender::Named(cause, others),
@@ -97,12 +109,32 @@ pub(crate) fn contender(
         (None, None) => Contender::Unnamed(
             Unnamed {
                 log_p: 0.0,
+                gain: 0.0,
                 signature: String::new(),
             },
             Domain::Angle,
             vec![],
         ),
     }
+}
+
+/// A number that shows twice, as an amount and by the shapes, stands on a grid that is coarse for them: the best such cause
+/// is compared with the others where its number is fitted.
+fn off_the_grid(system: &mut System, fit: &Fit, scored: &mut [Scored]) {
+    let most = scored.iter().map(|s| s.gain).fold(0.0, f64::max);
+    let coarse =
+        |s: &&mut Scored| matches!(s.candidate.sign, Sign::Known(_)) && s.gain > RIVALS * most;
+    let all = scored.iter_mut().filter(coarse);
+    let Some(best) = all.max_by(|a, b| a.gain.total_cmp(&b.gain)) else {
+        return;
+    };
+    let mut cause = Accepted::new(best.candidate.clone());
+    exact::tuned(system, &fit.shapes, &mut cause, best.gain);
+    let beside = Beside::new(&system.total, &fit.shapes);
+    if let Some(fitted) = score(&beside, cause.candidate) {
+        *best = fitted;
+    }
+    scored.sort_by(|a, b| a.log_p.total_cmp(&b.log_p));
 }
 
 /// Causes of other names to which the best adds nothing, and that need no more parameters.
@@ -114,7 +146,9 @@ fn rivals(beside: &Beside, best: &Scored, others: &[&Scored]) -> Vec<String> {
             continue;
         }
         // Far behind, or bought with more parameters: no rival.
-        if other.gain < RIVALS * best.gain || other.freedom > best.freedom + 1 {
+        if other.gain < RIVALS * best.gain
+            || other.freedom > best.freedom + 1 + other.candidate.given()
+        {
             continue;
         }
         let together = both(&other.candidate.shapes, &best.candidate.shapes);
@@ -127,26 +161,65 @@ fn rivals(beside: &Beside, best: &Scored, others: &[&Scored]) -> Vec<String> {
     names
 }
 
-/// Share of what a generic basis of the domain explains that named shapes hold: the best one, and others of the catalogue
-/// that stand beside it.
+/// How far a name holds, and the generic shapes that tell.
+struct Held {
+    share: f64,
+    beyond: Vec<Shape>,
+}
+
+/// Share of what generic bases explain that named shapes hold: the best one, and others of the catalogue that stand beside
+/// it. One basis is that of the domain, the other is made around the best itself.
 fn holds(
-    system: &System,
+    system: &mut System,
     catalogue: &Catalogue,
     fit: &Fit,
     best: &Scored,
     others: &[&Scored],
-) -> f64 {
+) -> Held {
     let basis = catalogue.basis(best.candidate.domain);
-    if basis.is_empty() {
-        return 1.0;
-    }
     let mut named = both(&fit.shapes, &best.candidate.shapes);
-    let mut held = best.gain;
-    let mut beside = Beside::new(&system.total, &named);
-    for _ in 0..3 {
+    let same = |o: &Scored| o.candidate.domain == best.candidate.domain;
+    let beside_it = if basis.is_empty() {
+        0.0
+    } else {
+        stand_beside(system, &mut named, others, same)
+    };
+    let beyond = Beside::new(&system.total, &named).gain(basis);
+    let share = share(best.gain + beside_it, beyond);
+    if share < HOLDS {
+        return Held {
+            share,
+            beyond: basis.to_vec(),
+        };
+    }
+    // Other causes may be there too, and no name answers for them.
+    stand_beside(system, &mut named, others, |o| !same(o));
+    let around = generic::around(system.context, &best.candidate, &mut system.samples.library);
+    let atoms = atoms_of(&both(&named, &around));
+    let whole = system.among(&atoms);
+    let among =
+        |shapes: &[Shape]| -> Vec<Shape> { shapes.iter().map(|s| s.among(&atoms)).collect() };
+    let beside = Beside::new(&whole, &among(&named));
+    let own = self::share(best.gain, beside.gain(&among(&around)));
+    Held {
+        share: share.min(own),
+        beyond: around,
+    }
+}
+
+/// Adds causes that stand beside the named ones; what they explain.
+fn stand_beside(
+    system: &System,
+    named: &mut Vec<Shape>,
+    others: &[&Scored],
+    wanted: impl Fn(&Scored) -> bool,
+) -> f64 {
+    let mut all = 0.0;
+    for _ in 0..MOST_BESIDE {
+        let beside = Beside::new(&system.total, named);
         let next = others
             .iter()
-            .filter(|o| o.candidate.domain == best.candidate.domain)
+            .filter(|o| wanted(o))
             .filter_map(|o| {
                 let (gain, freedom) = beside.gain(&o.candidate.shapes);
                 let log_p = after_trials(log_tail(2.0 * gain, freedom), o.candidate.trials * KINDS);
@@ -155,10 +228,13 @@ fn holds(
             .min_by(|a, b| a.0.total_cmp(&b.0));
         let Some((_, gain, other)) = next else { break };
         named.extend(other.candidate.shapes.iter().cloned());
-        held += gain;
-        beside = Beside::new(&system.total, &named);
+        all += gain;
     }
-    let (beyond, freedom) = beside.gain(basis);
+    all
+}
+
+/// What is held of it and of what is beyond.
+fn share(held: f64, (beyond, freedom): (f64, usize)) -> f64 {
     // What as many free numbers explain of noise alone does not count against it.
     let spread = (2.0 * freedom as f64).sqrt();
     let beyond = (beyond - freedom as f64 / 2.0 - 2.0 * spread).max(0.0);

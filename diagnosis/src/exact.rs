@@ -86,10 +86,21 @@ pub(crate) fn tuned(system: &mut System, fit: &[Shape], cause: &mut Accepted, ga
         let solution = beside.solve(&shapes);
         system.retain(|i| i < mark);
         let error = |i: usize| solution.covariance[(i, i)].max(0.0).sqrt();
-        let moves: Vec<(f64, f64)> = if exact.follows {
+        let first = own.len();
+        let moves: Vec<(f64, f64)> = if exact.follows && exact.steps.is_empty() {
             vec![(x[0] - inner[0], error(0))]
+        } else if exact.follows {
+            // The number is known twice, as an amount and by the shapes.
+            let known = [
+                (x[0] - inner[0], error(0)),
+                (solution.x[first], error(first)),
+            ];
+            let weight = |e: f64| e.powi(-2).min(1e30);
+            let total: f64 = known.iter().map(|k| weight(k.1)).sum();
+            let by = known.iter().map(|k| k.0 * weight(k.1)).sum::<f64>() / total;
+            let most = 0.5 * inner[0];
+            vec![(by.clamp(-most, most), total.sqrt().recip())]
         } else {
-            let first = own.len();
             (0..inner.len())
                 .map(|j| {
                     let most = REACH * exact.steps[j];
@@ -100,7 +111,7 @@ pub(crate) fn tuned(system: &mut System, fit: &[Shape], cause: &mut Accepted, ga
         if moves.iter().any(|m| !m.0.is_finite()) {
             break;
         }
-        if !exact.follows {
+        if !exact.steps.is_empty() {
             errors = Some(moves.iter().map(|m| m.1).collect());
         }
         let rests = moves.iter().all(|(by, error)| by.abs() < AT_REST * error);
@@ -182,7 +193,12 @@ pub(crate) fn start(system: &System, fit: &Fit, accepted: &[Accepted]) -> Start 
     for one in &mut carried {
         one.x = fit.solution.x[one.range()].to_vec();
         let amount = one.x.first().copied();
-        if let Some(exact) = one.candidate.exact.as_mut().filter(|e| e.follows) {
+        if let Some(exact) = one
+            .candidate
+            .exact
+            .as_mut()
+            .filter(|e| e.follows && e.steps.is_empty())
+        {
             exact.inner = amount.into_iter().collect();
         }
     }

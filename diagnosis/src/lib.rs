@@ -17,6 +17,7 @@ mod diagnose;
 mod exact;
 mod finding;
 mod flicker;
+mod generic;
 mod knots;
 mod library;
 mod lines;

@@ -34,6 +34,18 @@ pub(crate) enum Use {
     Motion,
     /// Changes of the corrected cosine, then as many of the sine: rotated to the radius and to the circle.
     Pairs,
+    /// Changes along the radius, then as many along the circle.
+    Rows,
+}
+
+impl Use {
+    /// Values that one function has at a sample.
+    pub(crate) fn values(self) -> usize {
+        match self {
+            Self::Pairs | Self::Rows => 2,
+            Self::Radial | Self::Both | Self::Motion => 1,
+        }
+    }
 }
 
 /// Functions that are made together.
@@ -44,6 +56,28 @@ pub(crate) struct Group {
     /// How they are used.
     pub way: Use,
     pub(crate) fill: Fill,
+}
+
+impl Group {
+    /// Writes its functions as they stand in the rows.
+    pub(crate) fn write(&self, block: &Block, out: &mut [f64]) {
+        (self.fill)(block, out);
+        if self.way == Use::Pairs {
+            rotate(block, out, self.count);
+        }
+    }
+}
+
+/// Changes of cosine and sine → along the radius and along the circle.
+fn rotate(block: &Block, values: &mut [f64], count: usize) {
+    let n = block.len();
+    let (c, s) = values.split_at_mut(count * n);
+    for (c, s) in c.chunks_mut(n).zip(s.chunks_mut(n)) {
+        for k in 0..n {
+            let (cos, sin) = (block.cos[k], block.sin[k]);
+            (c[k], s[k]) = (c[k] * cos + s[k] * sin, s[k] * cos - c[k] * sin);
+        }
+    }
 }
 
 /// One function in one row.
@@ -86,7 +120,7 @@ impl Library {
         let (radial, tangential) = match way {
             Use::Radial => (true, None),
             Use::Motion => (false, Some(fast)),
-            Use::Both | Use::Pairs => (true, Some(Row::Tangential)),
+            Use::Both | Use::Pairs | Use::Rows => (true, Some(Row::Tangential)),
         };
         self.groups.push(Group { count, way, fill });
         let mut enter = |row: Row| {

@@ -1,6 +1,6 @@
 //! Which causes are in a recording: the one that explains most first, rivals named, unknown shapes left unnamed.
 
-use crate::cause::{Candidate, Domain};
+use crate::cause::{Candidate, Domain, Sign};
 use crate::causes::{self, Catalogue};
 use crate::contender::{Contender, contender, lives};
 use crate::context::Context;
@@ -17,6 +17,10 @@ pub(crate) const SHOWN: f64 = 3e-4;
 pub(crate) const KINDS: f64 = 22.0;
 /// Most causes of one recording.
 const MOST: usize = 8;
+/// So many times the number on its grid, an amount that is that number may be.
+const GRID: f64 = 3.0;
+/// Share of what could not be named that a cause has to explain beside it to be named.
+const BEYOND_UNKNOWN: f64 = 0.5;
 /// Share of the best gain below which another cause is no rival.
 pub(crate) const RIVALS: f64 = 0.6;
 
@@ -58,19 +62,34 @@ pub(crate) fn both(a: &[Shape], b: &[Shape]) -> Vec<Shape> {
     a.iter().chain(b).cloned().collect()
 }
 
-fn score(beside: &Beside, candidate: Candidate) -> Option<Scored> {
+/// Whether a cause can have these amounts.
+fn possible(candidate: &Candidate, solution: &Solution) -> bool {
+    let error = |i: usize| solution.covariance[(i, i)].sqrt();
+    let own = &solution.x;
+    match candidate.sign {
+        Sign::Any => true,
+        Sign::Positive => {
+            let most = own.iter().copied().fold(f64::MIN, f64::max);
+            let below_zero = |(i, x): (usize, &f64)| *x < -4.0 * error(i);
+            most > 0.0 && !own.iter().enumerate().any(below_zero)
+        }
+        Sign::Known(least) => {
+            let inner = candidate.exact.as_ref().and_then(|e| e.inner.first());
+            inner.is_none_or(|f| {
+                let near = own[0] > least && own[0] < f * GRID;
+                near || (own[0] - own[0].clamp(least, *f)).abs() < 4.0 * error(0)
+            })
+        }
+    }
+}
+
+pub(crate) fn score(beside: &Beside, candidate: Candidate) -> Option<Scored> {
     let solution = beside.solve(&candidate.shapes);
     let (gain, freedom) = (solution.gain(), solution.rank);
     if freedom == 0 || !gain.is_finite() {
         return None;
     }
-    let own = &solution.x;
-    let below_zero = |(i, x): (usize, &f64)| {
-        let error = solution.covariance[(i, i)].sqrt();
-        *x < -4.0 * error
-    };
-    let most = own.iter().copied().fold(f64::MIN, f64::max);
-    if candidate.positive && (most <= 0.0 || own.iter().enumerate().any(below_zero)) {
+    if !possible(&candidate, &solution) {
         return None;
     }
     let log_p = after_trials(log_tail(2.0 * gain, freedom), candidate.trials * KINDS);
@@ -198,7 +217,15 @@ pub(crate) fn select(
         if scored.is_empty() || scored[0].log_p > SHOWN.ln() {
             break;
         }
+        // What is left of an unknown shape can look like anything.
+        let unknown = found.unnamed.iter().map(|u| u.gain).fold(0.0, f64::max);
+        let most = scored.iter().map(|s| s.gain).fold(0.0, f64::max);
+        if most < BEYOND_UNKNOWN * unknown {
+            break;
+        }
         match contender(system, catalogue, &found.fit, scored) {
+            // Real motion that is no line is the axis at work, and no error.
+            Contender::Unnamed(_, Domain::Motion, _) => closed.push(Domain::Motion),
             Contender::Unnamed(unnamed, domain, shapes) => {
                 found.unnamed.push(unnamed);
                 closed.push(domain);
@@ -279,6 +306,7 @@ fn leftover(system: &System, catalogue: &Catalogue, fit: &Fit, closed: &[Domain]
         let log_p = after_trials(log_tail(2.0 * gain, freedom), 40.0);
         (log_p < SHOWN.ln()).then(|| Unnamed {
             log_p,
+            gain,
             signature: format!("{}; it looks like no cause of the catalogue", lives(domain)),
         })
     };

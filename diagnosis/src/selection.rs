@@ -46,6 +46,8 @@ impl Accepted {
 #[derive(Clone, Debug)]
 pub(crate) struct Unnamed {
     pub(crate) log_p: f64,
+    /// Gain in log-likelihood of the shape that is nearest to it.
+    pub(crate) gain: f64,
     pub(crate) signature: String,
 }
 

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use crate::block::{Block, Shared};
 use crate::context::Context;
-use crate::library::{Library, ROWS, Row, Use};
+use crate::library::{Library, ROWS, Row};
 use crate::part::{CHUNK, Part, STRIDE};
 use crate::solve::dot;
 use crate::spline::{Basis, Spline};
@@ -174,18 +174,14 @@ impl<'a> Samples<'a> {
                 for (group, members) in &groups {
                     let group = &self.library.groups[*group];
                     let (len, count) = (block.len(), group.count);
-                    let rows = if group.way == Use::Pairs { 2 } else { 1 };
-                    let need = rows * count * len;
+                    let need = group.way.values() * count * len;
                     if scratch.len() < need {
                         scratch.resize(need, 0.0);
                     }
-                    (group.fill)(&block, &mut scratch[..need]);
-                    if group.way == Use::Pairs {
-                        rotate(&block, &mut scratch[..need], count);
-                    }
+                    group.write(&block, &mut scratch[..need]);
                     for i in members {
                         let atom = self.library.atoms[atoms[*i]];
-                        let along = group.way == Use::Pairs && atom.row != Row::Radial;
+                        let along = group.way.values() > 1 && atom.row != Row::Radial;
                         let at = (if along { count } else { 0 } + atom.function) * len;
                         visit(&block, basis.as_ref(), *i, &scratch[at..at + len]);
                     }
@@ -332,17 +328,5 @@ impl<'a> Samples<'a> {
                 .for_each(|(s, v)| *s += own[i].1 * v);
         });
         sum
-    }
-}
-
-/// Changes of cosine and sine → along the radius and along the circle.
-fn rotate(block: &Block, values: &mut [f64], count: usize) {
-    let n = block.len();
-    let (c, s) = values.split_at_mut(count * n);
-    for (c, s) in c.chunks_mut(n).zip(s.chunks_mut(n)) {
-        for k in 0..n {
-            let (cos, sin) = (block.cos[k], block.sin[k]);
-            (c[k], s[k]) = (c[k] * cos + s[k] * sin, s[k] * cos - c[k] * sin);
-        }
     }
 }

@@ -1,13 +1,16 @@
 //! Whitening: what the noise keeps from sample to sample is predicted and taken off, from data and shapes alike.
 
-/// Order of the prediction: enough for slopes of the spectrum, too short to swallow a line.
-pub(crate) const ORDER: usize = 6;
+/// Order of the prediction: enough for a few broad resonances of an axis, too short to swallow a line.
+pub(crate) const ORDER: usize = 24;
 /// Reflections below so many of their standard errors are those of white noise.
 const WHITE: f64 = 4.5;
 /// Samples of a spectrum; several of them are averaged.
 const SEGMENT: usize = 4096;
 /// Above so many times what is near it in the spectrum, a line stands.
 const STANDS_OUT: f64 = 3.0;
+
+/// Lines of a spectrum on either side that are near: a line is narrower, a resonance of the axis wider.
+const NEAR: usize = 8;
 
 /// A linear prediction of noise from its past.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -122,7 +125,7 @@ fn averaged(values: &[f64]) -> Vec<f64> {
 
 /// What stands far out of its surroundings in a spectrum, cut down to them.
 fn without_lines(power: &[f64]) -> Vec<f64> {
-    let reach = (power.len() / 16).clamp(4, 48);
+    let reach = (power.len() / 16).clamp(4, NEAR);
     (0..power.len())
         .map(|k| {
             let near = &power[k.saturating_sub(reach)..(k + reach + 1).min(power.len())];

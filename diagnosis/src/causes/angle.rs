@@ -4,7 +4,7 @@ use std::rc::Rc;
 
 use super::{Catalogue, ORDERS};
 use crate::block::Block;
-use crate::cause::{Candidate, Domain, Exact, each, polar};
+use crate::cause::{Candidate, Domain, Exact, Sign, each, polar};
 use crate::context::Context;
 use crate::finding::{Chip, Parameter};
 use crate::library::{Library, Shape, Use};
@@ -53,7 +53,7 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
         motion: false,
         id: 0,
         exact: None,
-        positive: false,
+        sign: Sign::Any,
         // By the bends of 8 and 9 parameters, where a scale period is not a whole revolution.
         chip: if context.periods_per_revolution == Some(1) {
             Chip::CannotCorrect
@@ -88,7 +88,7 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
             motion: false,
             id: 0,
             exact: None,
-            positive: false,
+            sign: Sign::Any,
             chip: Chip::CannotCorrect,
             parameters: Rc::new(move |e| {
                 let (a_c, d_c, p_c, e_c) = polar(&e.x[..2], &e.error[..2]);
@@ -130,7 +130,7 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
                     steps: vec![0.005],
                     follows: false,
                 }),
-                positive: true,
+                sign: Sign::Positive,
                 chip: Chip::CannotCorrect,
                 parameters: Rc::new(move |e| {
                     let most = e.x.iter().copied().fold(0.0, f64::max);

@@ -4,7 +4,7 @@ use std::rc::Rc;
 
 use super::Catalogue;
 use crate::block::Block;
-use crate::cause::{Candidate, Domain};
+use crate::cause::{Candidate, Domain, Sign};
 use crate::context::Context;
 use crate::finding::{Chip, Parameter};
 use crate::library::Shape;
@@ -60,7 +60,7 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
             motion: false,
             id: 0,
             exact: None,
-            positive: false,
+            sign: Sign::Any,
             chip: Chip::CannotCorrect,
             parameters: Rc::new(move |e| {
                 vec![

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 use std::rc::Rc;
 
 use crate::block::Block;
-use crate::cause::{Candidate, Domain, Estimate, Exact, Make, polar};
+use crate::cause::{Candidate, Domain, Estimate, Exact, Make, Sign, polar};
 use crate::context::Context;
 use crate::finding::{Chip, Parameter};
 use crate::library::{Fill, Library, Place, Shape, Use};
@@ -22,7 +22,7 @@ const ROTATED: usize = 64;
 const REGULAR: f64 = 1e-3;
 
 /// cos and sin of a line.
-fn wave(hertz: f64) -> Fill {
+pub(crate) fn wave(hertz: f64) -> Fill {
     Rc::new(move |block, out| {
         let n = block.len();
         let (cos, sin) = out.split_at_mut(n);
@@ -128,7 +128,7 @@ pub(crate) fn candidates(
                 motion: false,
                 id: 0,
                 exact: exact(hertz, make),
-                positive: false,
+                sign: Sign::Any,
                 chip: Chip::CannotCorrect,
                 parameters: Rc::new(move |e| {
                     let (a_c, d_c, p_c, e_c) = polar(&e.x[..2], &e.error[..2]);
@@ -163,7 +163,7 @@ pub(crate) fn candidates(
             motion: false,
             id: 0,
             exact: exact(hertz, make),
-            positive: false,
+            sign: Sign::Any,
             chip: Chip::CannotCorrect,
             parameters: Rc::new(move |e| {
                 let (a, d, p, ep) = polar(e.x, e.error);
@@ -198,7 +198,7 @@ pub(crate) fn candidates(
             motion: true,
             id: 0,
             exact: exact(hertz, make),
-            positive: false,
+            sign: Sign::Any,
             chip: Chip::NotASensorError,
             parameters: Rc::new(move |e| {
                 let (a, d, p, ep) = polar(e.x, e.error);

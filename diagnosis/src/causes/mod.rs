@@ -18,7 +18,9 @@ use crate::library::{Library, Place, Shape, Use};
 use crate::model::Residual;
 use crate::trig::{Trig, rotated};
 
+pub(crate) use line::wave as line_wave;
 pub(crate) use place::orders as revolution_orders;
+pub(crate) use speed::varies as speed_varies;
 
 /// Highest order of the scale period.
 pub(crate) const ORDERS: usize = 8;

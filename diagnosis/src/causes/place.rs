@@ -5,7 +5,7 @@ use std::rc::Rc;
 
 use super::revolution::{harmonic, turns};
 use crate::block::Block;
-use crate::cause::{Candidate, Domain, Exact, Make, each};
+use crate::cause::{Candidate, Domain, Exact, Make, Sign, each};
 use crate::context::Context;
 use crate::finding::{Chip, Parameter};
 use crate::library::{Library, Shape, Use};
@@ -89,7 +89,7 @@ fn cogging(
             steps: vec![],
             follows: false,
         }),
-        positive: false,
+        sign: Sign::Any,
         chip: Chip::NotASensorError,
         parameters: harmonic(order, "amplitude", "rad"),
         evidence: Rc::new(move |p| {
@@ -151,7 +151,7 @@ fn contamination(phi: &[f64], residual: &Residual, library: &mut Library) -> Vec
                     steps: vec![0.02 * width, 0.02 * width],
                     follows: false,
                 }),
-                positive: true,
+                sign: Sign::Positive,
                 chip: Chip::CannotCorrect,
                 parameters: Rc::new(move |e| {
                     let mut all = each(&["depth"], "1")(e);

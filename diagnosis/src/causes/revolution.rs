@@ -5,7 +5,7 @@ use std::rc::Rc;
 
 use super::Catalogue;
 use crate::block::Block;
-use crate::cause::{Candidate, Domain, polar};
+use crate::cause::{Candidate, Domain, Sign, polar};
 use crate::context::Context;
 use crate::finding::{Chip, Parameter};
 use crate::library::{Shape, Use};
@@ -64,7 +64,7 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
             motion: false,
             id: 0,
             exact: None,
-            positive: false,
+            sign: Sign::Any,
             chip: Chip::CannotCorrect,
             parameters: harmonic(order, "depth", "1"),
             evidence: Rc::new(move |p| format!("the amplitude of both channels changes {order} time(s) per revolution, by {:.3} %", p[1].value * 100.0)),
@@ -82,7 +82,7 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
                 motion: false,
                 id: 0,
                 exact: None,
-                positive: false,
+                sign: Sign::Any,
                 chip: Chip::CannotCorrect,
                 parameters: harmonic(order, "amplitude", "rad"),
                 evidence: Rc::new(move |p| format!("against the reference the angle is off by {:.3e} rad of a scale period, {order} time(s) per revolution", p[1].value)),

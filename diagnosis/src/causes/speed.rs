@@ -7,7 +7,7 @@ use rustfft::num_complex::Complex;
 
 use super::{Catalogue, Modulated, modulated};
 use crate::block::Block;
-use crate::cause::{Candidate, Domain, Exact, each};
+use crate::cause::{Candidate, Domain, Exact, Sign, each};
 use crate::context::Context;
 use crate::finding::{Chip, Parameter};
 use crate::library::{Library, Shape, Use};
@@ -129,7 +129,7 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
                parameter: &'static [&'static str],
                unit,
                chip,
-               positive,
+               sign: Sign,
                say: fn(f64) -> String| Candidate {
         name,
         domain: Domain::Speed,
@@ -138,7 +138,7 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
         motion: false,
         id: 0,
         exact: None,
-        positive,
+        sign,
         chip,
         parameters: each(parameter, unit),
         evidence: Rc::new(move |p| say(p[0].value)),
@@ -152,7 +152,7 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
             &["delay_s"],
             "s",
             Chip::Corrects,
-            false,
+            Sign::Any,
             |d| {
                 format!(
                     "both channels are late against the reference by {:.3e} s",
@@ -168,7 +168,7 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
             &["delay_s"],
             "s",
             Chip::CannotCorrect,
-            false,
+            Sign::Any,
             |d| {
                 format!(
                     "the phase error grows with speed: sin is sampled {:.3e} s later than cos",
@@ -199,7 +199,7 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
                     name[which],
                     "s",
                     Chip::CannotCorrect,
-                    true,
+                    Sign::Positive,
                     |t| {
                         format!(
                             "phase and amplitude of one channel fall with speed as behind a low pass of {:.3e} s that the other does not have",
@@ -232,7 +232,7 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
                 &["tau_s"],
                 "s",
                 Chip::CannotCorrect,
-                true,
+                Sign::Positive,
                 |t| format!("the radius falls with the square of the speed, as behind a low pass of {:.3e} s in both channels", t),
             )
         });
@@ -262,7 +262,7 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
             evidence: Rc::new(|p| {
                 format!("a part of the other channel arrives delayed: fraction times delay {:.3e} s into cos, {:.3e} s into sin", p[0].value, p[1].value)
             }),
-            ..one("delayed_crosstalk", Shape::default(), &["product"], "s", Chip::CannotCorrect, false, |_| String::new())
+            ..one("delayed_crosstalk", Shape::default(), &["product"], "s", Chip::CannotCorrect, Sign::Any, |_| String::new())
         });
     }
     if reverses(context) {
@@ -274,7 +274,7 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
             evidence: Rc::new(|p| {
                 format!("the offsets change with the direction of motion by {:.4} % (cos) and {:.4} % (sin) of the amplitude", p[0].value * 200.0, p[1].value * 200.0)
             }),
-            ..one("hysteresis", Shape::default(), &["offset"], "amplitude", Chip::CannotCorrect, false, |_| String::new())
+            ..one("hysteresis", Shape::default(), &["offset"], "amplitude", Chip::CannotCorrect, Sign::Any, |_| String::new())
         });
     }
     ac_coupling(context, catalogue);
@@ -303,21 +303,31 @@ fn high_pass(sample_rate: f64) -> impl Fn(f64, &mut Library) -> Vec<Shape> + 'st
     move |corner, library| {
         let rate = (std::f64::consts::TAU * corner / sample_rate).clamp(0.0, 0.5);
         let states: [RefCell<(usize, f64)>; 2] = Default::default();
-        vec![library.pair(move |block: &Block, c, s| {
+        let mut shapes = vec![library.pair(move |block: &Block, c, s| {
             let [cos, sin] = [0, 1].map(|which| {
                 let mut lost = slow(block, which, rate, &states[which]);
                 lost.iter_mut().for_each(|v| *v /= corner.max(1e-300));
                 lost
             });
             block.raw(&cos, &sin, c, s);
-        })]
+        })];
+        // The charge of either capacitor when the recording begins is anything; it leaks away.
+        shapes.extend([0, 1].map(|which| {
+            library.pair(move |block: &Block, c, s| {
+                let left = |t: &f64| (-std::f64::consts::TAU * corner * t).exp();
+                let change: Vec<f64> = block.time.iter().map(left).collect();
+                block.channel(which, &change, c, s);
+            })
+        }));
+        shapes
     }
 }
 
 /// A first-order high pass takes the slow part of the signals away.
 fn ac_coupling(context: &Context, catalogue: &mut Catalogue) {
     let duration = context.samples() as f64 / context.rate;
-    let mut corner = 0.3 / duration;
+    // At the lowest corner a charge leaks away along a line, as it does at any below.
+    let (mut corner, mut least) = (0.03 / duration, 0.0);
     let corners = (context.rate / 30.0 / corner).log(3.0).floor().max(1.0);
     while corner < context.rate / 30.0 {
         let make = high_pass(context.rate);
@@ -329,11 +339,18 @@ fn ac_coupling(context: &Context, catalogue: &mut Catalogue) {
             shapes,
             motion: false,
             id: 0,
-            exact: follows(corner, make),
-            positive: true,
+            exact: follows(corner, make).map(|e| Exact {
+                steps: vec![0.01 * corner],
+                ..e
+            }),
+            sign: Sign::Known(least),
             chip: Chip::CannotCorrect,
             parameters: Rc::new(move |e| {
-                vec![Parameter::measured("corner_hz", e.x[0], e.error[0], "Hz")]
+                let (value, error) = match e.inner_error {
+                    Some(error) => (e.inner[0], error[0]),
+                    None => (e.x[0], e.error[0]),
+                };
+                vec![Parameter::measured("corner_hz", value, error, "Hz")]
             }),
             evidence: Rc::new(|p| {
                 format!(
@@ -342,6 +359,7 @@ fn ac_coupling(context: &Context, catalogue: &mut Catalogue) {
                 )
             }),
         });
+        least = corner;
         corner *= 3.0;
     }
 }

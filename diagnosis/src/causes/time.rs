@@ -3,7 +3,7 @@
 use std::rc::Rc;
 
 use super::{Catalogue, Modulated, modulated};
-use crate::cause::{Candidate, Domain};
+use crate::cause::{Candidate, Domain, Sign};
 use crate::context::Context;
 use crate::finding::{Chip, Parameter};
 use crate::library::Shape;
@@ -84,7 +84,7 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
                 motion: false,
                 id: 0,
                 exact: None,
-                positive: false,
+                sign: Sign::Any,
                 chip: Chip::Corrects,
                 parameters: Rc::new(move |e| {
                     // From one end of the recording to the other: twice the odd polynomials.
