@@ -91,7 +91,6 @@ impl Netlist {
         for id in graph.ids() {
             let node = graph.node(id);
             if matches!(node.op, Op::Input | Op::Constant(_))
-                || !w.live(id)
                 || crate::quantise::fused(w, graph, id)
             {
                 continue;

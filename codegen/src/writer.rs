@@ -20,7 +20,6 @@ pub(crate) struct Writer<'a> {
     last: Vec<usize>,
     probed: Vec<bool>,
     uses: Vec<usize>,
-    live: Vec<bool>,
     /// What is made of the held inputs alone stands from step 1 until the next sample.
     stable: Vec<bool>,
     widths: RefCell<BTreeMap<String, u32>>,
@@ -53,18 +52,9 @@ pub(crate) enum Source {
 
 impl<'a> Writer<'a> {
     pub(crate) fn new(graph: &'a Graph, schedule: &'a Schedule) -> Self {
-        let mut live = vec![false; graph.nodes.len()];
-        for (_, id) in graph.next.iter().chain(&graph.probes) {
-            live[id.index()] = true;
-        }
         let mut uses = vec![0; graph.nodes.len()];
-        for id in graph.ids().collect::<Vec<_>>().into_iter().rev() {
-            if live[id.index()] {
-                for operand in graph.node(id).op.operands() {
-                    live[operand.index()] = true;
-                    uses[operand.index()] += 1;
-                }
-            }
+        for operand in graph.ids().flat_map(|id| graph.node(id).op.operands()) {
+            uses[operand.index()] += 1;
         }
         let mut probed = vec![false; graph.nodes.len()];
         for (_, id) in &graph.probes {
@@ -97,17 +87,11 @@ impl<'a> Writer<'a> {
             last: last_use(graph, schedule),
             probed,
             uses,
-            live,
             stable,
             widths: RefCell::new(widths),
             read: RefCell::default(),
             declared: RefCell::default(),
         }
-    }
-
-    /// Whether anything comes of the value.
-    pub(crate) fn live(&self, id: NodeId) -> bool {
-        self.live[id.index()]
     }
 
     /// Whether a register keeps the value after its cycle.

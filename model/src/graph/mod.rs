@@ -5,6 +5,7 @@
 
 mod evaluate;
 mod interval;
+mod prune;
 mod recorder;
 
 pub use evaluate::{Evaluation, compute};
@@ -86,6 +87,24 @@ impl Op {
     #[must_use]
     pub fn operands(&self) -> Vec<NodeId> {
         match *self {
+            Op::Input | Op::Constant(_) => vec![],
+            Op::Neg(a) | Op::Scale(a, _) | Op::Quantise(a, _) | Op::Not(a) => vec![a],
+            Op::Lookup { address, .. } => vec![address],
+            Op::QuantiseGeared { value, gear, .. } => vec![value, gear],
+            Op::Add(a, b)
+            | Op::Sub(a, b)
+            | Op::Mul(a, b)
+            | Op::LessThan(a, b)
+            | Op::And(a, b)
+            | Op::Or(a, b)
+            | Op::Xor(a, b) => vec![a, b],
+            Op::Select(c, a, b) => vec![c, a, b],
+        }
+    }
+
+    /// The same, to be renumbered.
+    fn operands_mut(&mut self) -> Vec<&mut NodeId> {
+        match self {
             Op::Input | Op::Constant(_) => vec![],
             Op::Neg(a) | Op::Scale(a, _) | Op::Quantise(a, _) | Op::Not(a) => vec![a],
             Op::Lookup { address, .. } => vec![address],

@@ -138,7 +138,7 @@ impl Recorder {
         inner.graph.probes.push((name.into(), node));
     }
 
-    /// The finished graph.
+    /// The finished graph: what registers and probes depend on.
     ///
     /// # Errors
     /// The first value that interval analysis found not to fit.
@@ -146,7 +146,7 @@ impl Recorder {
         let inner = self.inner.into_inner();
         match inner.error {
             Some(error) => Err(error),
-            None => Ok(inner.graph),
+            None => Ok(inner.graph.pruned()),
         }
     }
 
