@@ -5,7 +5,7 @@ mod chip;
 use chip::{optical, shipped, write};
 use nonius_hdl::ChipDir;
 use nonius_hdl::verify::{Options, verify};
-use nonius_model::spec::{All, CalibrationMethod, Coding, Multipliers, Spec};
+use nonius_model::spec::{All, CalibrationMethod, CalibrationStart, Coding, Multipliers, Spec};
 
 fn agrees(spec: &Spec, rows: usize, options: &Options) {
     let dir = tempfile::tempdir().expect("scratch folder");
@@ -83,6 +83,7 @@ fn variants() -> Vec<Spec> {
             s.calibration.method = CalibrationMethod::Batch;
         }),
     ]);
+    all.extend(started());
     all.extend([8, 16, 18].map(|bits| {
         with(&|s| {
             s.adc.bits = bits;
@@ -91,6 +92,25 @@ fn variants() -> Vec<Spec> {
         })
     }));
     all
+}
+
+/// Chips that start by least squares.
+fn started() -> Vec<Spec> {
+    let with = |parameters: u32, method: CalibrationMethod, multipliers: Multipliers| {
+        let mut spec = optical();
+        spec.calibration.start = CalibrationStart::LeastSquares;
+        spec.calibration.parameters = parameters;
+        spec.calibration.method = method;
+        spec.chip.multipliers = multipliers;
+        spec
+    };
+    use CalibrationMethod::{Exact, Final};
+    vec![
+        with(5, Final, Multipliers::Count(1)),
+        with(4, Final, Multipliers::All(All::All)),
+        with(5, Exact, Multipliers::Count(2)),
+        with(9, Final, Multipliers::Count(1)),
+    ]
 }
 
 /// Nobody's linter has anything to say, without waivers: Verilator -Wall, Icarus -Wall, Yosys check.
@@ -117,6 +137,13 @@ fn every_variant_in_icarus() {
     };
     for spec in variants() {
         agrees(&spec, 250, &options);
+    }
+}
+
+#[test]
+fn starts_in_icarus_and_verilator() {
+    for spec in started() {
+        agrees(&spec, 1000, &Options::default());
     }
 }
 

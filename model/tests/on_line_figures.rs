@@ -5,7 +5,7 @@ mod chip_support;
 use std::f64::consts::TAU;
 
 use chip_support::{Bench, largest, optical, rms};
-use nonius_model::spec::{CalibrationMethod, Spec};
+use nonius_model::spec::{CalibrationMethod, CalibrationStart, Spec};
 
 /// Offsets 10 %, gain ratio 1.2, β = 5°, with these signs.
 fn sensor(signs: u32) -> impl Fn(f64) -> (f64, f64) {
@@ -67,6 +67,77 @@ fn the_chip_converges_in_five_periods() {
             println!("amplitude {amplitude}, loop {bandwidth} Hz: {left:.2?} % left");
             assert!(left[4] < 1.0, "{left:?}");
         }
+    }
+}
+
+/// What is left when the start has solved its last period, worst of all signs: percent of the first miscalibration, and
+/// the longest travel from lock to then, periods.
+fn solved(spec: &Spec, per_period: f64) -> (f64, f64) {
+    let (mut share, mut travel) = (0.0f64, 0.0f64);
+    for signs in 0..16 {
+        let signals = sensor(signs);
+        let mut bench = Bench::new(spec, u64::from(signs));
+        let before = rms(&bench.miscalibration(&signals));
+        let mut locked = 0;
+        for k in 0.. {
+            assert!(k < 40_000, "never solved");
+            bench.step(signals(TAU / per_period * f64::from(k)));
+            locked += u32::from(bench.chip.state.locked);
+            if bench.chip.state.start_periods.to_f64() >= 2.0 {
+                break;
+            }
+        }
+        let left = rms(&bench.miscalibration(&signals));
+        share = share.max(100.0 * left / before);
+        travel = travel.max(f64::from(locked) / per_period);
+    }
+    (share, travel)
+}
+
+/// The start by least squares: below 1 % within two periods, whatever the amplitude is of the ADC's range and however wide
+/// the loop, and it stays there when the gears go on.
+#[test]
+fn least_squares_converge_in_two_periods() {
+    for (method, amplitude, bandwidth, per_period) in [
+        (CalibrationMethod::Final, 0.55, 20e3, 64.37),
+        (CalibrationMethod::Final, 0.65, 20e3, 64.0),
+        (CalibrationMethod::Final, 0.8, 20e3, 64.37),
+        (CalibrationMethod::Final, 0.65, 1e3, 64.37),
+        (CalibrationMethod::Final, 0.65, 60e3, 64.37),
+        (CalibrationMethod::Final, 0.65, 20e3, 1000.1),
+        (CalibrationMethod::Exact, 0.65, 20e3, 64.37),
+    ] {
+        let mut spec = fast();
+        spec.calibration.start = CalibrationStart::LeastSquares;
+        spec.calibration.method = method;
+        spec.sensor.amplitude = amplitude;
+        spec.tracking.bandwidth_hz = bandwidth;
+        let (left, travel) = solved(&spec, per_period);
+        println!(
+            "{method:?}, amplitude {amplitude}, loop {bandwidth} Hz, {per_period} samples a period: {left:.2} % left after {travel:.2} periods"
+        );
+        assert!(left < 1.0 && travel <= 2.0, "{left} {travel}");
+        if per_period < 65.0 {
+            let course = course(&spec, 8);
+            println!("  {course:.2?} % left");
+            assert!(course[2..].iter().all(|&left| left < 1.0), "{course:?}");
+        }
+    }
+}
+
+/// Few samples a period make it no worse, nor do nine parameters, whose bends are not solved.
+#[test]
+fn least_squares_start_far_from_home() {
+    for (parameters, per_period, limit) in [(5, 30.3, 1.0), (5, 12.3, 1.0), (9, 64.37, 2.0)] {
+        let mut spec = fast();
+        spec.calibration.start = CalibrationStart::LeastSquares;
+        spec.calibration.parameters = parameters;
+        spec.sensor.speed_max_periods_per_s = 100e3;
+        let (left, travel) = solved(&spec, per_period);
+        println!(
+            "{parameters} parameters, {per_period} samples a period: {left:.2} % left after {travel:.2} periods"
+        );
+        assert!(left < limit, "{left}");
     }
 }
 
@@ -177,9 +248,11 @@ fn commensurate_speeds_calibrate() {
 /// The signal goes and comes back: the parameters are no worse than before.
 #[test]
 fn loss_of_signal_leaves_the_parameters() {
-    for parameters in [5, 9] {
+    use CalibrationStart::{Gears, LeastSquares};
+    for (parameters, start) in [(5, Gears), (9, Gears), (5, LeastSquares), (9, LeastSquares)] {
         let mut spec = optical();
         spec.calibration.parameters = parameters;
+        spec.calibration.start = start;
         let signals = sensor(6);
         let mut bench = Bench::new(&spec, 4);
         let step = 1.0 / 301.0;
@@ -205,7 +278,7 @@ fn loss_of_signal_leaves_the_parameters() {
             bench.step(signals(TAU * step * f64::from(k)));
         }
         let after = rms(&bench.miscalibration(&signals));
-        println!("{parameters} parameters: {before:.2e} -> {after:.2e} rad rms");
+        println!("{parameters} parameters, {start:?}: {before:.2e} -> {after:.2e} rad rms");
         assert!(bench.chip.state.locked);
         assert!(after < before.max(1e-3), "{before} {after}");
     }
@@ -215,7 +288,11 @@ fn loss_of_signal_leaves_the_parameters() {
 /// no parameter moves by more than three times its noise.
 #[test]
 fn vibration_moves_no_parameter() {
-    for parameters in [5, 9] {
+    for (parameters, start) in [
+        (5, CalibrationStart::Gears),
+        (9, CalibrationStart::Gears),
+        (5, CalibrationStart::LeastSquares),
+    ] {
         for (name, amplitude) in [("standstill", 0.0), ("vibration", 0.1)] {
             let mut spec = optical();
             spec.adc.sample_rate_hz = 5e3;
@@ -223,6 +300,7 @@ fn vibration_moves_no_parameter() {
             spec.tracking.bandwidth_hz = 300.0;
             spec.accuracy.rms_periods = 200e-6;
             spec.calibration.parameters = parameters;
+            spec.calibration.start = start;
             let bent = |u: f64| u + 0.01 * u * u + 0.03 * u * u * u;
             let signals = |alpha: f64| (bent(alpha.cos()), bent(alpha.sin()));
             let mut bench = Bench::new(&spec, 6);

@@ -1,7 +1,7 @@
 //! Every field of a design checked for sense, before anything is derived from it.
 
 use super::DesignError;
-use crate::spec::{CalibrationMethod, Multipliers, Spec};
+use crate::spec::{CalibrationMethod, CalibrationStart, Multipliers, Spec};
 
 pub(super) fn refuse<T>(
     field: &'static str,
@@ -368,6 +368,18 @@ fn calibration(spec: &Spec) -> Result<(), DesignError> {
             "sum of squares",
             "\"final\", or 4 or 5 parameters",
             "the sum of squares sees the radius alone and cannot be completed: with bends it stands still beside the truth",
+        );
+    }
+    let squares = matches!(
+        c.method,
+        CalibrationMethod::SumOfSquares | CalibrationMethod::Batch
+    );
+    if squares && c.start == CalibrationStart::LeastSquares {
+        return refuse(
+            "calibration.start",
+            "least_squares",
+            "\"gears\", or the method \"final\" or \"exact\"",
+            "the start is a batch of the radial residual; the sum of squares gathers another one",
         );
     }
     if bends && c.completion && spec.sensor.periods_per_revolution == Some(1.0) {
