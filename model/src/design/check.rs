@@ -331,13 +331,13 @@ pub(super) fn check(spec: &Spec) -> Result<(), DesignError> {
         }
     }
     let top = spec.sensor.speed_max_periods_per_s / spec.adc.sample_rate_hz;
-    if !(top.is_finite() && top > 0.0 && top <= 0.2) {
-        let needed = spec.sensor.speed_max_periods_per_s * 5.0;
+    if !(top.is_finite() && top > 0.0 && top <= 0.25) {
+        let needed = spec.sensor.speed_max_periods_per_s * 4.0;
         return refuse(
             "adc.sample_rate_hz",
             spec.adc.sample_rate_hz,
             format!("at least {needed} Hz"),
-            "the loop needs five samples per period at top speed",
+            "the loop needs four samples per period at top speed",
         );
     }
     Ok(())

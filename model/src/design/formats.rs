@@ -93,6 +93,7 @@ pub(super) fn structure(
     let fp = words.phase_bits;
     let start =
         spec.calibration.parameters > 0 && spec.calibration.start == CalibrationStart::LeastSquares;
+    let fast = spec.sensor.speed_max_periods_per_s > 0.2 * spec.adc.sample_rate_hz;
     let formats = Formats {
         adc: if offset_binary {
             Format::unsigned(adc_bits, adc_bits)
@@ -103,8 +104,9 @@ pub(super) fn structure(
         signal: Quantiser::saturating(Format::signed(width, f)),
         residual: Quantiser::saturating(Format::signed(f - 1, f)),
         alpha: Format::unsigned(fp, fp),
-        rate: Quantiser::saturating(Format::signed(fp - 1, fp)),
-        rate_high: Quantiser::grid(Format::signed(width, width + 1)),
+        // A quarter of a turn each way, and twice that where the design comes near it.
+        rate: Quantiser::saturating(Format::signed(if fast { fp } else { fp - 1 }, fp)),
+        rate_high: Quantiser::grid(Format::signed(width, if fast { width } else { width + 1 })),
         sine_phase: Quantiser::truncating(Format::unsigned(
             words.sine_phase_bits,
             words.sine_phase_bits,

@@ -33,9 +33,10 @@ impl Equaliser {
             };
         }
         let (offset, gain, phase) = match structure.gradient {
-            CalibrationMethod::Final
-            | CalibrationMethod::Exact
-            | CalibrationMethod::SumOfSquares => (0, 1, 3),
+            CalibrationMethod::Final | CalibrationMethod::SumOfSquares => (0, 1, 3),
+            // Behind a loop that does not follow, what turns the pair counts too: 1 for the offsets, 1/2 for the gains
+            // and 1/4 for the phase, all 1/2 with these.
+            CalibrationMethod::Exact => (-1, 0, 1),
             // The inverse of the normal equations, with [3 -1; -1 3] for the gains and 1/4 for the 64 sectors at the
             // first gamma of 1/16: a period is a step of Newton's.
             CalibrationMethod::Batch => (-1, -2, 1),
