@@ -58,7 +58,7 @@ fn variants() -> Vec<Spec> {
         with(&|s| {
             s.sensor.speed_max_periods_per_s = 250e3;
             s.tracking.filter_type = 1;
-            s.tracking.pole = Some(0.999);
+            s.tracking.pole = Some(0.9995);
         }),
         with(&|s| s.adc.coding = Coding::OffsetBinary),
         with(&|s| s.chip.multipliers = Multipliers::All(All::All)),
