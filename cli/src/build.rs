@@ -5,14 +5,11 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use nonius_model::design::Design;
-use nonius_package::{DesignJson, package_with, write};
+use nonius_package::{DesignJson, ROWS, package_with, write};
 use nonius_testvectors::stimulus;
 
 use crate::play;
 use crate::recording_args::RecordingArgs;
-
-/// Samples of each named stimulus.
-const ROWS: usize = 2000;
 
 /// What to build.
 #[derive(Args)]

@@ -38,6 +38,9 @@ pub enum PackageError {
     Waves(#[from] std::io::Error),
 }
 
+/// Samples of each named stimulus, unless asked otherwise.
+pub const ROWS: usize = 2000;
+
 /// Makes the package of a design with `rows` samples of each named stimulus.
 ///
 /// # Errors

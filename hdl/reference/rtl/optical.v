@@ -164,8 +164,8 @@ module optical (
     reg signed [28:0] alpha_hat_turned;
     reg signed [27:0] alpha_hat_next;
     reg signed [31:0] count_next;
+    reg direction_next_condition_3;
     reg direction_next_condition_2;
-    reg value_condition_4;
     reg direction_next;
     reg counting;
     reg signed [7:0] sector;
@@ -192,7 +192,7 @@ module optical (
     reg residual_large_condition;
     reg residual_large;
     reg gamma_restart;
-    reg value_condition_2;
+    reg gamma_shift_condition_4;
     reg gamma_shift_condition_2;
     reg gamma_shift;
     reg signed [1:0] gear_periods_next_chosen_2;
@@ -405,9 +405,9 @@ module optical (
 
     // Direction
     //   sign of the rate, with a dead band
-    wire direction_next_condition_2_now = $signed(speed_now[25:11]) < 15'sh7fff; // step 15
-    wire value_condition_4_now = $signed(speed_now[25:11]) < 15'sd1; // step 15
-    wire direction_next_now = direction_next_condition_2 | (direction & value_condition_4); // step 16
+    wire direction_next_condition_3_now = $signed(speed_now[25:11]) < 15'sh7fff; // step 15
+    wire direction_next_condition_2_now = $signed(speed_now[25:11]) < 15'sd1; // step 15
+    wire direction_next_now = direction_next_condition_3 | (direction & direction_next_condition_2); // step 16
     wire counting_now = locked & calibrate_held; // step 1
 
     // Travel
@@ -483,10 +483,10 @@ module optical (
     wire residual_large_now = residual_large_condition & fresh_now; // step 12
     wire period_tick = whole_period & fresh_now; // step 12
     wire gamma_restart_now = period_tick & disturbed; // step 12
-    wire value_condition_2_now = gamma_gear < 4'sd7; // step 0
+    wire gamma_shift_condition_4_now = gamma_gear < 4'sd7; // step 0
     wire gamma_shift_condition_2_now = ~($signed(gear_periods[2:1]) < 2'sd1); // step 0
     wire gamma_shift_condition = period_tick & gamma_shift_condition_2; // step 12
-    wire gamma_shift_now = gamma_shift_condition & value_condition_2; // step 12
+    wire gamma_shift_now = gamma_shift_condition & gamma_shift_condition_4; // step 12
     wire signed [1:0] gamma_gear_next_chosen_2 = gamma_shift ? 2'sd1 : 2'sd0; // s2.0, step 13
     wire signed [4:0] gamma_gear_next_sum = {gamma_gear[3], gamma_gear} + {{3{gamma_gear_next_chosen_2[1]}}, gamma_gear_next_chosen_2}; // s5.0, step 13
     wire signed [3:0] gamma_gear_next_bits = {1'b0, gamma_gear_next_sum[2:0]}; // u3.0, step 13
@@ -572,7 +572,7 @@ module optical (
             fresh_condition_3 <= fresh_condition_3_now;
             travel_low_next_chosen <= travel_low_next_chosen_now;
             travel_high_next_chosen <= travel_high_next_chosen_now;
-            value_condition_2 <= value_condition_2_now;
+            gamma_shift_condition_4 <= gamma_shift_condition_4_now;
             gamma_shift_condition_2 <= gamma_shift_condition_2_now;
             theta_2 <= theta_2_deviation;
             theta_4 <= theta_4_deviation;
@@ -664,8 +664,8 @@ module optical (
         end
         if (step == 5'd15) begin
             speed <= speed_now;
+            direction_next_condition_3 <= direction_next_condition_3_now;
             direction_next_condition_2 <= direction_next_condition_2_now;
-            value_condition_4 <= value_condition_4_now;
             step_1 <= step_1_now;
             theta_4_deviation_next <= theta_4_deviation_next_now;
         end
