@@ -43,6 +43,9 @@ fn refused(output: &Output, words: &[&str]) {
     }
 }
 
+/// A line of the shipped design.
+const LENGTH: &str = "scale_period_m = 20e-6";
+
 #[test]
 fn simulate_writes_the_contract() {
     let dir = tempfile::tempdir().expect("scratch");
@@ -94,6 +97,58 @@ fn simulate_writes_the_contract() {
             );
         }
     }
+}
+
+#[test]
+fn positions_have_the_units_that_the_design_knows() {
+    let dir = tempfile::tempdir().expect("scratch");
+    fs::write(dir.path().join("r.csv"), recording(1000, 64.0)).expect("recording");
+    let text = fs::read_to_string(design()).expect("a design");
+    let (of_length, without) = (
+        text.replace(
+            LENGTH,
+            "scale_period_m = 20e-6\nperiods_per_revolution = 2500 #",
+        ),
+        text.replace(LENGTH, "#"),
+    );
+    fs::write(dir.path().join("both.toml"), of_length).expect("a design");
+    fs::write(dir.path().join("neither.toml"), without).expect("a design");
+    let arguments = [
+        "simulate",
+        "both.toml",
+        "r.csv",
+        "-o",
+        "out.csv",
+        "--physical",
+    ];
+    assert!(nonius(dir.path(), &arguments).status.success());
+    let csv = fs::read_to_string(dir.path().join("out.csv")).expect("out.csv");
+    let header = csv.lines().next().expect("a header");
+    assert!(
+        header.ends_with("theta_5,position_m,position_rad"),
+        "{header}"
+    );
+    let last: Vec<f64> = csv
+        .lines()
+        .last()
+        .expect("rows")
+        .split(',')
+        .map(|cell| cell.parse().expect("a number"))
+        .collect();
+    assert_eq!(last[9], last[1] * 20e-6);
+    assert_eq!(last[10], last[1] * (std::f64::consts::TAU / 2500.0));
+    let arguments = [
+        "simulate",
+        "neither.toml",
+        "r.csv",
+        "-o",
+        "out.csv",
+        "--physical",
+    ];
+    refused(
+        &nonius(dir.path(), &arguments),
+        &["--physical", "scale_period_m"],
+    );
 }
 
 #[test]

@@ -24,14 +24,16 @@ fn measure(spec: &Spec) {
     let mut bits = Chip::bit_true(&design);
     let mut real = Chip::unrounded(&design);
     let mut analogue = Chip::unrounded(&design);
-    let (converge, sweep) = (60_000, 100_000);
+    // A whole period after the loop has come to rest in the slow motion.
+    let (converge, settle, sweep) = (60_000, 5_000, 475_000);
+    let slow = 1.0 / f64::from(sweep);
     let mut at: f64 = 0.1;
     let (mut arithmetic, mut adc, mut largest) = (0.0, 0.0, 0.0f64);
-    for k in 0..converge + sweep {
+    for k in 0..converge + settle + sweep {
         let measuring = k >= converge;
         // The parameters stand still while it is measured: gear decisions and updates are the same for all three.
         let calibrate = !measuring;
-        at += if measuring { 2.1e-6 } else { 0.00713 };
+        at += if measuring { slow } else { 0.00713 };
         if measuring && k == converge {
             let theta = bits.state;
             for chip in [&mut real, &mut analogue] {
@@ -59,14 +61,14 @@ fn measure(spec: &Spec) {
         real.step(&input(part(cos as f64), part(sin as f64)));
         let [v_cos, v_sin] = encoder.volts(at);
         analogue.step(&input(part(v_cos * half), part(v_sin * half)));
-        if k >= converge + 5000 {
+        if k >= converge + settle {
             let difference = wrapped(bits.position() - real.position());
             arithmetic += difference * difference;
             largest = largest.max(difference.abs());
             adc += wrapped(real.position() - analogue.position()).powi(2);
         }
     }
-    let n = f64::from(sweep - 5000);
+    let n = f64::from(sweep);
     let (arithmetic, adc) = ((arithmetic / n).sqrt(), (adc / n).sqrt());
     println!(
         "{}: arithmetic {arithmetic:.3e}, largest {largest:.3e}, ADC {adc:.3e} periods rms",

@@ -4,6 +4,7 @@ mod curves;
 mod design_json;
 mod measure;
 mod report;
+mod why;
 mod write;
 
 pub use design_json::DesignJson;

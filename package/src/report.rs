@@ -188,6 +188,10 @@ fn bars(j: &DesignJson) -> Vec<Bar> {
         ),
         ("ADC".to_owned(), j.budget.adc, "given"),
     ];
+    if j.budget.uncorrected > 0.0 {
+        let what = "errors of the sensor that are not calibrated, at worst".to_owned();
+        list.push((what, j.budget.uncorrected, "given"));
+    }
     list.extend(
         j.budget
             .terms

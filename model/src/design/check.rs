@@ -166,7 +166,7 @@ pub(super) fn check(spec: &Spec) -> Result<(), DesignError> {
     if !first.is_ascii_alphabetic() || !spec.name.chars().all(word) || spec.name.len() > 64 {
         return refuse(
             "name",
-            &spec.name,
+            format!("{:?}", spec.name),
             "letters, digits and _, a letter first",
             "it names Verilog modules",
         );
@@ -174,7 +174,7 @@ pub(super) fn check(spec: &Spec) -> Result<(), DesignError> {
     if KEYWORDS.contains(&spec.name.as_str()) || spec.name == "chip_tb" {
         return refuse(
             "name",
-            &spec.name,
+            format!("{:?}", spec.name),
             "no word of Verilog, and not chip_tb",
             "it names a Verilog module, and this is a keyword or the testbench",
         );
@@ -365,7 +365,10 @@ fn calibration(spec: &Spec) -> Result<(), DesignError> {
     if bends && c.method != CalibrationMethod::Final {
         return refuse(
             "calibration.method",
-            "sum of squares",
+            match c.method {
+                CalibrationMethod::Batch => "batch",
+                _ => "sum_of_squares",
+            },
             "\"final\", or 4 or 5 parameters",
             "the sum of squares sees the radius alone and cannot be completed: with bends it stands still beside the truth",
         );
