@@ -12,7 +12,8 @@
 //
 // A value x is computed in one step on the wire x, or on x_now where the register x keeps it for later steps and for
 // the testbench. All registers of the chip change together at the end of the last step: a sample is one transaction,
-// and samples never overlap. Outputs are those of the last sample from `valid` until the next `sample_valid`.
+// and samples never overlap. Outputs are those of the last sample from `valid` until the next `sample_valid`; before
+// the first `valid` those that are not registers of the chip are undefined.
 //
 // step | in the multiplier            | computed from it
 // -----+------------------------------+------------------------------------------------------------------------
