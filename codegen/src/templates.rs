@@ -206,7 +206,10 @@ fn ports(
             "this sample may move the parameters".into(),
         ),
         (
-            format!("output wire [{}:0] ", f.count.width + f.alpha.width - 1),
+            format!(
+                "output wire signed [{}:0] ",
+                f.count.width + f.alpha.width - 1
+            ),
             "position,".into(),
             format!(
                 "periods, s{}.{}: whole periods and alpha_hat for the next sample",

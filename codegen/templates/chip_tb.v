@@ -18,7 +18,7 @@ module chip_tb;
     reg preset = 1'b0;
     reg calibrate = 1'b0;
     wire valid;
-    wire [${ count_bits + alpha_bits - 1 }$:0] position;
+    wire signed [${ count_bits + alpha_bits - 1 }$:0] position;
 //%- for p in outputs %//
     wire ${ p.0 }$${ p.1 }$;
 //%- endfor %//

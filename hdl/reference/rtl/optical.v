@@ -83,7 +83,7 @@ module optical (
     input  wire [11:0] adc_sin, // code of the sine channel, two's complement
     input  wire preset, // this sample's period becomes number 0; clears lock_lost
     input  wire calibrate, // this sample may move the parameters
-    output wire [58:0] position, // periods, s59.27: whole periods and alpha_hat for the next sample
+    output wire signed [58:0] position, // periods, s59.27: whole periods and alpha_hat for the next sample
     output reg signed [17:0] theta_1, // θ1 as multiplied. s18.16
     output reg signed [25:0] theta_2, // θ2. s26.27
     output reg signed [17:0] theta_3, // θ3 as multiplied. s18.16

@@ -18,7 +18,7 @@ module chip_tb;
     reg preset = 1'b0;
     reg calibrate = 1'b0;
     wire valid;
-    wire [58:0] position;
+    wire signed [58:0] position;
     wire signed [17:0] theta_1;
     wire signed [25:0] theta_2;
     wire signed [17:0] theta_3;
