@@ -8,7 +8,8 @@
 // Design 7bb45a1e5939: 16 products on 1 multiplier, 19 clocks per sample.
 //
 // Formats: sW.F is a two's complement number of W bits, F of them behind the point; uW.F has no sign and is kept here
-// with a zero in front, so that every number is signed. Angles are in turns of a scale period.
+// with a zero in front, so that every number is signed. Angles are in turns of a scale period. A signal that saturates
+// reads: the bits above the result all equal its sign ? the result : the end of its range on the side of the sign.
 //
 // A value x is computed in one step on the wire x, or on x_now where the register x keeps it for later steps and for
 // the testbench. All registers of the chip change together at the end of the last step: a sample is one transaction,
@@ -410,11 +411,11 @@ module optical (
     wire speed_below_minus_direction_rate_now = $signed(speed_now[25:11]) < 15'sh7fff; // step 15
     wire speed_below_direction_rate_now = $signed(speed_now[25:11]) < 15'sd1; // step 15
     wire direction_next_now = speed_below_minus_direction_rate | (direction & speed_below_direction_rate); // step 16
-    wire counting_now = locked & calibrate_held; // step 1
 
     // Travel
     //   a sector of the period is fresh until it was used once since the last whole period
     //   (paper section 5.5: static measurements may bias the estimates)
+    wire counting_now = locked & calibrate_held; // step 1
     wire signed [1:0] periods_modulo_4_bits = count[1:0]; // s2.32, step 0
     wire signed [1:0] periods_modulo_4 = periods_modulo_4_bits; // s2.0, step 0
     wire signed [6:0] sector_bits = alpha_hat[27:21]; // u6.6, step 0

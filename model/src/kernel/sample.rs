@@ -77,7 +77,7 @@ fn advance_of<S: Signal, const PLAIN: bool>(
     let position = position::advance(rate, flip, input.preset, state, k, structure);
     let direction = position::direction(rate, state.direction, k);
 
-    let counting = state.locked.and(input.calibrate).named("counting");
+    let counting = travel::counting(input, state);
     let travel = travel::travel(counting, state, k, structure);
     let fresh = counting.and(in_window).and(travel.new_sector);
     let (rho_c, rho_s) = if !PLAIN && structure.gathers() {

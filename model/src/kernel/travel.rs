@@ -6,7 +6,7 @@
 //! arc adds nothing, standstill adds nothing, and a whole period of travel adds every sector exactly once, so the
 //! parameters are pulled equally from all sides.
 
-use super::{Coefficients, State, Structure};
+use super::{Coefficients, Input, State, Structure};
 use crate::format::{Format, Quantiser};
 use crate::signal::{Formula, Logic, Signal};
 
@@ -20,6 +20,12 @@ static TRAVEL: Formula = Formula {
     equation: "a sector of the period is fresh until it was used once since the last whole period",
     source: "paper section 5.5: static measurements may bias the estimates",
 };
+
+/// Calibration is allowed, from outside and by the lock.
+pub fn counting<S: Signal>(input: &Input<S>, state: &State<S>) -> S::Bool {
+    state.alpha_hat.begin(&TRAVEL);
+    state.locked.and(input.calibrate).named("counting")
+}
 
 /// What the travel gate decides and remembers.
 pub struct Travel<S: Signal> {
