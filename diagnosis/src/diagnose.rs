@@ -82,6 +82,8 @@ pub struct Diagnosis {
     pub context: Context,
     /// Radial and tangential residual before and after, for plots.
     pub residuals: [(Vec<f64>, Vec<f64>); 2],
+    /// What is left of real motion, where that is no part of the tangential residual, for plots.
+    pub left_motion: Option<Vec<f64>>,
     /// Sentences that go with the result.
     pub notes: Vec<String>,
 }
@@ -178,6 +180,7 @@ fn conclude(
     };
     let was = system.residual(&selection.base);
     let residuals = [(was.radial, was.tangential), (left.radial, left.tangential)];
+    let left_motion = left.motion;
     let simulation = simulation(
         exact::ellipse(&context.ellipse, &selection.base.solution.x),
         system,
@@ -210,6 +213,7 @@ fn conclude(
         periods_travelled,
         context,
         residuals,
+        left_motion,
         notes,
     }
 }

@@ -57,6 +57,17 @@ pub enum Chip {
     NotASensorError,
 }
 
+/// What a cause does at each sample, as the fit has it: for plots.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Effect {
+    /// Along the radius, in amplitudes.
+    pub radial: Vec<f32>,
+    /// Along the circle, in radians: above the motion, or against the reference.
+    pub tangential: Vec<f32>,
+    /// As real motion, radians, where that is a row of its own.
+    pub motion: Vec<f32>,
+}
+
 /// A cause shown to be in a recording.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Finding {
@@ -77,6 +88,9 @@ pub struct Finding {
     /// log-likelihood that it explains: the order of the findings.
     #[serde(skip)]
     pub weight: f64,
+    /// What it does; `None` for noise, and for what is wrong in the data themselves.
+    #[serde(skip)]
+    pub effect: Option<Effect>,
 }
 
 impl Finding {
@@ -91,6 +105,7 @@ impl Finding {
             evidence,
             chip: Chip::CannotCorrect,
             weight: f64::MAX,
+            effect: None,
         }
     }
 }

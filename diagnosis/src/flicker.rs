@@ -278,6 +278,7 @@ impl Flicker {
             ),
             chip: Chip::CannotCorrect,
             weight: self.gain,
+            effect: None,
         }
     }
 }

@@ -38,6 +38,6 @@ mod whiten;
 
 pub use context::{Context, ContextError};
 pub use diagnose::{Diagnosis, Extended, Simulation, Unexplained, diagnose};
-pub use finding::{Chip, Finding, Gain, Parameter};
+pub use finding::{Chip, Effect, Finding, Gain, Parameter};
 pub use report::report;
 pub use sensor::sensor_toml;
