@@ -50,13 +50,15 @@ const MISFIT: f64 = 15.0;
 
 /// Lines of the spectrum that are near each other.
 #[derive(Clone)]
-struct Band {
+pub(crate) struct Band {
+    /// Middle, hertz.
+    pub(crate) hertz: f64,
     /// Number of lines.
     count: f64,
     /// Mean power of a channel in a line.
-    power: f64,
+    pub(crate) power: f64,
     /// What noise of spectrum 1/f, one at a hertz, is expected to show there.
-    flicker: f64,
+    pub(crate) flicker: f64,
     octave: i64,
 }
 
@@ -191,6 +193,7 @@ fn bands(lines: &[Line]) -> Vec<Band> {
         .map(|part| {
             let count = part.len() as f64;
             Band {
+                hertz: part.iter().map(|l| l.0).sum::<f64>() / count,
                 count,
                 power: part.iter().map(|l| l.1).sum::<f64>() / count,
                 flicker: part.iter().map(|l| l.2).sum::<f64>() / count,
@@ -211,6 +214,13 @@ fn without_hum(lines: &mut [Line]) {
             line.1 = *median;
         }
     }
+}
+
+/// The spectrum of what is left of the radius in bands, without hum: for plots.
+pub(crate) fn gathered(context: &Context, radial: &[f64]) -> Vec<Band> {
+    let mut lines = spectrum(context, radial);
+    without_hum(&mut lines);
+    bands(&lines)
 }
 
 /// Flicker noise in what everything else leaves of the radius.
@@ -279,6 +289,7 @@ impl Flicker {
             chip: Chip::CannotCorrect,
             weight: self.gain,
             effect: None,
+            place: None,
         }
     }
 }

@@ -112,6 +112,7 @@ pub(crate) fn findings(context: &Context, residual: &Residual) -> Vec<Finding> {
             chip: Chip::CannotCorrect,
             weight: gain,
             effect: None,
+            place: None,
         });
     }
     list

@@ -105,6 +105,7 @@ impl Selection {
                 chip: accepted.candidate.chip,
                 weight: gain - i as f64 * 1e-9,
                 effect: Some(system.effect(&self.fit, range)),
+                place: None,
             });
         }
         list.sort_by(|a, b| b.weight.total_cmp(&a.weight));

@@ -18,7 +18,7 @@ impl Plot {
             Scale::Logarithmic => "log",
         };
         let mut out = format!(
-            r#"<figure class="plot{}" data-x="{:e} {:e} {}" data-y="{:e} {:e} {}"><figcaption>{}</figcaption><p class="key">"#,
+            r#"<figure class="plot{}" data-x="{:e} {:e} {}" data-y="{:e} {:e} {}"><div class="head"><figcaption>{}</figcaption></div><p class="key">"#,
             if self.round { " round" } else { "" },
             self.x.ends[0],
             self.x.ends[1],

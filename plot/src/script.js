@@ -93,7 +93,7 @@
     const zoom = (by) => show(inside(scaled(x.part, by)), inside(scaled(y.part, by)));
     const whole = () => show([0, 1], [0, 1]);
 
-    const tools = element("div", { class: "tools" }, figure);
+    const tools = element("div", { class: "tools" }, figure.querySelector(".head"));
     for (const [text, says, act] of [["+", "Zoom in", () => zoom(0.5)], ["−", "Zoom out", () => zoom(2)], ["whole", "Show the whole", whole]]) {
       const button = element("button", { type: "button", title: says, "aria-label": says }, tools);
       button.textContent = text;

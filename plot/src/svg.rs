@@ -79,11 +79,7 @@ impl Plot {
             let path = self.path(series, [width, height], 1);
             // A number of points to the line, for those who compare files.
             let path = path.replace('M', "\nM");
-            let _ = writeln!(
-                out,
-                r#"<path class="{}" d="{path}"/>"#,
-                series.look.class()
-            );
+            let _ = writeln!(out, r#"<path class="{}" d="{path}"/>"#, series.look.class());
         }
         out + "</g></svg>\n"
     }
