@@ -190,7 +190,11 @@ fn glitches(recording: &Recording, checked: &mut Checked) {
             let larger = (ninth(near) / typical).max(1.0) * alike[range(values[k])].max(1.0);
             let limit = (FAR * typical * larger).max(floor);
             // A doubled sample is late, not wrong.
-            let doubled = (k - 1..=k + 1).any(|near| checked.weight[near] == 0.0);
+            let same = |j: usize| {
+                recording.cos[j] == recording.cos[j - 1] && recording.sin[j] == recording.sin[j - 1]
+            };
+            let doubled =
+                (k - 1..=k + 1).any(|near| checked.weight[near] == 0.0) || same(k) || same(k + 1);
             // Across a gap in time there is no such curve.
             let step = |j: usize| recording.time_s[j] - recording.time_s[j - 1];
             let gap = (k + 1 - REACH..=k + REACH).any(|j| step(j) * rate > 1.5);

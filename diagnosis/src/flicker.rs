@@ -254,8 +254,8 @@ pub(crate) fn find(context: &Context, radial: &[f64]) -> Option<Flicker> {
     let at = |by: f64| beside(&bands, best.0 * by.exp()).1;
     let curvature = (2.0 * best.1 - at(step) - at(-step)) / (step * step);
     let (level, _) = beside(&bands, best.0);
-    // Mean square per line, over two sides, per samples per second: per hertz, one-sided.
-    let density = (2.0 * level * best.0 / context.rate).sqrt();
+    // The level is that of both channels over two sides of the spectrum: as much as that of one channel over one side.
+    let density = (level * best.0 / context.rate).sqrt();
     Some(Flicker {
         density: [density, 0.5 * density / curvature.max(1e-12).sqrt()],
         corner: best.0,

@@ -125,7 +125,7 @@ fn spectrum(finding: &Finding, found: &Diagnosis) -> Plot {
     let corner = finding.parameter("corner_hz").unwrap_or(0.0);
     let density = finding.parameter("density_at_1_hz").unwrap_or(0.0);
     // Power of a line, white: see `flicker::find`.
-    let level = density * density * context.rate / (2.0 * corner.max(f64::MIN_POSITIVE));
+    let level = density * density * context.rate / corner.max(f64::MIN_POSITIVE);
     let per_hertz = |power: f64| 100.0 * (power / context.rate).sqrt();
     let lines = flicker::gathered(context, &found.residuals[1].0);
     let measured: Vec<[f64; 2]> = lines

@@ -13,6 +13,9 @@ const DRAWN: f64 = 0.3;
 /// Marks of a plot at most.
 const MARKS: usize = 4;
 
+/// Radial and tangential residual.
+type Residuals = (Vec<f64>, Vec<f64>);
+
 /// The samples that are shown of a cloud.
 fn shown(found: &Diagnosis) -> impl Iterator<Item = usize> + '_ {
     let n = found.context.samples();
@@ -41,7 +44,7 @@ pub(super) fn figures(found: &Diagnosis) -> Vec<Plot> {
         ("Five parameters", Look::Before),
         ("Extended model", Look::After),
     ];
-    let one = |((name, look), residual): ((&str, Look), &(Vec<f64>, Vec<f64>))| Plot {
+    let one = |(name, look): (&str, Look), residual: &Residuals| Plot {
         title: format!("{name}: radial error × {times}"),
         x: Axis::linear("cos", [-1.4, 1.4]),
         y: Axis::linear("sin", [-1.4, 1.4]),
@@ -61,14 +64,18 @@ pub(super) fn figures(found: &Diagnosis) -> Vec<Plot> {
         marks: vec![],
         round: true,
     };
-    names.into_iter().zip(&found.residuals).map(one).collect()
+    names
+        .into_iter()
+        .zip(&found.residuals)
+        .map(|(name, residual)| one(name, residual))
+        .collect()
 }
 
 /// What either model leaves, against the angle and as spectra.
 pub(super) fn residuals(found: &Diagnosis) -> Vec<Plot> {
     let context = &found.context;
     let turn = |k: usize| (context.alpha[k] / std::f64::consts::TAU).rem_euclid(1.0);
-    let cloud = |title: &str, label: &str, unit: f64, of: fn(&(Vec<f64>, Vec<f64>)) -> &[f64]| {
+    let cloud = |title: &str, label: &str, unit: f64, of: fn(&Residuals) -> &[f64]| {
         let points = |model: usize| -> Vec<[f64; 2]> {
             let values = of(&found.residuals[model]);
             shown(found).map(|k| [turn(k), unit * values[k]]).collect()

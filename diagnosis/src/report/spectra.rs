@@ -114,8 +114,8 @@ impl Signal<'_> {
         let of = |value: &dyn Fn(usize) -> Complex<f64>| {
             let mut sum = vec![Complex::new(0.0, 0.0); count];
             let mut weight = vec![0.0; count];
-            for k in 0..context.samples() {
-                let place = (alpha[k] / TAU / periods as f64).rem_euclid(1.0) * count as f64;
+            for (k, alpha) in alpha.iter().enumerate() {
+                let place = (alpha / TAU / periods as f64).rem_euclid(1.0) * count as f64;
                 let place = (place as usize).min(count - 1);
                 // In the frame of the channels: an order of theirs stands at that order.
                 let frame = Complex::new(context.cos[k], context.sin[k]);
