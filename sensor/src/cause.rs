@@ -122,6 +122,12 @@ pub enum Cause {
     GainDrift { change_cos: f64, change_sin: f64 },
     /// The amplitude of both channels modulated with the revolution.
     Runout { order: f64, depth: f64, phase: f64 },
+    /// The graduation is off with the revolution: radians of the scale period.
+    GraduationError {
+        order: f64,
+        amplitude: f64,
+        phase: f64,
+    },
     /// A dip of the amplitude at one place of the revolution, radians.
     Contamination { depth: f64, place: f64, width: f64 },
     /// Noise of each channel in proportion to its signal.

@@ -136,7 +136,7 @@ impl Sensor {
         self.causes.iter().map(of).sum()
     }
 
-    /// Real motion beside the smooth one, radians.
+    /// What the scale shows beside the smooth motion, radians: other motion, or places that are off.
     fn really(&self, motion: &Motion, k: usize) -> f64 {
         self.sum(|c| match *c {
             Cause::Vibration {
@@ -145,6 +145,11 @@ impl Sensor {
                 phase,
             } => amplitude * (TAU * frequency_hz * motion.time_s[k] + phase).cos(),
             Cause::Cogging {
+                order,
+                amplitude,
+                phase,
+            }
+            | Cause::GraduationError {
                 order,
                 amplitude,
                 phase,

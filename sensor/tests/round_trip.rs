@@ -7,6 +7,39 @@ use nonius_diagnosis::{diagnose, sensor_toml};
 use nonius_sensor::{Motion, Sensor};
 use support::{PLAIN, recorded};
 
+/// Causes of the catalogue beyond the five parameters.
+const CATALOGUE: [&str; 29] = [
+    "even_nonlinearity",
+    "odd_nonlinearity",
+    "spatial_harmonic",
+    "saturation",
+    "adc_nonlinearity",
+    "stuck_bit",
+    "coarse_quantisation",
+    "channel_skew",
+    "bandwidth_mismatch",
+    "common_bandwidth",
+    "latency",
+    "ac_coupling",
+    "interference",
+    "amplitude_ripple",
+    "offset_drift",
+    "gain_drift",
+    "runout",
+    "graduation_error",
+    "contamination",
+    "glitches",
+    "dropped_samples",
+    "repeated_samples",
+    "clock_jitter",
+    "flicker_noise",
+    "amplitude_noise",
+    "hysteresis",
+    "delayed_crosstalk",
+    "vibration",
+    "cogging",
+];
+
 /// The cause alone is found, its numbers are those that were written, and so it is when what was found is simulated.
 fn round_trip(cause: &str) {
     let mut text = format!("{PLAIN}[[cause]]\n{cause}");
@@ -113,6 +146,11 @@ fn bad_files_are_refused_with_their_place() {
     refused(
         &format!("{PLAIN}[[cause]]\nname = \"gremlins\"\n"),
         &["s.toml:1", "gremlins", "spatial_harmonic"],
+    );
+    // The list of what is known names every cause that a diagnosis can find.
+    refused(
+        &format!("{PLAIN}[[cause]]\nname = \"gremlins\"\n"),
+        &CATALOGUE,
     );
     refused(
         &PLAIN.replace("a_c = 0.8", "a_c = -1.0"),
