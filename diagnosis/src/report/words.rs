@@ -58,15 +58,19 @@ pub(super) fn capital(sentence: &str) -> String {
 
 /// What the chip can do about it.
 pub(super) fn chip(finding: &Finding) -> &'static str {
+    let order = finding.parameter("order");
     match (finding.chip, finding.cause.as_str()) {
-        (Chip::Corrects, "even_nonlinearity" | "odd_nonlinearity" | "spatial_harmonic") => {
-            "The chip corrects it with nine parameters on line; design.toml switches them on."
+        (Chip::Corrects, "even_nonlinearity" | "odd_nonlinearity") => {
+            "The chip corrects it with nine parameters on line; design.toml switches them on where it can."
+        }
+        (_, "spatial_harmonic") if order == Some(2.0) || order == Some(3.0) => {
+            "The chip corrects the part of it that is a bend of the channel, with nine parameters on line; design.toml switches them on where phase and design allow it."
         }
         (Chip::Corrects, "offset_drift" | "gain_drift") => {
             "The chip corrects it: the calibration on line follows it."
         }
         (Chip::Corrects, "latency") => {
-            "The chip's position can be set ahead by a constant time; the sensor stays late."
+            "Behind the chip: add the speed times this delay to the position. The emitted design does not do so."
         }
         (Chip::Corrects, _) => "The chip corrects it.",
         (Chip::CannotCorrect, _) => "The chip cannot correct it; mend it in front of the ADC.",
