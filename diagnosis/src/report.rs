@@ -52,7 +52,9 @@ struct Section<'a> {
     title: String,
     evidence: String,
     rows: Vec<[String; 3]>,
-    gain: Gain,
+    gain: Option<Gain>,
+    without_gain: &'static str,
+    chance: String,
     confused: Vec<(String, &'static str)>,
     chip: &'static str,
     plots: Vec<String>,
@@ -156,6 +158,7 @@ fn section<'a>(
             g.held_out_residual_rms_after,
         ),
     };
+    let gain = finding.effect.is_some().then_some(gain);
     let confused = finding.confounded_with.iter();
     let plots = pictures::of(finding, found, recording);
     Section {
@@ -165,6 +168,8 @@ fn section<'a>(
         evidence: words::capital(&finding.evidence),
         rows: finding.parameters.iter().map(row).collect(),
         gain,
+        without_gain: words::without_gain(finding),
+        chance: words::chance(finding),
         confused: confused
             .map(|other| {
                 let test = words::experiment(&finding.cause, other);

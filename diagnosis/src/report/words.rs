@@ -32,7 +32,11 @@ fn home(cause: &str) -> Home {
 
 /// A name as a person writes it.
 pub(super) fn plain(cause: &str) -> String {
-    cause.replace('_', " ")
+    match cause {
+        "adc_nonlinearity" => "ADC nonlinearity".into(),
+        "ac_coupling" => "AC coupling".into(),
+        _ => cause.replace('_', " "),
+    }
 }
 
 /// The title of a finding: its name and what tells it from others of that name.
@@ -77,6 +81,23 @@ pub(super) fn chip(finding: &Finding) -> &'static str {
         (Chip::NotASensorError, _) => {
             "It is real motion, not an error of the sensor: the position shows it, and should."
         }
+    }
+}
+
+/// A probability after all trials.
+pub(super) fn chance(finding: &Finding) -> String {
+    match finding.p_value {
+        _ if finding.place.is_some() => "no: the data themselves show it".into(),
+        p if p < 1e-300 => "p below 1e-300 after all trials".into(),
+        p => format!("p = {p:.1e} after all trials"),
+    }
+}
+
+/// What takes the place of a gain where a finding leaves the residual as it is.
+pub(super) fn without_gain(finding: &Finding) -> &'static str {
+    match finding.place {
+        Some(_) => "found in the data: what is known to be wrong is not fitted",
+        None => "describes the noise, and makes it no smaller",
     }
 }
 
