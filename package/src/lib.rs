@@ -2,6 +2,7 @@
 
 mod curves;
 mod design_json;
+mod diagram;
 mod measure;
 mod report;
 mod why;
