@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
 use clap::Args;
-use nonius_model::design::Design;
+use nonius_model::design::{Design, DesignError};
 use nonius_model::spec::Spec;
 use nonius_recording::{AdcSource, Recording, Survey};
 
@@ -110,11 +110,18 @@ fn settle(draft: &mut Draft) -> Result<Design> {
             Err(_) if draft.accuracy < COARSEST => {
                 draft.accuracy = rounded_up(draft.accuracy * 1.1);
             }
+            // A name is no number, and says itself what is wrong.
+            Err(error) if names_the_name(&error) => return Err(error),
             Err(error) => {
                 return Err(error).context("no design can follow this; the number at fault is");
             }
         }
     }
+}
+
+fn names_the_name(error: &anyhow::Error) -> bool {
+    let field = error.downcast_ref::<DesignError>();
+    matches!(field, Some(DesignError::Field { field: "name", .. }))
 }
 
 fn designed(draft: &Draft) -> Result<Design> {

@@ -111,6 +111,8 @@ pub(crate) fn findings(context: &Context, residual: &Residual) -> Vec<Finding> {
             evidence: format!("{sentence}; it raises the log-likelihood by {gain:.1}"),
             chip: Chip::CannotCorrect,
             weight: gain,
+            effect: None,
+            place: None,
         });
     }
     list

@@ -198,6 +198,7 @@ fn samples(
         icarus: !verilator,
         verilator,
         time_limit: Some(Duration::from_secs(1800)),
+        stop_at_first: false,
     };
     let report = verify(dir.path(), &options, &silent)?;
     let run = report.runs.first().ok_or("no simulator ran")?;

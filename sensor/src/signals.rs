@@ -6,6 +6,8 @@ use rand::{Rng, SeedableRng, rngs::StdRng};
 use rand_distr::StandardNormal;
 
 use crate::cause::Cause;
+use crate::coupling::Coupling;
+use crate::flicker;
 use crate::motion::Motion;
 use crate::sensor::Sensor;
 
@@ -37,6 +39,18 @@ impl Sensor {
         let speed = derivative(&motion.alpha, rate);
         let acceleration = derivative(&speed, rate);
         let lags = self.lags();
+        let density = self.sum(|c| match *c {
+            Cause::FlickerNoise {
+                density_at_1_hz, ..
+            } => density_at_1_hz,
+            _ => 0.0,
+        });
+        let mut slow = || match density {
+            0.0 => vec![0.0; n],
+            _ => flicker::noise(n, rate, density, &mut random),
+        };
+        let slow = [slow(), slow()];
+        let mut coupling = Coupling::of(self);
         let (mut cos, mut sin) = (Vec::with_capacity(n), Vec::with_capacity(n));
         for k in 0..n {
             let jitter = self.sum(|c| match *c {
@@ -65,17 +79,21 @@ impl Sensor {
                     speed: speed[k],
                 };
                 y + self.sum(|c| of_one(c, which, y, &x))
+                    + self.sum(|c| self.of_other(c, which, &x))
             });
-            let mut noisy = |y: f64| {
+            let pair = coupling.passed(pair);
+            let mut noisy = |y: f64, which: usize| {
                 let more = self.sum(|c| match *c {
                     Cause::AmplitudeNoise { rms } => {
                         rms * y * random.sample::<f64, _>(StandardNormal)
                     }
                     _ => 0.0,
                 });
-                y + more + self.signals.noise_rms * random.sample::<f64, _>(StandardNormal)
+                y + more
+                    + slow[which][k]
+                    + self.signals.noise_rms * random.sample::<f64, _>(StandardNormal)
             };
-            let pair = [noisy(pair[0]), noisy(pair[1])];
+            let pair = [noisy(pair[0], 0), noisy(pair[1], 1)];
             let s = &self.signals;
             let glitch = self.sum(|c| match *c {
                 Cause::Glitches { share, largest } if random.random::<f64>() < share => largest,
@@ -84,18 +102,41 @@ impl Sensor {
             cos.push(self.converted(s.a_c * pair[0] + s.b_c + glitch, 0));
             sin.push(self.converted(s.a_s * pair[1] + s.b_s, 1));
         }
-        Samples {
+        let all = Samples {
             time_s: motion.time_s.clone(),
             cos,
             sin,
+        };
+        self.arrived(all, &mut random)
+    }
+
+    /// What a channel has of the other, in amplitudes.
+    fn of_other(&self, cause: &Cause, which: usize, at: &Moment) -> f64 {
+        let Cause::DelayedCrosstalk {
+            product_into_cos_s,
+            product_into_sin_s,
+            delay_s,
+        } = *cause
+        else {
+            return 0.0;
+        };
+        let product = [product_into_cos_s, product_into_sin_s][which];
+        let beta = self.signals.beta;
+        let other = |alpha: f64| [(alpha - beta).sin(), alpha.cos()][which];
+        let slope = [(at.alpha - beta).cos(), -at.alpha.sin()][which];
+        if delay_s == 0.0 {
+            -product * at.speed * slope
+        } else {
+            // The part that is not delayed stands in gain and phase.
+            product * (other(at.alpha - at.speed * delay_s) - other(at.alpha)) / delay_s
         }
     }
 
-    fn sum(&self, of: impl FnMut(&Cause) -> f64) -> f64 {
+    pub(crate) fn sum(&self, of: impl FnMut(&Cause) -> f64) -> f64 {
         self.causes.iter().map(of).sum()
     }
 
-    /// Real motion beside the smooth one, radians.
+    /// What the scale shows beside the smooth motion, radians: other motion, or places that are off.
     fn really(&self, motion: &Motion, k: usize) -> f64 {
         self.sum(|c| match *c {
             Cause::Vibration {
@@ -104,6 +145,11 @@ impl Sensor {
                 phase,
             } => amplitude * (TAU * frequency_hz * motion.time_s[k] + phase).cos(),
             Cause::Cogging {
+                order,
+                amplitude,
+                phase,
+            }
+            | Cause::GraduationError {
                 order,
                 amplitude,
                 phase,
@@ -134,35 +180,6 @@ impl Sensor {
             }
         }
         lags
-    }
-
-    /// Through the ADC: wrong bits, then codes, held at the ends of the range.
-    fn converted(&self, value: f64, which: usize) -> f64 {
-        let half = 2f64.powi(self.adc.bits as i32 - 1);
-        let code = ((value - self.adc.centre) / self.adc.lsb)
-            .round()
-            .clamp(-half, half - 1.0);
-        let amplitude = if which == 0 {
-            self.signals.a_c
-        } else {
-            self.signals.a_s
-        };
-        let wrong = self.sum(|c| match *c {
-            Cause::AdcNonlinearity {
-                bit,
-                step_cos,
-                step_sin,
-            } => {
-                let step = if which == 0 { step_cos } else { step_sin };
-                let set = ((code + half) as i64 >> (bit.clamp(0.0, 40.0) as u32)) & 1;
-                step * amplitude * (set as f64 - 0.5)
-            }
-            _ => 0.0,
-        });
-        let code = (code + wrong / self.adc.lsb)
-            .round()
-            .clamp(-half, half - 1.0);
-        self.adc.centre + self.adc.lsb * code
     }
 }
 
@@ -215,7 +232,27 @@ fn of_one(cause: &Cause, which: usize, y: f64, at: &Moment) -> f64 {
         Cause::Saturation {
             threshold,
             compression,
-        } => -compression * (y.abs() - threshold).max(0.0) * y.signum(),
+            compression_upper,
+            compression_lower,
+            compression_cos_upper,
+            compression_cos_lower,
+            compression_sin_upper,
+            compression_sin_lower,
+        } => {
+            let (of_rail, of_both) = if y > 0.0 {
+                (
+                    [compression_cos_upper, compression_sin_upper],
+                    compression_upper,
+                )
+            } else {
+                (
+                    [compression_cos_lower, compression_sin_lower],
+                    compression_lower,
+                )
+            };
+            let compression = of_rail[which].or(of_both).unwrap_or(compression);
+            -compression * (y.abs() - threshold).max(0.0) * y.signum()
+        }
         Cause::Hysteresis {
             offset_cos,
             offset_sin,
@@ -226,10 +263,32 @@ fn of_one(cause: &Cause, which: usize, y: f64, at: &Moment) -> f64 {
             phase_cos,
             amplitude_sin,
             phase_sin,
-        } => {
-            of(amplitude_cos, amplitude_sin)
-                * (TAU * frequency_hz * at.time + of(phase_cos, phase_sin)).cos()
-        }
+            amplitude_cos_2,
+            phase_cos_2,
+            amplitude_sin_2,
+            phase_sin_2,
+            amplitude_cos_3,
+            phase_cos_3,
+            amplitude_sin_3,
+            phase_sin_3,
+        } => [
+            (of(amplitude_cos, amplitude_sin), of(phase_cos, phase_sin)),
+            (
+                of(amplitude_cos_2, amplitude_sin_2),
+                of(phase_cos_2, phase_sin_2),
+            ),
+            (
+                of(amplitude_cos_3, amplitude_sin_3),
+                of(phase_cos_3, phase_sin_3),
+            ),
+        ]
+        .iter()
+        .zip(1..)
+        .map(|((amplitude, phase), harmonic)| {
+            let turns = f64::from(harmonic) * frequency_hz * at.time;
+            amplitude * (TAU * turns + phase).cos()
+        })
+        .sum(),
         Cause::OffsetDrift {
             change_cos,
             change_sin,

@@ -77,7 +77,7 @@ fn advance_of<S: Signal, const PLAIN: bool>(
     let position = position::advance(rate, flip, input.preset, state, k, structure);
     let direction = position::direction(rate, state.direction, k);
 
-    let counting = state.locked.and(input.calibrate).named("counting");
+    let counting = travel::counting(input, state);
     let starting = (!PLAIN && structure.least_squares_start).then(|| start::running(state, k));
     let measure = starting.map(|running| start::measure(e, running, k));
     let travel = travel::travel(counting, measure, state, k, structure);

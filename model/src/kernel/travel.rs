@@ -6,7 +6,7 @@
 //! arc adds nothing, standstill adds nothing, and a whole period of travel adds every sector exactly once, so the
 //! parameters are pulled equally from all sides.
 
-use super::{Coefficients, State, Structure};
+use super::{Coefficients, Input, State, Structure};
 use crate::format::{Format, Quantiser};
 use crate::signal::{Formula, Logic, Signal};
 
@@ -28,6 +28,12 @@ pub struct Measure<S> {
     pub ahead: S,
     /// Travel that is taken for a whole period.
     pub period: S,
+}
+
+/// Calibration is allowed, from outside and by the lock.
+pub fn counting<S: Signal>(input: &Input<S>, state: &State<S>) -> S::Bool {
+    state.alpha_hat.begin(&TRAVEL);
+    state.locked.and(input.calibrate).named("counting")
 }
 
 /// What the travel gate decides and remembers.

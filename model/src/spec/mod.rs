@@ -277,7 +277,10 @@ impl Default for Chip {
 
 /// How many multipliers the chip may use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(untagged)]
+#[serde(
+    untagged,
+    expecting = "multipliers are a whole number from 1, or \"all\""
+)]
 pub enum Multipliers {
     /// So many.
     Count(u32),
