@@ -141,14 +141,15 @@ fn loss_of_signal_leaves_the_parameters() {
                 bench.step((fade * y.0, fade * y.1));
             }
         }
-        // Forty periods of travel more, for what the fading left.
-        for k in 0..12_000u32 {
+        // Two hundred periods of travel more, for what the fading left: nine parameters take so long.
+        for k in 0..60_000u32 {
             bench.step(signals(TAU * step * f64::from(k)));
         }
         let after = rms(&bench.miscalibration(&signals));
         println!("{parameters} parameters, {start:?}: {before:.2e} -> {after:.2e} rad rms");
         assert!(bench.chip.state.locked);
-        assert!(after < before.max(1e-3), "{before} {after}");
+        // The noise of the parameters themselves is some 5e-5.
+        assert!(after < before.max(1e-4), "{before} {after}");
     }
 }
 
