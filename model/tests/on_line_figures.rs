@@ -22,21 +22,21 @@ fn the_chip_converges_in_five_periods() {
     }
 }
 
-/// The other searches of the paper and the larger sets get there too, later.
+/// The other searches of the paper get there as fast, the batch and the larger sets later.
 #[test]
 fn every_search_and_set_converges() {
     for (method, parameters, within) in [
-        (CalibrationMethod::Exact, 5, 12),
-        (CalibrationMethod::SumOfSquares, 5, 12),
-        (CalibrationMethod::Batch, 5, 40),
-        (CalibrationMethod::Final, 9, 20),
+        (CalibrationMethod::Exact, 5, 5),
+        (CalibrationMethod::SumOfSquares, 5, 5),
+        (CalibrationMethod::Batch, 5, 8),
+        (CalibrationMethod::Final, 9, 9),
     ] {
         let mut spec = fast();
         spec.calibration.method = method;
         spec.calibration.parameters = parameters;
         let left = course(&spec, within);
         println!("{method:?}, {parameters} parameters: {left:.2?} % left");
-        assert!(left[within - 1] < 2.5, "{method:?} {left:?}");
+        assert!(left[within - 1] < 1.0, "{method:?} {left:?}");
     }
 }
 
