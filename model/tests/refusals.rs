@@ -3,7 +3,7 @@
 mod support;
 
 use nonius_model::design::{Design, DesignError, Words};
-use nonius_model::spec::{Overrides, Spec};
+use nonius_model::spec::{CalibrationMethod, CalibrationStart, Overrides, Spec};
 use proptest::prelude::*;
 use support::{Encoder, optical, shipped, wrapped};
 
@@ -31,12 +31,16 @@ fn an_unknown_key_is_named_with_its_line_and_the_nearest_known_one() {
 #[test]
 fn what_cannot_work_names_the_field() {
     type Change = fn(&mut Spec);
-    let cases: [(&str, Change); 8] = [
+    let cases: [(&str, Change); 9] = [
         ("loop.type", |s| s.tracking.method = 2),
         ("loop.method", |s| s.tracking.method = 4),
         ("loop.bandwidth_hz", |s| s.tracking.bandwidth_hz = 4e5),
         ("adc.sample_rate_hz", |s| {
             s.sensor.speed_max_periods_per_s = 4e5
+        }),
+        ("calibration.start", |s| {
+            s.calibration.method = CalibrationMethod::Batch;
+            s.calibration.start = CalibrationStart::LeastSquares;
         }),
         ("adc.bits", |s| s.adc.bits = 24),
         ("accuracy.rms_periods", |s| s.accuracy.rms_periods = 1e-6),

@@ -5,7 +5,7 @@
 // radial residual rho shows what the correction still misses and moves its parameters theta.
 // After S. Balemi, "Automatic calibration of sinusoidal encoder signals", IFAC 2005; equation numbers are the paper's.
 //
-// Design 7bb45a1e5939: 16 products on 1 multiplier, 19 clocks per sample.
+// Design a31246b9e5bd: 16 products on 1 multiplier, 19 clocks per sample.
 //
 // Formats: sW.F is a two's complement number of W bits, F of them behind the point; uW.F has no sign and is kept here
 // with a zero in front, so that every number is signed. Angles are in turns of a scale period. A signal that saturates
@@ -450,7 +450,7 @@ module optical (
     wire signed [17:0] rho_s_now = {{2{rho_s_rounded[15]}}, rho_s_rounded}; // s18.16, step 13
 
     // Parameter update
-    //   theta -= gamma (2 y_c rho_c, rho_c, 2 y_s rho_s, rho_s, 4 y_c rho_s)
+    //   theta -= gamma (2 y_c rho_c, rho_c, 2 y_s rho_s, rho_s, 8 y_c rho_s), 2 and 8 times 1/amplitude^2 as a power of two
     //   (paper section 5.5.1, M of equation (7))
     wire signed [26:0] gradient_5 = product_0[26:0]; // s27.27, step 17
     wire signed [26:0] y_c_times_rho_c = product_0[26:0]; // s27.27, step 15

@@ -5,12 +5,14 @@
 
 mod evaluate;
 mod interval;
+mod node;
 mod prune;
 mod recorder;
 
 pub use evaluate::{Evaluation, compute};
 pub use interval::RangeError;
-pub use recorder::{Flag, Node, Recorder, WideNode};
+pub use node::{Flag, Node, WideNode};
+pub use recorder::Recorder;
 
 use crate::format::{Format, Quantiser};
 use crate::signal::Formula;
