@@ -12,8 +12,7 @@ use nonius_sensor::{Motion, Sensor};
 
 const WIDTHS: [u32; 2] = [1280, 390];
 
-/// A harmonic, hum, hysteresis, and samples that are lost.
-const SENSOR: &str = r#"
+const PLAIN: &str = r#"
 [signals]
 a_c = 0.8
 b_c = 0.02
@@ -30,6 +29,10 @@ sample_rate_hz = 10000.0
 periods_travelled = 400.0
 speed_max_periods_per_s = 700.0
 periods_per_revolution = 16
+"#;
+
+/// A harmonic, hum and hysteresis.
+const CAUSES: &str = r#"
 [[cause]]
 name = "spatial_harmonic"
 order = 3
@@ -50,6 +53,13 @@ offset_cos = 0.004
 offset_sin = -0.003
 "#;
 
+/// Noise alone: its picture has logarithmic axes.
+const NOISE: &str = r#"
+[[cause]]
+name = "flicker_noise"
+density_at_1_hz = 4e-4
+"#;
+
 fn nonius(arguments: &[&str], folder: &Path) {
     let output = Command::new(env!("CARGO_BIN_EXE_nonius"))
         .args(arguments)
@@ -63,9 +73,10 @@ fn nonius(arguments: &[&str], folder: &Path) {
     );
 }
 
-/// A recording of that sensor, two samples of which are missing in the middle.
-fn recording(folder: &Path) {
-    let sensor = Sensor::from_toml(SENSOR, "sensor.toml").expect("a sensor");
+/// A recording of a sensor with these causes, two samples of which are missing in the middle.
+fn recording(causes: &str, folder: &Path) {
+    let text = format!("{PLAIN}{causes}");
+    let sensor = Sensor::from_toml(&text, "sensor.toml").expect("a sensor");
     let samples = sensor.simulate(&Motion::to_and_fro(&sensor), 1);
     let mut csv = String::from(
         "# adc_bits: 14\n# full_scale: 1.0\n# periods_per_revolution: 16\ntime_s,cos,sin\n",
@@ -79,8 +90,8 @@ fn recording(folder: &Path) {
     std::fs::write(folder.join("recording.csv"), csv).expect("a recording");
 }
 
-fn diagnosed(folder: &Path) -> String {
-    recording(folder);
+fn diagnosed(causes: &str, folder: &Path) -> String {
+    recording(causes, folder);
     nonius(&["diagnose", "recording.csv", "-o", "diagnosis"], folder);
     std::fs::read_to_string(folder.join("diagnosis/report.html")).expect("a report")
 }
@@ -92,7 +103,7 @@ fn design() -> PathBuf {
 #[test]
 fn the_report_of_a_diagnosis_is_whole() {
     let scratch = tempfile::tempdir().expect("scratch folder");
-    let html = diagnosed(scratch.path());
+    let html = diagnosed(CAUSES, scratch.path());
     for title in [
         "Spatial harmonic, order 3",
         "Interference, 311.3",
@@ -107,6 +118,18 @@ fn the_report_of_a_diagnosis_is_whole() {
         assert_eq!(verdict.faults, [""; 0], "{width} px");
         // Two each for harmonic and hysteresis, three for hum, one for what is lost; seven for the whole.
         assert_eq!(verdict.plots, 2 + 3 + 2 + 1 + 7);
+    }
+}
+
+#[test]
+fn the_report_of_noise_is_whole() {
+    let scratch = tempfile::tempdir().expect("scratch folder");
+    let html = diagnosed(NOISE, scratch.path());
+    assert!(html.contains("Flicker noise"));
+    for width in WIDTHS {
+        let verdict = look(&html, width, scratch.path());
+        assert_eq!(verdict.faults, [""; 0], "{width} px");
+        assert_eq!(verdict.plots, 1 + 1 + 7);
     }
 }
 
@@ -130,7 +153,7 @@ fn the_report_of_a_design_is_whole() {
 #[test]
 fn planted_faults_are_seen() {
     let scratch = tempfile::tempdir().expect("scratch folder");
-    let html = diagnosed(scratch.path());
+    let html = diagnosed(CAUSES, scratch.path());
     let (path, script) = (
         r#"data-name="simulated with the cause" d="M"#,
         r#""use strict";"#,

@@ -28,7 +28,7 @@ struct Page<'a> {
     hash: &'a str,
     version: &'a str,
     found: &'a Diagnosis,
-    sections: Vec<Section<'a>>,
+    sections: Vec<Section>,
     figures: Vec<String>,
     residuals: Vec<String>,
     residue: &'a Residue,
@@ -46,8 +46,7 @@ struct Gain {
     change: String,
 }
 
-struct Section<'a> {
-    finding: &'a Finding,
+struct Section {
     number: usize,
     title: String,
     evidence: String,
@@ -141,12 +140,7 @@ pub fn report(
     .render()
 }
 
-fn section<'a>(
-    number: usize,
-    finding: &'a Finding,
-    found: &'a Diagnosis,
-    recording: &Recording,
-) -> Section<'a> {
+fn section(number: usize, finding: &Finding, found: &Diagnosis, recording: &Recording) -> Section {
     let g = &finding.gain;
     let gain = match (
         g.position_error_rms_before_rad,
@@ -162,7 +156,6 @@ fn section<'a>(
     let confused = finding.confounded_with.iter();
     let plots = pictures::of(finding, found, recording);
     Section {
-        finding,
         number,
         title: words::title(finding),
         evidence: words::capital(&finding.evidence),

@@ -188,6 +188,8 @@ pub struct Budget {
     pub adc: f64,
     /// The sensor's noise through the loop.
     pub noise: f64,
+    /// Noise that the calibration at its last gamma lets into the parameters.
+    pub calibration: f64,
     /// What the design promises of the sensor and does not calibrate, at its worst.
     pub uncorrected: f64,
     /// What the arithmetic may add.
@@ -260,6 +262,7 @@ impl DesignJson {
                 asked: spec.accuracy.rms_periods,
                 adc: b.adc,
                 noise: b.noise,
+                calibration: b.calibration,
                 uncorrected: b.uncorrected,
                 arithmetic_allowed: b.allowed,
                 arithmetic: b.arithmetic(),

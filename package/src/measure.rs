@@ -91,7 +91,9 @@ pub fn accuracy(design: &Design) -> Accuracy {
     let mut at = 0.1;
     let mut errors = vec![];
     for k in 0..converge + settle + sweep {
-        at += if k < converge { fast } else { slow };
+        // An axis slows down; a step in speed would show the loop's transient in the residual.
+        let slowed = (k.saturating_sub(converge) as f64 / settle as f64).min(1.0);
+        at += fast + (slow - fast) * slowed;
         let alpha = at * TAU;
         let mut channel =
             |v: f64| converter.code(spec.adc.middle + v + a * s.noise_rms * noise.next());

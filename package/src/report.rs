@@ -200,6 +200,11 @@ fn bars(j: &DesignJson) -> Vec<Bar> {
             "given",
         ),
         ("ADC".to_owned(), j.budget.adc, "given"),
+        (
+            "noise of the calibration at its last gamma".to_owned(),
+            j.budget.calibration,
+            "own",
+        ),
     ];
     if j.budget.uncorrected > 0.0 {
         let what = "errors of the sensor that are not calibrated, at worst".to_owned();

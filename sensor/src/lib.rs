@@ -4,10 +4,12 @@
 //! It is written apart from the diagnosis: that one knows shapes, this one signals. A test brings them together.
 
 mod cause;
+mod channel;
 mod converter;
 mod coupling;
 mod flicker;
 mod keys;
+mod lag;
 mod motion;
 mod rows;
 mod sensor;
