@@ -104,9 +104,8 @@ fn section(
     let all = plots(found, recording);
     let first_of = |i: usize| all.iter().find(move |p| p.0.starts_with(&format!("{i}-")));
     let findings = (1..=found.findings.len()).filter_map(first_of).take(SHOWN);
-    let spectrum = all
-        .iter()
-        .filter(|p| p.0 == "residual-1" || p.0 == "residual-3");
+    let whole = ["residual-3", "left-1"];
+    let spectrum = all.iter().filter(|p| whole.contains(&p.0.as_str()));
     let mut drawn = vec![];
     for (_, plot) in findings.chain(spectrum) {
         drawn.push(plot.svg());
