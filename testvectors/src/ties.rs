@@ -13,6 +13,8 @@ use crate::stimulus::Sample;
 
 /// Codes tried on either side of the slow turn's, in each channel.
 const REACH: i64 = 8;
+/// The farthest, as a fraction of the amplitude, across the radius: what is rare needs a phase error of some size.
+const ACROSS: f64 = 0.1;
 
 /// A value that is rounded to the nearest.
 #[derive(Clone, Copy, Debug)]
@@ -47,6 +49,11 @@ impl Rounded {
         let dropped = self.dropped + more;
         dropped > 0 && raw[self.value.index()] & ((1 << dropped) - 1) == 1 << (dropped - 1)
     }
+}
+
+/// Steps from the slow turn's codes.
+fn near() -> impl Iterator<Item = (i64, i64)> {
+    (-REACH..=REACH).flat_map(|i| (-REACH..=REACH).map(move |j| (i, j)))
 }
 
 /// Which nodes depend on `from`.
@@ -205,14 +212,26 @@ impl<'a> Ties<'a> {
         let [Some((_, cos)), Some((_, sin))] = [input("adc_cos"), input("adc_sin")] else {
             return about.to_vec();
         };
+        let middle = (adc.min_raw() + adc.max_raw() + 1) as f64 / 2.0;
+        let across = |at: Sample| {
+            let (c, s) = (at.cos as f64 - middle, at.sin as f64 - middle);
+            let far = (ACROSS * c.hypot(s)) as i64;
+            let turned = move |t: i64| {
+                let t = t as f64 / c.hypot(s).max(1.0);
+                ((-s * t).round() as i64, (c * t).round() as i64)
+            };
+            (-far..=far).map(turned)
+        };
         let mut chip = Chip::bit_true(design);
         let mut counts = vec![0u32; self.rounded.len()];
         let mut played = Vec::with_capacity(about.len());
-        for &slow in about {
+        for (row, &slow) in about.iter().enumerate() {
+            let mut sought = self.names().zip(&counts);
+            let missing = sought.any(|(name, &n)| name.is_some() && n == 0);
             let mut raw = self.evaluate(&chip, &slow);
             let mut next_raw = raw.clone();
             let mut best = (0.0, slow);
-            for (i, j) in (-REACH..=REACH).flat_map(|i| (-REACH..=REACH).map(move |j| (i, j))) {
+            for (i, j) in near().chain(across(slow).filter(|_| missing)) {
                 let (c, s) = (code(slow.cos + i), code(slow.sin + j));
                 for &id in &self.cone {
                     let value = match id {
