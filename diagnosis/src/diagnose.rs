@@ -100,19 +100,33 @@ pub fn diagnose(recording: &Recording) -> Result<Diagnosis, ContextError> {
     let mut carried: Vec<Accepted> = vec![];
     // Large causes are taken off the signals themselves, and what is left is looked at anew.
     let mut round = 0;
+    let mut last = false;
     loop {
         round += 1;
+        last |= round == ROUNDS;
         let known = {
             let (mut system, catalogue) = exact::look(&context, &mut carried, recording);
-            let last = round == ROUNDS;
             let selection = select(&context, &mut system, &catalogue, carried.clone(), last);
             match exact::best(&context, selection.again.clone(), recording) {
                 Some(known) => known,
                 None => return Ok(conclude(&system, &selection, checked, &repaired)),
             }
         };
-        (context, carried) = known;
+        // A look that makes it worse has gone astray: the tangents have to do.
+        if worse(&known.0, &context) {
+            last = true;
+        } else {
+            (context, carried) = known;
+        }
     }
+}
+
+/// Whether a context leaves clearly more of the radius than another one did.
+fn worse(new: &Context, old: &Context) -> bool {
+    const CLEARLY: f64 = 1.5;
+    let power = |c: &Context| c.radial().iter().map(|r| r * r).sum::<f64>();
+    let (new, old) = (power(new), power(old));
+    !new.is_finite() || new > CLEARLY * CLEARLY * old
 }
 
 /// Findings, gains and positions of a search that has come to its end.

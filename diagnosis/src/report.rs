@@ -32,7 +32,8 @@ struct Page<'a> {
     figures: Vec<String>,
     residuals: Vec<String>,
     residue: &'a Residue,
-    residue_plot: String,
+    signature: String,
+    left: Vec<String>,
     unseen: Vec<String>,
     style: &'static str,
     script: &'static str,
@@ -73,6 +74,7 @@ pub fn plots(found: &Diagnosis, recording: &Recording) -> Vec<(String, Plot)> {
     }
     add("figure".into(), overview::figures(found));
     add("residual".into(), overview::residuals(found));
+    add("left".into(), overview::left(found));
     add("residue".into(), vec![Residue::of(found).plot().clone()]);
     all
 }
@@ -131,8 +133,9 @@ pub fn report(
         sections,
         figures: html(overview::figures(found)),
         residuals: html(overview::residuals(found)),
-        residue_plot: residue.plot().html(),
+        left: [vec![residue.plot().html()], html(overview::left(found))].concat(),
         residue: &residue,
+        signature: words::capital(&found.unexplained.signature),
         unseen: unseen(&found.context),
         style: nonius_plot::STYLE,
         script: nonius_plot::SCRIPT,

@@ -77,7 +77,9 @@ fn possible(candidate: &Candidate, solution: &Solution) -> bool {
             let inner = candidate.exact.as_ref().and_then(|e| e.inner.first());
             inner.is_none_or(|f| {
                 let near = own[0] > least && own[0] < f * GRID;
-                near || (own[0] - own[0].clamp(least, *f)).abs() < 4.0 * error(0)
+                // A fitted number may have left its place on the grid.
+                let (low, high) = (least.min(*f), least.max(*f));
+                near || (own[0] - own[0].clamp(low, high)).abs() < 4.0 * error(0)
             })
         }
     }

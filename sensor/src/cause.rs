@@ -116,10 +116,57 @@ pub enum Cause {
         depth: f64,
         phase: f64,
     },
-    /// Offsets that change evenly from one end to the other.
-    OffsetDrift { change_cos: f64, change_sin: f64 },
+    /// Offsets that change from one end to the other: evenly, and along Legendre polynomials of the time of degree 2 … 6 that
+    /// bend the line between the same ends.
+    OffsetDrift {
+        change_cos: f64,
+        change_sin: f64,
+        #[serde(default)]
+        curve_cos_2: f64,
+        #[serde(default)]
+        curve_cos_3: f64,
+        #[serde(default)]
+        curve_cos_4: f64,
+        #[serde(default)]
+        curve_cos_5: f64,
+        #[serde(default)]
+        curve_cos_6: f64,
+        #[serde(default)]
+        curve_sin_2: f64,
+        #[serde(default)]
+        curve_sin_3: f64,
+        #[serde(default)]
+        curve_sin_4: f64,
+        #[serde(default)]
+        curve_sin_5: f64,
+        #[serde(default)]
+        curve_sin_6: f64,
+    },
     /// Gains likewise.
-    GainDrift { change_cos: f64, change_sin: f64 },
+    GainDrift {
+        change_cos: f64,
+        change_sin: f64,
+        #[serde(default)]
+        curve_cos_2: f64,
+        #[serde(default)]
+        curve_cos_3: f64,
+        #[serde(default)]
+        curve_cos_4: f64,
+        #[serde(default)]
+        curve_cos_5: f64,
+        #[serde(default)]
+        curve_cos_6: f64,
+        #[serde(default)]
+        curve_sin_2: f64,
+        #[serde(default)]
+        curve_sin_3: f64,
+        #[serde(default)]
+        curve_sin_4: f64,
+        #[serde(default)]
+        curve_sin_5: f64,
+        #[serde(default)]
+        curve_sin_6: f64,
+    },
     /// The amplitude of both channels modulated with the revolution.
     Runout { order: f64, depth: f64, phase: f64 },
     /// The graduation is off with the revolution: radians of the scale period.

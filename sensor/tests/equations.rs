@@ -95,6 +95,24 @@ fn harmonics_of_a_line() {
 }
 
 #[test]
+fn drifts_bend_between_their_ends() {
+    let last = 1999.0 / RATE;
+    let bent = |change: f64, second: f64, third: f64, t: f64| {
+        let x = 2.0 * t / last - 1.0;
+        let polynomials = [1.5 * x * x - 0.5, 2.5 * x.powi(3) - 1.5 * x];
+        0.5 * change * x + second * polynomials[0] + third * (polynomials[1] - x)
+    };
+    obeys(
+        "name = \"offset_drift\"\nchange_cos = 0.01\nchange_sin = -0.006\ncurve_cos_2 = 0.004\ncurve_sin_3 = 0.003",
+        |_, t| [bent(0.01, 0.004, 0.0, t), bent(-0.006, 0.0, 0.003, t)],
+    );
+    obeys(
+        "name = \"gain_drift\"\nchange_cos = 0.01\nchange_sin = 0.0\ncurve_cos_3 = 0.004",
+        |alpha, t| [alpha.cos() * bent(0.01, 0.0, 0.004, t), 0.0],
+    );
+}
+
+#[test]
 fn saturation_of_single_rails() {
     let over = |y: f64| (y - 0.8).max(0.0);
     let pair = |alpha: f64| [alpha.cos(), (alpha - BETA).sin()];

@@ -124,6 +124,9 @@ fn causes_with_time() {
         "name = \"interference\"\nfrequency_hz = 50.2\namplitude_cos = 0.003\nphase_cos = 0.4\namplitude_sin = 0.004\nphase_sin = 1.9\namplitude_cos_2 = 0.001\nphase_cos_2 = 0.3\namplitude_sin_2 = 0.001\nphase_sin_2 = 2.5\namplitude_cos_3 = 0.002\nphase_cos_3 = -0.5\namplitude_sin_3 = 0.0015\nphase_sin_3 = 0.8\n",
     );
     round_trip("name = \"amplitude_ripple\"\nfrequency_hz = 100.2\ndepth = 0.004\nphase = 1.1\n");
+    round_trip(
+        "name = \"offset_drift\"\nchange_cos = 0.01\nchange_sin = -0.006\ncurve_cos_2 = 0.004\ncurve_sin_3 = 0.003\n",
+    );
     round_trip("name = \"offset_drift\"\nchange_cos = 0.01\nchange_sin = -0.006\n");
 }
 

@@ -95,10 +95,18 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
                         (value, error)
                     };
                     let ((c, dc), (s, ds)) = (total(0), total(per));
-                    vec![
+                    let mut all = vec![
                         Parameter::measured("change_cos", c, dc, "amplitude"),
                         Parameter::measured("change_sin", s, ds, "amplitude"),
-                    ]
+                    ];
+                    for (i, (x, error)) in e.x.iter().zip(e.error).enumerate() {
+                        let (channel, degree) = (["cos", "sin"][i / per], i % per + 1);
+                        if degree > 1 {
+                            let name = format!("curve_{channel}_{degree}");
+                            all.push(Parameter::measured(&name, *x, *error, "amplitude"));
+                        }
+                    }
+                    all
                 }),
                 evidence: Rc::new(move |p| {
                     let what = if gain { "gains" } else { "offsets" };

@@ -3,6 +3,8 @@
 use nonius_plot::{Axis, Look, Mark, Plot, Series};
 use rustfft::num_complex::Complex;
 
+use super::binned::{Against, Along, Row, Seen};
+use super::pictures::title;
 use super::spectra::Signal;
 use crate::diagnose::Diagnosis;
 
@@ -10,6 +12,10 @@ use crate::diagnose::Diagnosis;
 const POINTS: usize = 1500;
 /// Part of the radius to which its largest error is drawn.
 const DRAWN: f64 = 0.3;
+/// Plots of what is left at most.
+const LEFT: usize = 4;
+/// Mean square of means over their errors, above which a plot of them shows something.
+const SHOWS: f64 = 2.0;
 /// Marks of a plot at most.
 const MARKS: usize = 4;
 
@@ -149,4 +155,56 @@ pub(super) fn residuals(found: &Diagnosis) -> Vec<Plot> {
         orders.collect(),
     ));
     plots
+}
+
+/// What has no name, against whatever shows it, the clearest first.
+pub(super) fn left(found: &Diagnosis) -> Vec<Plot> {
+    if !found.unexplained.significant {
+        return vec![];
+    }
+    let (radial, tangential) = &found.residuals[1];
+    let residual = |k: usize| -> Row {
+        let motion = found.left_motion.as_ref().map_or(0.0, |m| m[k]);
+        [radial[k], tangential[k], motion]
+    };
+    let seen = Seen {
+        context: &found.context,
+        left: &residual,
+        effect: &|_| [0.0; 3],
+    };
+    let ways = [
+        (Against::Angle, Along::Radius),
+        (Against::Angle, Along::Circle),
+        (Against::Speed, Along::Radius),
+        (Against::Speed, Along::Phase(1)),
+        (Against::Time, Along::Radius),
+        (Against::Time, Along::Offset(0)),
+        (Against::Time, Along::Offset(1)),
+        (Against::Revolution, Along::Radius),
+        (Against::Revolution, Along::Circle),
+    ];
+    let mut plots: Vec<(f64, Plot)> = ways
+        .into_iter()
+        .filter_map(|(against, along)| {
+            let mut plot = seen.plot(&title(against, along), against, along)?;
+            if let [measured, model] = plot.series.as_mut_slice() {
+                measured.name = "left, ± standard error".into();
+                model.name = "nothing".into();
+            }
+            Some((shows(&plot), plot))
+        })
+        .filter(|p| p.0 > SHOWS)
+        .collect();
+    plots.sort_by(|a, b| b.0.total_cmp(&a.0));
+    plots.into_iter().take(LEFT).map(|p| p.1).collect()
+}
+
+/// Mean square of the means of a plot over their errors: about one, if there is nothing.
+fn shows(plot: &Plot) -> f64 {
+    let Some(means) = plot.series.first() else {
+        return 0.0;
+    };
+    let pairs = means.points.iter().zip(&means.errors);
+    let squares = pairs.map(|(p, e)| (p[1] / e.max(f64::MIN_POSITIVE)).powi(2));
+    squares.sum::<f64>() / means.points.len().max(1) as f64
 }

@@ -93,7 +93,8 @@ pub(super) fn of(finding: &Finding, found: &Diagnosis, recording: &Recording) ->
     plots
 }
 
-fn title(against: Against, along: Along) -> String {
+/// What is shown against what.
+pub(super) fn title(against: Against, along: Along) -> String {
     let what = match along {
         Along::Radius => "Radius",
         Along::Circle => "Angle error",
