@@ -33,7 +33,9 @@ mod solve;
 mod spline;
 mod statistics;
 mod sweep;
+mod timebase;
 mod trig;
+mod variance;
 mod whiten;
 
 pub use context::{Context, ContextError};
