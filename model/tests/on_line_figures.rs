@@ -22,21 +22,21 @@ fn the_chip_converges_in_five_periods() {
     }
 }
 
-/// The other searches of the paper and the larger sets get there too, later.
+/// The other searches of the paper get there as fast, the batch and the larger sets later.
 #[test]
 fn every_search_and_set_converges() {
     for (method, parameters, within) in [
-        (CalibrationMethod::Exact, 5, 12),
-        (CalibrationMethod::SumOfSquares, 5, 12),
-        (CalibrationMethod::Batch, 5, 40),
-        (CalibrationMethod::Final, 9, 20),
+        (CalibrationMethod::Exact, 5, 5),
+        (CalibrationMethod::SumOfSquares, 5, 5),
+        (CalibrationMethod::Batch, 5, 8),
+        (CalibrationMethod::Final, 9, 9),
     ] {
         let mut spec = fast();
         spec.calibration.method = method;
         spec.calibration.parameters = parameters;
         let left = course(&spec, within);
         println!("{method:?}, {parameters} parameters: {left:.2?} % left");
-        assert!(left[within - 1] < 2.5, "{method:?} {left:?}");
+        assert!(left[within - 1] < 1.0, "{method:?} {left:?}");
     }
 }
 
@@ -141,14 +141,15 @@ fn loss_of_signal_leaves_the_parameters() {
                 bench.step((fade * y.0, fade * y.1));
             }
         }
-        // Forty periods of travel more, for what the fading left.
-        for k in 0..12_000u32 {
+        // Two hundred periods of travel more, for what the fading left: nine parameters take so long.
+        for k in 0..60_000u32 {
             bench.step(signals(TAU * step * f64::from(k)));
         }
         let after = rms(&bench.miscalibration(&signals));
         println!("{parameters} parameters, {start:?}: {before:.2e} -> {after:.2e} rad rms");
         assert!(bench.chip.state.locked);
-        assert!(after < before.max(1e-3), "{before} {after}");
+        // The noise of the parameters themselves is some 5e-5.
+        assert!(after < before.max(1e-4), "{before} {after}");
     }
 }
 

@@ -225,7 +225,7 @@ impl<'a> Ties<'a> {
         let mut chip = Chip::bit_true(design);
         let mut counts = vec![0u32; self.rounded.len()];
         let mut played = Vec::with_capacity(about.len());
-        for (row, &slow) in about.iter().enumerate() {
+        for &slow in about {
             let mut sought = self.names().zip(&counts);
             let missing = sought.any(|(name, &n)| name.is_some() && n == 0);
             let mut raw = self.evaluate(&chip, &slow);

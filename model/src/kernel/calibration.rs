@@ -33,7 +33,9 @@ impl Equaliser {
             };
         }
         let (offset, gain, phase) = match structure.gradient {
-            CalibrationMethod::Final | CalibrationMethod::SumOfSquares => (0, 1, 3),
+            CalibrationMethod::Final => (0, 1, 3),
+            // What is remembered lags and swings: gains and phase half as fast.
+            CalibrationMethod::SumOfSquares => (0, 0, 2),
             // Behind a loop that does not follow, what turns the pair counts too: 1 for the offsets, 1/2 for the gains
             // and 1/4 for the phase, all 1/2 with these.
             CalibrationMethod::Exact => (-1, 0, 1),
