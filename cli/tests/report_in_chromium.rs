@@ -129,7 +129,8 @@ fn the_report_of_noise_is_whole() {
     for width in WIDTHS {
         let verdict = look(&html, width, scratch.path());
         assert_eq!(verdict.faults, [""; 0], "{width} px");
-        assert_eq!(verdict.plots, 1 + 1 + 7);
+        // What is left beside it may be shown too.
+        assert!(verdict.plots > 1 + 7, "{}", verdict.plots);
     }
 }
 

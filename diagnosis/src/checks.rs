@@ -3,6 +3,7 @@
 use nonius_recording::Recording;
 
 use crate::finding::{Finding, Parameter, Place};
+use crate::timebase;
 
 /// What the checks found, and which samples do not count.
 pub(crate) struct Checked {
@@ -11,6 +12,8 @@ pub(crate) struct Checked {
     pub(crate) weight: Vec<f64>,
     /// Samples that are missing before a sample of the recording: index, how many.
     pub(crate) gaps: Vec<(usize, usize)>,
+    /// Samples that were put in: what follows is late by one each.
+    pub(crate) extra: Vec<usize>,
 }
 
 const CHANNELS: [&str; 2] = ["cos", "sin"];
@@ -21,6 +24,7 @@ pub(crate) fn check(recording: &Recording) -> Checked {
         findings: vec![],
         weight: vec![1.0; n],
         gaps: vec![],
+        extra: vec![],
     };
     let codes: (Vec<i64>, Vec<i64>) = recording.codes().unzip();
     let adc = recording.metadata.adc;
@@ -47,9 +51,21 @@ pub(crate) fn check(recording: &Recording) -> Checked {
             checked.findings.extend(found);
         }
     }
-    time_base(recording, &mut checked);
+    timebase::repeated(recording, &mut checked);
     glitches(recording, &mut checked);
+    timebase::dropped(recording, &mut checked);
     checked
+}
+
+/// Fewest codes that tell a step between all of them.
+const FEWEST: usize = 8;
+
+/// The greatest common divisor.
+fn divisor(mut a: i64, mut b: i64) -> i64 {
+    while b != 0 {
+        (a, b) = (b, a % b);
+    }
+    a
 }
 
 /// A bit that never changes while the codes sweep; steps of several codes.
@@ -72,29 +88,23 @@ fn bits_and_steps(channel: &str, codes: &[i64], bits: u32) -> Option<Finding> {
         })
         .collect();
     let lowest: Vec<u32> = (0..bits).take_while(|b| constant.contains(b)).collect();
-    // All bits from the last one up are constant: the steps are coarse.
-    if lowest.len() > 1 || (lowest.len() == 1 && constant.len() == 1) {
-        let steps: std::collections::BTreeSet<i64> =
-            distinct.windows(2).map(|w| w[1] - w[0]).collect();
-        let step = 1i64 << lowest.len();
-        if steps.iter().all(|s| s % step == 0) {
-            return Some(Finding::digital(
-                if lowest.len() == 1 {
-                    "stuck_bit"
-                } else {
-                    "coarse_quantisation"
-                },
-                vec![if lowest.len() == 1 {
-                    Parameter::exact("bit", 0.0, "1")
-                } else {
-                    Parameter::exact("step_lsb", step as f64, "LSB")
-                }],
-                format!(
-                    "the {channel} channel moves over {span} codes in steps of {step} codes: its last {} bit(s) never change",
-                    lowest.len()
-                ),
-            ));
-        }
+    // All codes lie a whole number of steps apart: the steps are coarse, or one last bit is stuck.
+    let step = distinct.windows(2).fold(0, |g, w| divisor(g, w[1] - w[0]));
+    if distinct.len() >= FEWEST && step > 1 {
+        let bit = step == 2 && constant.len() == 1;
+        return Some(Finding::digital(
+            if bit {
+                "stuck_bit"
+            } else {
+                "coarse_quantisation"
+            },
+            vec![if bit {
+                Parameter::exact("bit", 0.0, "1")
+            } else {
+                Parameter::exact("step_lsb", step as f64, "LSB")
+            }],
+            format!("the {channel} channel moves over {span} codes in steps of {step} codes"),
+        ));
     }
     let stuck = constant.iter().find(|b| !lowest.contains(b))?;
     Some(Finding::digital(
@@ -153,7 +163,7 @@ fn ends(values: &[f64]) -> (f64, f64) {
 }
 
 /// Ninth decile of sizes.
-fn ninth(sizes: &[f64]) -> f64 {
+pub(crate) fn ninth(sizes: &[f64]) -> f64 {
     let mut sizes = sizes.to_vec();
     if sizes.is_empty() {
         return f64::MIN_POSITIVE;
@@ -225,89 +235,4 @@ fn glitches(recording: &Recording, checked: &mut Checked) {
         ],
         format!("{} isolated samples lie far off the curve through their neighbours, by up to {largest:.4}; the first is sample {}", found.len(), found[0].0),
     ).at(Place::Sample(found[0].0)));
-}
-
-/// The smallest step between two values of a channel, at least a code.
-fn step(values: &[f64], lsb: f64) -> f64 {
-    let mut sorted = values.to_vec();
-    sorted.sort_unstable_by(f64::total_cmp);
-    let steps = sorted.windows(2).map(|w| w[1] - w[0]);
-    let smallest = steps.filter(|s| *s > 0.5 * lsb).fold(f64::MAX, f64::min);
-    if smallest < f64::MAX { smallest } else { lsb }
-}
-
-/// Noise of a channel, rms, from its third differences: motion hardly shows in them.
-fn noise(values: &[f64]) -> f64 {
-    let mut sizes: Vec<f64> = values
-        .windows(4)
-        .map(|w| (w[3] - 3.0 * w[2] + 3.0 * w[1] - w[0]).abs())
-        .collect();
-    sizes.sort_unstable_by(f64::total_cmp);
-    let median = sizes.get(sizes.len() / 2).copied().unwrap_or(0.0);
-    median / 0.6745 / 20f64.sqrt()
-}
-
-/// Samples missing from, or doubled in, the regular time base.
-fn time_base(recording: &Recording, checked: &mut Checked) {
-    let (time, rate) = (&recording.time_s, recording.metadata.sample_rate_hz);
-    let n = time.len();
-    let gaps: Vec<(usize, f64)> = (1..n)
-        .map(|k| (k, (time[k] - time[k - 1]) * rate))
-        .filter(|g| g.1 > 1.5)
-        .collect();
-    let lost: f64 = gaps.iter().map(|g| g.1.round() - 1.0).sum();
-    // More than a few gaps of odd lengths are a time base that is not regular.
-    let whole = gaps
-        .iter()
-        .filter(|g| (g.1 - g.1.round()).abs() < 0.2)
-        .count();
-    let regular = whole * 10 >= gaps.len() * 9 && gaps.len() <= n / 20 + 1;
-    // A long pause is no loss of samples that anything could bridge.
-    if regular && lost < n as f64 / 10.0 {
-        checked.gaps = gaps
-            .iter()
-            .map(|g| (g.0, g.1.round() as usize - 1))
-            .collect();
-    }
-    if !gaps.is_empty() && whole * 10 >= gaps.len() * 9 && gaps.len() <= n / 20 + 1 {
-        checked.findings.push(Finding::digital(
-            "dropped_samples",
-            vec![Parameter::exact("count", lost, "samples")],
-            format!("{lost} samples are missing in {} gaps of the time base; the first gap is before sample {}", gaps.len(), gaps[0].0),
-        ).at(Place::Sample(gaps[0].0)));
-    }
-    let same = |k: usize| {
-        recording.cos[k] == recording.cos[k - 1] && recording.sin[k] == recording.sin[k - 1]
-    };
-    let adc = recording.metadata.adc;
-    let least = [
-        (8.0 * step(&recording.cos, adc.cos.lsb)).max(8.0 * noise(&recording.cos)),
-        (8.0 * step(&recording.sin, adc.sin.lsb)).max(8.0 * noise(&recording.sin)),
-    ];
-    let twins: Vec<usize> = (2..n.saturating_sub(1))
-        .filter(|&k| same(k) && !same(k - 1) && !same(k + 1))
-        .filter(|&k| {
-            // The scale moves by far more than noise and codes around it.
-            let step = |a: usize, b: usize| {
-                let dc = (recording.cos[a] - recording.cos[b]).abs() / least[0];
-                let ds = (recording.sin[a] - recording.sin[b]).abs() / least[1];
-                dc.max(ds)
-            };
-            step(k - 2, k - 1) > 1.0 && step(k, k + 1) > 1.0
-        })
-        .collect();
-    if twins.len() >= 2 && twins.len() < n / 10 {
-        for &k in &twins {
-            checked.weight[k] = 0.0;
-        }
-        checked.findings.push(Finding::digital(
-            "repeated_samples",
-            vec![Parameter::exact("count", twins.len() as f64, "samples")],
-            format!(
-                "{} samples repeat the one before while the scale moves; the first is sample {}",
-                twins.len(),
-                twins[0]
-            ),
-        ).at(Place::Sample(twins[0])));
-    }
 }

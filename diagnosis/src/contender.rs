@@ -2,7 +2,7 @@
 //! more than one other explains as well.
 
 use crate::cause::{Domain, Sign};
-use crate::causes::Catalogue;
+use crate::causes::{ACCELERATION_GAIN, Catalogue};
 use crate::exact;
 use crate::generic;
 use crate::library::Shape;
@@ -13,6 +13,8 @@ use crate::statistics::{after_trials, log_tail};
 
 /// A cause must hold this share of what a generic basis of its domain explains.
 const HOLDS: f64 = 0.75;
+/// A drift must hold more: steps and bursts are mostly slow, too.
+const SLOWLY: f64 = 0.9;
 /// Gain in log-likelihood (an SNR of 300) from which on a choice between causes is made where tangents are exact.
 const LARGE: f64 = 45_000.0;
 /// Most others that are tried there.
@@ -64,7 +66,14 @@ pub(crate) fn contender(
         let rivals = rivals(&beside, &own, &rest);
         let mark = system.samples.library.atoms.len();
         let held = holds(system, catalogue, fit, &own, &rest);
-        if rivals.len() <= 1 && held.share >= HOLDS {
+        let least = if own.candidate.domain == Domain::Time {
+            SLOWLY
+        } else {
+            HOLDS
+        };
+        let listed = |name: &str| name != ACCELERATION_GAIN;
+        let nameable = listed(own.candidate.name) && rivals.iter().all(|r| listed(r));
+        if nameable && rivals.len() <= 1 && held.share >= least {
             system.retain(|i| i < mark);
             cause.confounded = rivals;
             match &named {
@@ -77,7 +86,9 @@ pub(crate) fn contender(
             break;
         }
         let nearest = own.candidate.name.replace('_', " ");
-        let why = if held.share < HOLDS {
+        let why = if !listed(own.candidate.name) {
+            "the catalogue holds no such cause".to_owned()
+        } else if held.share < least {
             format!(
                 "it holds {:.0} % of what any shape there explains",
                 held.share * 100.0
@@ -193,14 +204,22 @@ fn holds(
         };
     }
     // Other causes may be there too, and no name answers for them.
+    let (own, line) = (best.candidate.name, best.candidate.domain == Domain::Line);
+    stand_beside(system, &mut named, others, |o| {
+        line && same(o) && o.candidate.name != own
+    });
     stand_beside(system, &mut named, others, |o| !same(o));
-    let around = generic::around(system.context, &best.candidate, &mut system.samples.library);
-    let atoms = atoms_of(&both(&named, &around));
+    let library = &mut system.samples.library;
+    let around = generic::around(system.context, &best.candidate, library);
+    let steady = generic::steady(system.context, &best.candidate, library);
+    let atoms = atoms_of(&[named.as_slice(), &around, &steady].concat());
     let whole = system.among(&atoms);
     let among =
         |shapes: &[Shape]| -> Vec<Shape> { shapes.iter().map(|s| s.among(&atoms)).collect() };
+    let free = Beside::new(&whole, &among(&named)).gain(&among(&steady)).0;
+    named.extend(steady);
     let beside = Beside::new(&whole, &among(&named));
-    let own = self::share(best.gain, beside.gain(&among(&around)));
+    let own = self::share(best.gain + free, beside.gain(&among(&around)));
     Held {
         share: share.min(own),
         beyond: around,

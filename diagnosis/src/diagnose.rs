@@ -8,7 +8,7 @@ use crate::checks::{self, Checked};
 use crate::context::{Context, ContextError};
 use crate::exact;
 use crate::finding::{Finding, Parameter};
-use crate::flicker::Flicker;
+use crate::flicker::{self, FLICKER, Flicker};
 use crate::library::Row;
 use crate::model::System;
 use crate::noise;
@@ -94,9 +94,31 @@ pub struct Diagnosis {
 /// Where the signals draw no ellipse.
 pub fn diagnose(recording: &Recording) -> Result<Diagnosis, ContextError> {
     let checked = checks::check(recording);
-    let repaired = repair(recording, &checked.weight, &checked.gaps);
+    let repaired = repair(recording, &checked);
+    let context = Context::new(&repaired.recording, repaired.weight.clone())?;
+    let found = search(context.clone(), &checked, &repaired, true);
+    if !found.findings.iter().any(|f| f.cause == FLICKER) {
+        return Ok(found);
+    }
+    // A cause that is slow looks like such noise before it is known: names that explain it all are preferred.
+    let other = search(context, &checked, &repaired, false);
+    let known = |name: &str| found.findings.iter().any(|f| f.cause == name);
+    let names_more = other.findings.iter().any(|f| !known(&f.cause));
+    if !names_more || other.unexplained.significant {
+        return Ok(found);
+    }
+    let left = flicker::find(&other.context, &other.residuals[1].0);
+    Ok(if left.is_none() { other } else { found })
+}
+
+/// Looks at a recording until nothing new is found in it; `coloured`: there may be flicker noise.
+fn search(
+    mut context: Context,
+    checked: &Checked,
+    repaired: &Repaired,
+    coloured: bool,
+) -> Diagnosis {
     let recording = &repaired.recording;
-    let mut context = Context::new(recording, repaired.weight.clone())?;
     let mut carried: Vec<Accepted> = vec![];
     // Large causes are taken off the signals themselves, and what is left is looked at anew.
     let mut round = 0;
@@ -106,10 +128,13 @@ pub fn diagnose(recording: &Recording) -> Result<Diagnosis, ContextError> {
         last |= round == ROUNDS;
         let known = {
             let (mut system, catalogue) = exact::look(&context, &mut carried, recording);
+            if !coloured {
+                system.flicker = None;
+            }
             let selection = select(&context, &mut system, &catalogue, carried.clone(), last);
             match exact::best(&context, selection.again.clone(), recording) {
                 Some(known) => known,
-                None => return Ok(conclude(&system, &selection, checked, &repaired)),
+                None => return conclude(&system, &selection, checked, repaired),
             }
         };
         // A look that makes it worse has gone astray: the tangents have to do.
@@ -133,7 +158,7 @@ fn worse(new: &Context, old: &Context) -> bool {
 fn conclude(
     system: &System,
     selection: &Selection,
-    checked: Checked,
+    checked: &Checked,
     repaired: &Repaired,
 ) -> Diagnosis {
     let context = system.context;
@@ -141,15 +166,16 @@ fn conclude(
     let extended = selection.named(system);
     let all = [selection.base.shapes.as_slice(), &extended.fit.shapes].concat();
     let halves = system.halves(&all);
-    let mut findings = checked.findings;
+    let mut findings = checked.findings.clone();
     let named = selection.findings(&extended, system, &halves);
     let left = system.residual(&selection.fit);
     // Only what is noise can be noise of a kind.
-    let mut noisy = if selection.unnamed.is_empty() {
-        noise::findings(context, &left)
+    let (mut noisy, strange) = if selection.unnamed.is_empty() {
+        noise::findings(system, &left)
     } else {
-        vec![]
+        (vec![], vec![])
     };
+    let unnamed = || selection.unnamed.iter().chain(&strange);
     noisy.extend(system.flicker.iter().map(Flicker::finding));
     let (held_before, held_after) = (
         halves.held_out(&selection.base.shapes),
@@ -173,17 +199,8 @@ fn conclude(
         finding.gain.position_error_rms_after_rad = position_after;
         findings.push(finding);
     }
-    let signature: Vec<String> = selection
-        .unnamed
-        .iter()
-        .map(|u| u.signature.clone())
-        .collect();
-    let p_value = selection
-        .unnamed
-        .iter()
-        .map(|u| u.log_p)
-        .fold(0.0, f64::min)
-        .exp();
+    let signature: Vec<String> = unnamed().map(|u| u.signature.clone()).collect();
+    let p_value = unnamed().map(|u| u.log_p).fold(0.0, f64::min).exp();
     let unexplained = Unexplained {
         significant: !signature.is_empty(),
         p_value,
@@ -213,9 +230,9 @@ fn conclude(
     let change = system
         .samples
         .sum(&extended.sensor_amounts(), Row::Tangential);
-    let positions = (0..context.samples())
-        .filter(|k| repaired.original[*k])
-        .map(|k| (context.measured[k] - change[k]) / std::f64::consts::TAU)
+    let own = repaired.place.iter();
+    let positions = own
+        .map(|&k| (context.measured[k] - change[k]) / std::f64::consts::TAU)
         .collect();
     let periods_travelled = travelled(context);
     let mut context = context.clone();

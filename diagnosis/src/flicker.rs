@@ -13,6 +13,8 @@ use crate::context::Context;
 use crate::finding::{Chip, Finding, Gain, Parameter};
 use crate::statistics::{after_trials, log_tail};
 
+/// Its name.
+pub(crate) const FLICKER: &str = "flicker_noise";
 /// Slowest part of the spectrum, cycles per recording: below, polynomials of time were taken off.
 const SLOWEST: usize = 8;
 /// Share of half the sample rate that is looked at.
@@ -269,7 +271,7 @@ impl Flicker {
     pub(crate) fn finding(&self) -> Finding {
         let [density, error] = self.density;
         Finding {
-            cause: "flicker_noise".into(),
+            cause: FLICKER.into(),
             confounded_with: vec![],
             p_value: self.log_p.exp(),
             parameters: vec![

@@ -17,7 +17,7 @@ const TIMES: usize = 12;
 /// The same of what is static, beside what depends on speed and direction.
 const SLOW: usize = 8;
 /// Knots of a slow change of any shape.
-const DRIFT: usize = 20;
+const DRIFT: usize = 40;
 /// Knots over the range of speeds.
 const SPEEDS: usize = 12;
 
@@ -25,7 +25,7 @@ const SPEEDS: usize = 12;
 type Modulation = Rc<dyn Fn(&Block, usize, &mut [f64])>;
 
 /// A piecewise linear function that is one at knot `i` of `count` on 0 … 1 and zero at the others.
-fn hat(count: usize, i: usize, x: f64) -> f64 {
+pub(crate) fn hat(count: usize, i: usize, x: f64) -> f64 {
     (1.0 - (x * (count - 1) as f64 - i as f64).abs()).max(0.0)
 }
 
@@ -38,6 +38,15 @@ fn in_time(context: &Context, count: usize) -> Modulation {
     })
 }
 
+/// Knots in time, at most so many, by which a change of what repeats every `periods` scale periods can be told from it: one
+/// for each two repetitions. With fewer than two knots nothing can.
+fn told(context: &Context, periods: f64, most: usize) -> usize {
+    let way: f64 = context.speed.iter().map(|v| v.abs()).sum();
+    let times = way / context.rate / std::f64::consts::TAU / periods;
+    let knots = ((times / 2.0) as usize).min(most);
+    if knots < 2 { 0 } else { knots }
+}
+
 /// Largest speed, radians per second.
 fn top(context: &Context) -> f64 {
     let speeds = context.speed.iter();
@@ -45,10 +54,10 @@ fn top(context: &Context) -> f64 {
 }
 
 /// Knots in time, then powers of the speed and the direction.
-fn in_time_and_speed(context: &Context) -> Modulation {
-    let (time, top) = (in_time(context, SLOW), top(context));
+fn in_time_and_speed(context: &Context, knots: usize) -> Modulation {
+    let (time, top) = (in_time(context, knots), top(context));
     Rc::new(move |block, i, out| {
-        let by: fn(f64) -> f64 = match i.checked_sub(SLOW) {
+        let by: fn(f64) -> f64 = match i.checked_sub(knots) {
             None => return time(block, i, out),
             Some(0) => f64::signum,
             Some(1) => |v| v,
@@ -201,6 +210,24 @@ fn with_angle(hertz: f64, library: &mut Library) -> Vec<Shape> {
         .collect()
 }
 
+/// What a line may do and still be one: its frequency is steady to this many hertz.
+const STEADY: f64 = 1.0;
+
+/// A line that wanders no further than a line may.
+pub(crate) fn steady(
+    context: &Context,
+    candidate: &Candidate,
+    library: &mut Library,
+) -> Vec<Shape> {
+    let duration = context.samples() as f64 / context.rate;
+    let knots = ((2.0 * STEADY * duration) as usize + 1).min(TIMES / 2);
+    if candidate.domain != Domain::Line || knots < 2 {
+        return vec![];
+    }
+    let first = &candidate.shapes[..candidate.shapes.len().min(4)];
+    modulated(first, knots, in_time(context, knots), false, library)
+}
+
 /// A basis that holds a cause and what is near it, beside the catalogue's basis of the domain.
 pub(crate) fn around(
     context: &Context,
@@ -213,20 +240,35 @@ pub(crate) fn around(
         Domain::Line => {
             let first = &own[..own.len().min(4)];
             let mut all = modulated(first, TIMES, in_time(context, TIMES), false, library);
-            if let Some(exact) = &candidate.exact {
+            // Over a few periods, what goes with the angle is a frequency that wanders.
+            let turns = told(context, 1.0, TIMES) == TIMES;
+            if let Some(exact) = candidate.exact.as_ref().filter(|_| turns) {
                 all.extend(with_angle(exact.inner[0], library));
             }
             all
         }
         Domain::Motion => modulated(own, TIMES, in_time(context, TIMES), true, library),
-        Domain::Revolution => modulated(own, TIMES, in_time(context, TIMES), false, library),
+        Domain::Revolution => {
+            let per = context.periods_per_revolution.map_or(1.0, f64::from);
+            let count = told(context, per, TIMES);
+            modulated(own, count, in_time(context, count), false, library)
+        }
         Domain::Angle | Domain::Code => {
-            let count = if speed_varies(context) {
-                SLOW + 4
+            let knots = told(context, 1.0, SLOW);
+            let count = if knots == 0 {
+                0
+            } else if speed_varies(context) {
+                knots + 4
             } else {
-                SLOW
+                knots
             };
-            modulated(own, count, in_time_and_speed(context), false, library)
+            modulated(
+                own,
+                count,
+                in_time_and_speed(context, knots),
+                false,
+                library,
+            )
         }
         Domain::Time => {
             let of: &[Of] = if candidate.name == "gain_drift" {

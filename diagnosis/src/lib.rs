@@ -33,8 +33,10 @@ mod solve;
 mod spline;
 mod statistics;
 mod sweep;
+mod timebase;
 mod trig;
 mod unseen;
+mod variance;
 mod whiten;
 
 pub use context::{Context, ContextError};

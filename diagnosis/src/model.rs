@@ -128,10 +128,11 @@ impl<'a> System<'a> {
             };
             this.samples.whiteners[*row as usize] = Whitener::of(left, gone);
         }
-        // A reference without noise says nothing about how well a spline follows real motion.
-        let least = 0.05 * this.samples.whiteners[0].sigma;
-        for whitener in &mut this.samples.whiteners {
-            whitener.sigma = whitener.sigma.max(least);
+        // A reference without noise says nothing about how well a spline follows real motion: that is worth as much as
+        // the channels could show.
+        let noise = this.samples.whiteners[0].sigma;
+        for (whitener, share) in this.samples.whiteners.iter_mut().zip([1.0, 0.05, 1.0]) {
+            whitener.sigma = whitener.sigma.max(share * noise);
         }
         // White noise changes the scale of a row only.
         let white = this.samples.whiteners.iter().all(Whitener::is_white);

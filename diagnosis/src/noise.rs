@@ -1,119 +1,256 @@
 //! Noise whose size depends on something: on the signal, on the speed.
+//!
+//! What the model leaves is whitened; then its squares tell how the variance depends on angle, speed and time (Gamma
+//! likelihood). A name is given where one shape holds what knots over all three explain, and where what is called random
+//! is no line.
 
 use crate::context::Context;
 use crate::finding::{Chip, Finding, Gain, Parameter};
-use crate::model::Residual;
-use crate::solve::Normal;
+use crate::generic::hat;
+use crate::lines;
+use crate::model::{Residual, System};
+use crate::selection::Unnamed;
 use crate::statistics::{after_trials, log_tail};
+use crate::variance::{Fitted, Squares};
 
+/// Global probability below which it is shown.
 const SHOWN: f64 = 1e-3;
+/// Shapes of noise that could have been claimed.
+const TRIALS: f64 = 30.0;
+/// Share of what knots over everything explain that a name has to hold.
+const HOLDS: f64 = 0.75;
+/// Knots in time and over the speeds.
+const KNOTS: [usize; 2] = [8, 6];
+/// Orders of the period that noise may depend on.
+const ORDERS: [f64; 3] = [1.0, 2.0, 4.0];
+/// Probability below which the highest line of a spectrum is no noise.
+const A_LINE: f64 = 1e-4;
+/// Samples that are enough to see what noise depends on.
+const ENOUGH: usize = 120_000;
+/// Equal noise of either row, unequal noise of the channels.
+const BASE: usize = 3;
 
-/// Rows: squares of the two residuals over their mean, less one; nearly independent with variance 2.
-fn squares(residual: &[f64], weight: &[f64]) -> (Vec<f64>, f64) {
-    let total: f64 = weight.iter().sum();
-    let power = residual.iter().map(|r| r * r).sum::<f64>() / total.max(1.0);
-    let scaled = residual.iter().zip(weight).map(|(r, w)| {
-        // A single sample far out is a glitch, no noise that depends on something.
-        let square = (r * r / power.max(1e-300)).min(25.0);
-        (square - 1.0) * w / 2f64.sqrt()
-    });
-    (scaled.collect(), power)
+/// A kind of noise.
+#[derive(Clone, Copy, PartialEq)]
+enum Kind {
+    Amplitude,
+    Jitter,
 }
 
-pub(crate) fn findings(context: &Context, residual: &Residual) -> Vec<Finding> {
-    let n = context.samples();
-    let (radial, power_r) = squares(&residual.radial, &context.weight);
-    let (tangential, power_t) = squares(&residual.tangential, &context.weight);
-    let mut values = radial;
-    values.extend(tangential);
-    let rows = |f: &dyn Fn(usize) -> (f64, f64)| -> Vec<f64> {
-        let mut all = vec![0.0; 2 * n];
-        for k in 0..n {
-            let (r, t) = f(k);
-            all[k] = r * context.weight[k] / power_r.max(1e-300) / 2f64.sqrt();
-            all[n + k] = t * context.weight[k] / power_t.max(1e-300) / 2f64.sqrt();
-        }
-        all
-    };
-    // Equal noise in each block; unequal noise of the channels.
-    let base = vec![
-        rows(&|_| (1.0, 0.0)),
-        rows(&|_| (0.0, 1.0)),
-        rows(&|k| {
-            let d = context.cos[k].powi(2) - context.sin[k].powi(2);
-            (d, -d)
-        }),
-    ];
-    let top = context
-        .speed
-        .iter()
-        .fold(f64::MIN_POSITIVE, |m, v| m.max(v.abs()));
-    let shapes: [(&str, Vec<f64>); 2] = [
-        (
-            "amplitude_noise",
-            rows(&|k| {
-                let (c, s) = (context.cos[k].powi(2), context.sin[k].powi(2));
-                (c * c + s * s, 2.0 * c * s)
-            }),
-        ),
-        (
-            "clock_jitter",
-            rows(&|k| (0.0, (context.speed[k] / top).powi(2))),
-        ),
-    ];
-    let before = Normal::of_columns(&values, &base).solve();
-    let mut list = vec![];
-    for (name, shape) in shapes {
-        let mut columns = base.clone();
-        columns.push(shape);
-        let solution = Normal::of_columns(&values, &columns).solve();
-        let gain = 0.5 * (solution.explained - before.explained);
-        let freedom = solution.rank.saturating_sub(before.rank);
-        let (x, error) = (solution.x[3], solution.covariance[(3, 3)].sqrt());
-        if freedom == 0 || x <= 0.0 {
-            continue;
-        }
-        let log_p = after_trials(log_tail(2.0 * gain, 1), 30.0);
-        if log_p > SHOWN.ln() {
-            continue;
-        }
-        let value = x.sqrt();
-        let (value, spread, parameter, unit, sentence) = if name == "clock_jitter" {
-            let scale = 1.0 / top;
-            (
-                value * scale,
-                error / (2.0 * value) * scale,
-                "rms_s",
-                "s",
-                format!(
-                    "the angle is noisier the faster the scale moves, as if the sampling time were random by {:.3e} s rms",
-                    value * scale
-                ),
-            )
-        } else {
-            (
-                value,
-                error / (2.0 * value),
-                "rms",
-                "1",
-                format!(
-                    "the noise of each channel grows with its signal: {:.3} % of it, rms",
-                    value * 100.0
-                ),
-            )
-        };
-        list.push(Finding {
-            cause: name.into(),
-            confounded_with: vec![],
-            p_value: log_p.exp(),
-            parameters: vec![Parameter::measured(parameter, value, spread, unit)],
-            gain: Gain::default(),
-            evidence: format!("{sentence}; it raises the log-likelihood by {gain:.1}"),
-            chip: Chip::CannotCorrect,
-            weight: gain,
-            effect: None,
-            place: None,
-        });
+/// What noise depends on, sample by sample.
+struct Dependence<'a> {
+    context: &'a Context,
+    /// Largest speed, radians per second.
+    top: f64,
+}
+
+impl Dependence<'_> {
+    fn base(&self, row: usize, k: usize, out: &mut [f64]) {
+        let sense = if row == 0 { 1.0 } else { -1.0 };
+        let unequal = self.context.cos[k].powi(2) - self.context.sin[k].powi(2);
+        out[0] = if row == 0 { 1.0 } else { 0.0 };
+        out[1] = 1.0 - out[0];
+        out[2] = sense * unequal;
     }
-    list
+
+    /// The variance of a row that a kind of noise makes, before it is whitened.
+    fn kind(&self, kind: Kind, row: usize, k: usize) -> f64 {
+        match (kind, row) {
+            (Kind::Amplitude, 0) => self.context.cos[k].powi(4) + self.context.sin[k].powi(4),
+            (Kind::Amplitude, _) => 2.0 * (self.context.cos[k] * self.context.sin[k]).powi(2),
+            (Kind::Jitter, 0) => 0.0,
+            (Kind::Jitter, _) => (self.context.speed[k] / self.top).powi(2),
+        }
+    }
+
+    /// Knots in time and over the speeds, and waves of the angle: of one row, then of the other.
+    fn anything(&self, row: usize, k: usize, out: &mut [f64]) {
+        out.fill(0.0);
+        let half = out.len() / 2;
+        let out = &mut out[row * half..][..half];
+        let context = self.context;
+        let when = k as f64 / context.samples() as f64;
+        let fast = context.speed[k].abs() / self.top;
+        for i in 0..KNOTS[0] {
+            out[i] = hat(KNOTS[0], i, when);
+        }
+        for i in 0..KNOTS[1] {
+            out[KNOTS[0] + i] = hat(KNOTS[1], i, fast);
+        }
+        let waves = out[KNOTS[0] + KNOTS[1]..].chunks_mut(2);
+        for (pair, order) in waves.zip(ORDERS) {
+            let (sin, cos) = (order * context.alpha[k]).sin_cos();
+            pair.copy_from_slice(&[cos, sin]);
+        }
+    }
+}
+
+/// Numbers of [`Dependence::anything`].
+const ANYTHING: usize = 2 * (KNOTS[0] + KNOTS[1] + 2 * ORDERS.len());
+
+/// Kinds of noise in a residual, and what depends on something and is none of them.
+pub(crate) fn findings(system: &System, residual: &Residual) -> (Vec<Finding>, Vec<Unnamed>) {
+    let context = system.context;
+    let whiteners = &system.samples.whiteners;
+    let left = [&residual.radial, &residual.tangential];
+    let white: Vec<Vec<f64>> = left
+        .iter()
+        .zip(whiteners)
+        .map(|(values, whitener)| whitener.unpredictable(values))
+        .collect();
+    let total: f64 = context.weight.iter().sum();
+    let power: Vec<f64> = white
+        .iter()
+        .map(|w| w.iter().map(|w| w * w).sum::<f64>() / total.max(1.0))
+        .collect();
+    // Fractions of a row's mean square that white noise of unit variance in the channels would be.
+    let unit = [0, 1].map(|row| whiteners[row].of_white() / power[row].max(1e-300));
+    let squares = |row: usize| -> Vec<f64> {
+        let share = |w: &f64| w * w / power[row].max(1e-300);
+        white[row].iter().map(share).collect()
+    };
+    let squares = Squares {
+        rows: [squares(0), squares(1)],
+        weight: &context.weight,
+        every: 1,
+    };
+    let top = context.speed.iter();
+    let top = top.fold(f64::MIN_POSITIVE, |m, v| m.max(v.abs()));
+    let depends = Dependence { context, top };
+    let (mut list, mut unnamed) = (vec![], vec![]);
+    for (kind, other) in [
+        (Kind::Amplitude, Kind::Jitter),
+        (Kind::Jitter, Kind::Amplitude),
+    ] {
+        // In units in which the shape of the kind has a mean near one in the row that shows it.
+        let scale = unit[usize::from(kind == Kind::Jitter)];
+        let shape =
+            |kind: Kind, row: usize, k: usize| depends.kind(kind, row, k) * unit[row] / scale;
+        let both = |row: usize, k: usize, out: &mut [f64]| {
+            depends.base(row, k, out);
+            out[BASE] = shape(other, row, k);
+            if let Some(own) = out.get_mut(BASE + 1) {
+                *own = shape(kind, row, k);
+            }
+        };
+        let plain = [1.0, 1.0, 0.0, 0.0];
+        let with = squares.fit([&plain[..], &[0.0]].concat(), &both);
+        let amount = with.x[BASE + 1];
+        if amount <= 0.0 || with.rank < BASE + 2 {
+            continue;
+        }
+        let mut own = Squares {
+            rows: squares.rows.clone(),
+            ..squares
+        };
+        own.cut(&with.x, &both);
+        let with = own.fit(with.x.clone(), &both);
+        let without = own.fit(plain.to_vec(), &both);
+        let inflation = own.inflation(&with, &both);
+        let gain = (with.likelihood - without.likelihood) / inflation;
+        let log_p = after_trials(log_tail(2.0 * gain, 1), TRIALS);
+        if log_p > SHOWN.ln() || with.x[BASE + 1] <= 0.0 {
+            continue;
+        }
+        let why = refusal(&depends, own, kind, &with, gain, &white[1], &both);
+        if let Some(why) = why {
+            unnamed.push(Unnamed {
+                log_p,
+                gain,
+                signature: why,
+            });
+            continue;
+        }
+        let amount = with.x[BASE + 1] / scale;
+        let error = (with.covariance[(BASE + 1, BASE + 1)] * inflation).sqrt() / scale;
+        list.push(finding(kind, amount, error, top, gain, log_p));
+    }
+    (list, unnamed)
+}
+
+/// Why noise that depends on something is not of a kind.
+fn refusal(
+    depends: &Dependence,
+    mut squares: Squares,
+    kind: Kind,
+    with: &Fitted,
+    gain: f64,
+    tangential: &[f64],
+    shapes: &crate::variance::Shapes,
+) -> Option<String> {
+    let n = tangential.len();
+    let name = match kind {
+        Kind::Amplitude => "amplitude noise",
+        Kind::Jitter => "clock jitter",
+    };
+    squares.every = n.div_ceil(ENOUGH);
+    let named = with.x.len();
+    let anything = |row: usize, k: usize, out: &mut [f64]| {
+        shapes(row, k, &mut out[..named]);
+        depends.anything(row, k, &mut out[named..]);
+    };
+    let known = squares.fit(with.x.clone(), shapes);
+    let any = squares.fit([&with.x[..], &[0.0; ANYTHING]].concat(), &anything);
+    let freedom = any.rank.saturating_sub(known.rank) as f64;
+    // What as many free numbers explain of noise that is of the kind does not count against it.
+    let chance = freedom / 2.0 + 2.0 * (2.0 * freedom).sqrt();
+    let beyond = (any.likelihood - known.likelihood - chance).max(0.0) * squares.every as f64;
+    let share = gain / (gain + beyond);
+    if share < HOLDS {
+        return Some(format!(
+            "the size of the noise depends on something; nearest likeness: {name}, but it holds {:.0} % of what any dependence on angle, speed and time explains",
+            share * 100.0
+        ));
+    }
+    if kind == Kind::Jitter {
+        // The sampling time's error, as far as the speed shows it.
+        let time: Vec<f64> = (0..n)
+            .map(|k| tangential[k] * depends.context.speed[k] / depends.top)
+            .collect();
+        let (power, _) = lines::spectrum(&time);
+        let mean = power.iter().sum::<f64>() / power.len() as f64;
+        let highest = power.iter().copied().fold(0.0, f64::max);
+        if n as f64 * (-highest / mean).exp() < A_LINE {
+            return Some(format!(
+                "the sampling time wanders; nearest likeness: {name}, but a line stands in its spectrum"
+            ));
+        }
+    }
+    None
+}
+
+fn finding(kind: Kind, amount: f64, error: f64, top: f64, gain: f64, log_p: f64) -> Finding {
+    let (value, error) = (amount.sqrt(), error / (2.0 * amount.sqrt()));
+    let (cause, parameter, sentence) = match kind {
+        Kind::Jitter => {
+            let value = value / top;
+            (
+                "clock_jitter",
+                Parameter::measured("rms_s", value, error / top, "s"),
+                format!(
+                    "the angle is noisier the faster the scale moves, as if the sampling time were random by {value:.3e} s rms"
+                ),
+            )
+        }
+        Kind::Amplitude => (
+            "amplitude_noise",
+            Parameter::measured("rms", value, error, "1"),
+            format!(
+                "the noise of each channel grows with its signal: {:.3} % of it, rms",
+                value * 100.0
+            ),
+        ),
+    };
+    Finding {
+        cause: cause.into(),
+        confounded_with: vec![],
+        p_value: log_p.exp(),
+        parameters: vec![parameter],
+        gain: Gain::default(),
+        evidence: format!("{sentence}; it raises the log-likelihood by {gain:.1}"),
+        chip: Chip::CannotCorrect,
+        weight: gain,
+        effect: None,
+        place: None,
+    }
 }

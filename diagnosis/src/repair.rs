@@ -2,46 +2,58 @@
 
 use nonius_recording::Recording;
 
-/// A recording on a regular time base, and which of its samples are of the original.
+use crate::checks::Checked;
+
+/// A recording on a regular time base, and where the samples of the original stand in it.
 pub(crate) struct Repaired {
     pub(crate) recording: Recording,
     pub(crate) weight: Vec<f64>,
-    pub(crate) original: Vec<bool>,
+    /// One per sample of the original.
+    pub(crate) place: Vec<usize>,
 }
 
-/// Fills each gap (index of the sample behind it, how many are missing) with a straight line that does not count.
-pub(crate) fn repair(recording: &Recording, weight: &[f64], gaps: &[(usize, usize)]) -> Repaired {
-    let filled = |values: &[f64]| -> Vec<f64> {
-        let mut out = Vec::with_capacity(values.len());
-        let mut next = gaps.iter().peekable();
-        for (k, value) in values.iter().enumerate() {
-            if let Some((_, missing)) = next.next_if(|g| g.0 == k) {
-                let before = values[k.saturating_sub(1)];
-                for i in 1..=*missing {
-                    let share = i as f64 / (*missing + 1) as f64;
-                    out.push(before + share * (value - before));
-                }
-            }
-            out.push(*value);
-        }
-        out
+/// Fills each gap (index of the sample behind it, how many are missing) with a straight line that does not count, and
+/// leaves out samples that were put in.
+pub(crate) fn repair(recording: &Recording, checked: &Checked) -> Repaired {
+    let n = recording.samples();
+    let kept: Vec<bool> = {
+        let mut kept = vec![true; n];
+        checked.extra.iter().for_each(|k| kept[*k] = false);
+        kept
     };
-    let mut original = vec![];
-    let mut next = gaps.iter().peekable();
-    for k in 0..recording.samples() {
+    // For every sample of the repaired recording: the one behind it, and how far on the way from the one before.
+    let (mut places, mut sources) = (Vec::with_capacity(n), vec![]);
+    let mut next = checked.gaps.iter().peekable();
+    let mut last = 0;
+    for k in 0..n {
         if let Some((_, missing)) = next.next_if(|g| g.0 == k) {
-            original.extend(std::iter::repeat_n(false, *missing));
+            let share = |i: usize| i as f64 / (*missing + 1) as f64;
+            sources.extend((1..=*missing).map(|i| (last, k, share(i))));
         }
-        original.push(true);
+        if kept[k] {
+            sources.push((k, k, 0.0));
+            last = k;
+        }
+        places.push(sources.len().saturating_sub(1));
     }
-    let counts = filled(weight);
-    let weight = counts
+    let filled = |values: &[f64]| -> Vec<f64> {
+        let between =
+            |(a, b, share): &(usize, usize, f64)| values[*a] + share * (values[*b] - values[*a]);
+        sources.iter().map(between).collect()
+    };
+    let weight = sources
         .iter()
-        .zip(&original)
-        .map(|(w, own)| if *own { *w } else { 0.0 })
+        .map(|(a, b, _)| if a == b { checked.weight[*a] } else { 0.0 })
         .collect();
     let mut repaired = recording.clone();
+    // Where the clock shows nothing of it, time goes on as it should.
+    let irregular = !checked.extra.is_empty() || sources.len() > n;
     repaired.time_s = filled(&recording.time_s);
+    if irregular {
+        let (first, rate) = (repaired.time_s[0], recording.metadata.sample_rate_hz);
+        let count = repaired.time_s.len();
+        repaired.time_s = (0..count).map(|k| first + k as f64 / rate).collect();
+    }
     repaired.cos = filled(&recording.cos);
     repaired.sin = filled(&recording.sin);
     repaired.reference_rad = recording.reference_rad.as_deref().map(filled);
@@ -50,6 +62,6 @@ pub(crate) fn repair(recording: &Recording, weight: &[f64], gaps: &[(usize, usiz
     Repaired {
         recording: repaired,
         weight,
-        original,
+        place: places,
     }
 }

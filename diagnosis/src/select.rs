@@ -1,7 +1,7 @@
 //! Which causes are in a recording: the one that explains most first, rivals named, unknown shapes left unnamed.
 
 use crate::cause::{Candidate, Domain, Sign};
-use crate::causes::{self, Catalogue};
+use crate::causes::{self, Catalogue, HYSTERESIS};
 use crate::contender::{Contender, contender, lives};
 use crate::context::Context;
 use crate::exact::{self, Start};
@@ -201,13 +201,21 @@ pub(crate) fn select(
     if system.flicker.is_some() {
         // What is slow in the channels is that noise: it cannot be told from drift here.
         closed.extend([Domain::Time]);
-        refused.extend(["hysteresis", "ac_coupling"]);
+        refused.extend([HYSTERESIS, "ac_coupling"]);
     }
     while found.accepted.len() + found.unnamed.len() < MOST {
         let residual = system.residual(&found.fit);
         let coloured = system.flicker.is_some();
         let shown = causes::shown(context, &residual, coloured, &mut system.samples.library);
-        let open = |c: &Candidate| !closed.contains(&c.domain) && !refused.contains(&c.name);
+        // The direction turns over in one way only.
+        let twice = found
+            .accepted
+            .iter()
+            .any(|a| a.candidate.name == HYSTERESIS);
+        let open = |c: &Candidate| {
+            let again = twice && c.name == HYSTERESIS;
+            !closed.contains(&c.domain) && !refused.contains(&c.name) && !again
+        };
         let beside = Beside::new(&system.total, &found.fit.shapes);
         let known = catalogue.candidates.iter().filter(|c| open(c));
         let mut scored: Vec<Scored> = known.filter_map(|c| score(&beside, c.clone())).collect();

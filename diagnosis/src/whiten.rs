@@ -82,6 +82,20 @@ impl Whitener {
         self.coefficients.is_empty()
     }
 
+    /// The unpredictable part of a whole record, in units of its rms; before it, nothing was.
+    pub(crate) fn unpredictable(&self, values: &[f64]) -> Vec<f64> {
+        let past = [vec![0.0; ORDER], values.to_vec()].concat();
+        let mut white = past.clone();
+        self.block(1, values.len(), &past, &mut white);
+        white[ORDER..].iter().map(|w| w / self.sigma).collect()
+    }
+
+    /// What of the power of white noise is in it, in the same unit.
+    pub(crate) fn of_white(&self) -> f64 {
+        let sum: f64 = self.coefficients.iter().map(|a| a * a).sum();
+        (1.0 + sum) / (self.sigma * self.sigma)
+    }
+
     /// The unpredictable part of columns that have `ORDER` values of their past before them; in the unit of the values.
     pub(crate) fn block(&self, columns: usize, samples: usize, plain: &[f64], white: &mut [f64]) {
         if self.is_white() {

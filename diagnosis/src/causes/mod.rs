@@ -25,6 +25,12 @@ pub(crate) use speed::varies as speed_varies;
 /// Highest order of the scale period.
 pub(crate) const ORDERS: usize = 8;
 
+/// Offsets with the direction of motion.
+pub(crate) const HYSTERESIS: &str = "hysteresis";
+
+/// A gain that follows the acceleration: no cause of the contract's list, so it is never a name.
+pub(crate) const ACCELERATION_GAIN: &str = "acceleration_gain";
+
 /// What does not depend on what is left of the recording: functions, causes, and generic bases.
 #[derive(Default)]
 pub(crate) struct Catalogue {

@@ -12,8 +12,10 @@ use crate::library::{Library, Shape, Use};
 use crate::model::Residual;
 
 /// Orders of the revolution that are tried for cogging.
-const ORDERS: usize = 64;
+const ORDERS: usize = 128;
 const PLACES: usize = 72;
+/// Times that a place has to be passed on average for a dip to come every time.
+const AGAIN: f64 = 1.5;
 /// Widths of a dip that are tried, radians.
 const WIDTHS: [f64; 5] = [0.02, 0.04, 0.08, 0.16, 0.3];
 
@@ -25,7 +27,13 @@ pub(crate) fn candidates(
     let Some(phi) = context.phi.as_ref().filter(|phi| turns(phi) >= 0.9) else {
         return vec![];
     };
-    let mut list = contamination(phi, residual, library);
+    // What comes once is no dip at one place of the revolution every time.
+    let way: f64 = phi.windows(2).map(|w| (w[1] - w[0]).abs()).sum();
+    let mut list = if way / TAU > AGAIN * turns(phi).min(1.0) {
+        contamination(phi, residual, library)
+    } else {
+        vec![]
+    };
     list.extend(cogging(context, phi, residual, library));
     list
 }

@@ -5,16 +5,22 @@ use std::rc::Rc;
 
 use rustfft::num_complex::Complex;
 
-use super::{Catalogue, Modulated, modulated};
+use super::{ACCELERATION_GAIN, Catalogue, HYSTERESIS, Modulated, modulated};
 use crate::block::Block;
 use crate::cause::{Candidate, Domain, Exact, Sign, each};
 use crate::context::Context;
 use crate::finding::{Chip, Parameter};
 use crate::library::{Library, Shape, Use};
-use crate::trig::{Trig, channel, derivatives};
+use crate::trig::{Trig, channel, derivatives, normalised};
 
 /// Share of the speed that has to change for its effects to be told from a phase error.
 const CHANGE: f64 = 0.02;
+
+/// Products of the largest speed and a time constant that are tried.
+const REACHES: [f64; 5] = [0.003, 0.02, 0.1, 0.4, 1.0];
+
+/// Scale periods of travel that ac coupling needs to be told from shapes of the angle.
+const FEWEST: f64 = 6.0;
 
 /// Whether the speed changes enough to show what depends on it.
 pub(crate) fn varies(context: &Context) -> bool {
@@ -83,6 +89,38 @@ fn falls(block: &Block, tau2: f64) -> Vec<f64> {
         .collect()
 }
 
+/// What the same low pass of time constant `tau` in both channels does against a reference, over `tau`: the radius falls,
+/// and the angle is late.
+fn falls_behind(block: &Block, tau: f64, out: &mut [f64]) {
+    let (radius, angle) = out.split_at_mut(block.len());
+    for (k, v) in block.speed.iter().enumerate() {
+        let x = v * tau;
+        let root = (1.0 + x * x).sqrt();
+        radius[k] = -v * x / (root * (1.0 + root));
+        angle[k] = if x == 0.0 { -v } else { -x.atan() / tau };
+    }
+}
+
+/// The direction of motion; at rest, the one in which it came. What the speed is below a small share of the largest is its
+/// sign only if it goes on to more.
+fn sides(context: &Context, top: f64) -> Vec<f64> {
+    const REST: f64 = 0.01;
+    let speed = &context.speed;
+    let moves = |v: &f64| v.abs() > REST * top;
+    let mut side = speed.iter().find(|v| moves(v)).map_or(1.0, |v| v.signum());
+    let mut list = vec![side; speed.len()];
+    for k in 0..speed.len() {
+        if moves(&speed[k]) && speed[k].signum() != side {
+            side = speed[k].signum();
+            // It turned where the speed last was zero.
+            let turned = speed[..k].iter().rposition(|v| v.signum() != side);
+            list[turned.map_or(0, |t| t + 1)..k].fill(side);
+        }
+        list[k] = side;
+    }
+    list
+}
+
 /// A shape that is made anew with the size of its amount.
 fn follows(inner: f64, make: impl Fn(f64, &mut Library) -> Vec<Shape> + 'static) -> Option<Exact> {
     Some(Exact {
@@ -97,6 +135,8 @@ fn follows(inner: f64, make: impl Fn(f64, &mut Library) -> Vec<Shape> + 'static)
 const ODD: usize = 0;
 const EVEN: usize = 1;
 const SIGN: usize = 2;
+const SOFT: usize = 3;
+const ACCELERATION: usize = 4;
 
 pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
     let beta = context.ellipse.beta;
@@ -104,12 +144,21 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
         .speed
         .iter()
         .fold(f64::MIN_POSITIVE, |m, v| m.max(v.abs()));
-    let speed = Modulated(modulated(&mut catalogue.library, 3, move |block, which| {
+    let steepest = context.acceleration.iter();
+    let top_acceleration = steepest.fold(f64::MIN_POSITIVE, |m, a| m.max(a.abs()));
+    let sides = Rc::new(sides(context, top));
+    let speed = Modulated(modulated(&mut catalogue.library, 5, move |block, which| {
         let by = |f: fn(f64) -> f64| block.speed.iter().map(|v| f(v / top)).collect();
         match which {
             ODD => by(|v| v),
             EVEN => by(|v| v * v),
-            _ => by(f64::signum),
+            SIGN => sides[block.start..][..block.len()].to_vec(),
+            // It takes some way, and so some speed, to turn over.
+            SOFT => by(|v| v / (v * v + 0.05 * 0.05).sqrt()),
+            _ => {
+                let most = block.acceleration.iter();
+                most.map(|a| a / top_acceleration).collect()
+            }
         }
     }));
     if varies(context) {
@@ -160,6 +209,27 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
                 )
             },
         ));
+        for reach in REACHES {
+            let make = |tau: f64, library: &mut Library| {
+                let fill = move |block: &Block, out: &mut [f64]| falls_behind(block, tau, out);
+                vec![library.add(1, Use::Rows, Rc::new(fill)).both(0)]
+            };
+            let tau = reach / top;
+            let shape = make(tau, &mut catalogue.library).swap_remove(0);
+            list.push(Candidate {
+                trials: REACHES.len() as f64,
+                exact: follows(tau, make),
+                ..one(
+                    "common_bandwidth",
+                    shape,
+                    &["tau_s"],
+                    "s",
+                    Chip::CannotCorrect,
+                    Sign::Positive,
+                    |t| format!("both channels are late against the reference, and their amplitude falls with speed, as behind a low pass of {t:.3e} s"),
+                )
+            });
+        }
     }
     if varies(context) {
         list.push(one(
@@ -184,7 +254,7 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
             });
         }
         for which in [0, 1] {
-            for reach in [0.003, 0.02, 0.1, 0.4, 1.0] {
+            for reach in REACHES {
                 let tau = reach / top;
                 let name: [&'static [&'static str]; 2] = [&["tau_cos_s"], &["tau_sin_s"]];
                 let make = move |tau: f64, library: &mut Library| {
@@ -265,18 +335,42 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
             ..one("delayed_crosstalk", Shape::default(), &["product"], "s", Chip::CannotCorrect, Sign::Any, |_| String::new())
         });
     }
-    if reverses(context) {
+    let turnings: &[usize] = if reverses(context) {
+        &[SIGN, SOFT]
+    } else {
+        &[]
+    };
+    for turning in turnings {
         list.push(Candidate {
+            trials: turnings.len() as f64,
             shapes: [0, 1]
-                .map(|which| speed.shape(SIGN, &channel(beta, which, &Trig::constant(1.0))))
+                .map(|which| speed.shape(*turning, &channel(beta, which, &Trig::constant(1.0))))
                 .into(),
             parameters: each(&["offset_cos", "offset_sin"], "amplitude"),
             evidence: Rc::new(|p| {
                 format!("the offsets change with the direction of motion by {:.4} % (cos) and {:.4} % (sin) of the amplitude", p[0].value * 200.0, p[1].value * 200.0)
             }),
-            ..one("hysteresis", Shape::default(), &["offset"], "amplitude", Chip::CannotCorrect, Sign::Any, |_| String::new())
+            ..one(HYSTERESIS, Shape::default(), &["offset"], "amplitude", Chip::CannotCorrect, Sign::Any, |_| String::new())
         });
     }
+    // A head that tilts with the acceleration is no cause of the catalogue, and must not be taken for one.
+    list.push(Candidate {
+        shapes: [0, 1]
+            .map(|which| {
+                let own = channel(beta, which, &normalised(beta)[which]);
+                speed.shape(ACCELERATION, &own)
+            })
+            .into(),
+        ..one(
+            ACCELERATION_GAIN,
+            Shape::default(),
+            &["gain"],
+            "1",
+            Chip::CannotCorrect,
+            Sign::Any,
+            |_| String::new(),
+        )
+    });
     ac_coupling(context, catalogue);
 }
 
@@ -326,6 +420,11 @@ fn high_pass(sample_rate: f64) -> impl Fn(f64, &mut Library) -> Vec<Shape> + 'st
 /// A first-order high pass takes the slow part of the signals away.
 fn ac_coupling(context: &Context, catalogue: &mut Catalogue) {
     let duration = context.samples() as f64 / context.rate;
+    // Over a few periods, what leaks away is any shape of the angle.
+    let way: f64 = context.speed.iter().map(|v| v.abs()).sum();
+    if way / context.rate < FEWEST * std::f64::consts::TAU {
+        return;
+    }
     // At the lowest corner a charge leaks away along a line, as it does at any below.
     let (mut corner, mut least) = (0.03 / duration, 0.0);
     let corners = (context.rate / 30.0 / corner).log(3.0).floor().max(1.0);
