@@ -101,12 +101,12 @@ mod tests {
     #[test]
     fn nothing_hidden_leaves_nothing() {
         for seed in [0, 3, 6] {
-            let case = Case::draw(seed, 6000).unwrap();
+            let case = Case::draw(seed, 6000).expect("a case");
             let left = five_parameters(&case.world, &case.rows);
             // Second order of the noise and five parameters' errors: far less than the noise itself.
             assert!(left < 0.08 * case.truth.noise, "{seed}: {left}");
             let true_positions: Vec<f64> = case.rows.alpha.iter().map(|a| a / TAU).collect();
-            let noise = of_positions(&case.world, &case.rows, &true_positions).unwrap();
+            let noise = of_positions(&case.world, &case.rows, &true_positions).expect("a baseline");
             assert!((noise / case.truth.noise - 1.0).abs() < 0.1, "{noise}");
         }
     }

@@ -273,7 +273,7 @@ mod tests {
     #[test]
     fn calibration_and_smooth_motion_are_invisible() {
         let world = world(false);
-        let visible = Visible::new(&world, false).unwrap();
+        let visible = Visible::new(&world, false).expect("a world");
         let offset = change(&world, |_, _| [1e-3, 0.0]);
         assert!(visible.snr(&offset) < 1e-3, "{}", visible.snr(&offset));
         let slow = change(&world, |t, a| {
@@ -292,7 +292,7 @@ mod tests {
         let whole = |world: &World| {
             let harmonic = change(world, |_, a| [1e-3 * (5.0 * a).cos(), 0.0]);
             let size: f64 = harmonic[0].iter().map(|d| d * d).sum();
-            let seen = Visible::new(world, false).unwrap().snr(&harmonic);
+            let seen = Visible::new(world, false).expect("a world").snr(&harmonic);
             seen / (size.sqrt() / world.sigma())
         };
         assert!((0.9..=1.0).contains(&whole(&still)), "{}", whole(&still));

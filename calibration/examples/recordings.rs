@@ -1,7 +1,6 @@
 //! What each method makes of the measured recordings: writes the tables in docs/offline-calibration.md.
 //!
 //!     cargo run -p nonius-calibration --example recordings
-#![allow(clippy::unwrap_used)]
 
 #[path = "../tests/support/recordings.rs"]
 mod recordings;

@@ -3,7 +3,7 @@
 //! The paper goes down the gradient; what counts is where it ends, and Levenberg–Marquardt gets there sooner. It works
 //! on signals normalised by an ellipse, where all columns of M are of one size; J does not mind.
 //!
-//! With the cubic sets one direction of Θ changes no radius: [`BLIND`]. The search stays where it starts along it, at
+//! With the cubic sets one direction of Θ changes no radius: [`BLIND`](crate::set::BLIND). The search stays where it starts along it, at
 //! straight channels.
 
 use nalgebra::{DMatrix, DVector, SVector};
@@ -11,173 +11,11 @@ use nonius_recording::Ellipse;
 
 use crate::curve::Curve;
 use crate::sandwich::Sandwich;
-
-/// Which parameters.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Set {
-    /// Gains and offsets, equation (6).
-    Four,
-    /// And the phase, equation (7).
-    Five,
-    /// Cubic polynomials of each channel, 5.4.
-    Eight,
-    /// And the phase, after the bending: s = θ5 y_s + θ6 y_s² + θ7 y_s³ + θ8 + θ9 c, with c the corrected cosine.
-    Nine,
-}
-
-/// The change of the first eight of Θ, for signals of amplitude 1, that turns the angle by ½ sin 2α per unit and leaves
-/// the radius alone: δc = −c + c³, δs = s − s³, and c δc + s δs = 0 on the unit circle.
-pub const BLIND: [f64; 8] = [-1.0, 0.0, 1.0, 0.0, 1.0, 0.0, -1.0, 0.0];
+use crate::set::Set;
 
 /// Eigenvalues below this share of the largest are a direction that these samples do not show.
 const FAINT: f64 = 1e-9;
 const ITERATIONS: usize = 200;
-
-impl Set {
-    /// Number of parameters.
-    #[must_use]
-    pub fn len(self) -> usize {
-        match self {
-            Self::Four => 4,
-            Self::Five => 5,
-            Self::Eight => 8,
-            Self::Nine => 9,
-        }
-    }
-
-    /// Never.
-    #[must_use]
-    pub fn is_empty(self) -> bool {
-        false
-    }
-
-    /// Whether channels are bent.
-    #[must_use]
-    pub fn cubic(self) -> bool {
-        matches!(self, Self::Eight | Self::Nine)
-    }
-
-    /// The corrected pair.
-    #[must_use]
-    pub fn correct(self, theta: &[f64], y_c: f64, y_s: f64) -> (f64, f64) {
-        let cubic = |t: &[f64], y: f64| ((t[2] * y + t[1]) * y + t[0]) * y + t[3];
-        match self {
-            Self::Four => (theta[0] * y_c + theta[1], theta[2] * y_s + theta[3]),
-            Self::Five => (
-                theta[0] * y_c + theta[1],
-                theta[2] * y_s + theta[3] + theta[4] * y_c,
-            ),
-            Self::Eight => (cubic(&theta[..4], y_c), cubic(&theta[4..8], y_s)),
-            Self::Nine => {
-                let c = cubic(&theta[..4], y_c);
-                (c, cubic(&theta[4..8], y_s) + theta[8] * c)
-            }
-        }
-    }
-
-    /// Derivative of ‖(c, s)‖² by Θ.
-    fn slope(self, theta: &[f64], y_c: f64, y_s: f64, out: &mut [f64]) {
-        let (c, s) = self.correct(theta, y_c, y_s);
-        match self {
-            Self::Four | Self::Five => {
-                out[..4].copy_from_slice(&[2.0 * c * y_c, 2.0 * c, 2.0 * s * y_s, 2.0 * s]);
-                if let Some(five) = out.get_mut(4) {
-                    *five = 2.0 * s * y_c;
-                }
-            }
-            Self::Eight | Self::Nine => {
-                // The corrected cosine acts in both rows of the nine.
-                let cross = theta.get(8).copied().unwrap_or(0.0);
-                let by_c = 2.0 * (c + cross * s);
-                let by_s = 2.0 * s;
-                for (i, (y, by)) in [(y_c, by_c), (y_s, by_s)].into_iter().enumerate() {
-                    let own = [by * y, by * y * y, by * y * y * y, by];
-                    out[4 * i..4 * i + 4].copy_from_slice(&own);
-                }
-                if let Some(nine) = out.get_mut(8) {
-                    *nine = by_s * c;
-                }
-            }
-        }
-    }
-
-    /// Unit of each parameter: 1/column^power.
-    #[must_use]
-    pub fn powers(self) -> Vec<i32> {
-        let all = match self {
-            Self::Four | Self::Five => [1, 0, 1, 0, 1, 0, 0, 0, 0],
-            Self::Eight | Self::Nine => [1, 2, 3, 0, 1, 2, 3, 0, 0],
-        };
-        all[..self.len()].to_vec()
-    }
-
-    /// Θ that does nothing to signals normalised by `frame`, but for the phase.
-    fn start(self, frame: &Ellipse) -> DVector<f64> {
-        let (cos, tan) = (frame.beta.cos(), frame.beta.tan());
-        DVector::from_vec(match self {
-            Self::Four => vec![1.0, 0.0, 1.0, 0.0],
-            Self::Five => vec![1.0, 0.0, 1.0 / cos, 0.0, tan],
-            Self::Eight => vec![1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0],
-            Self::Nine => vec![1.0, 0.0, 0.0, 0.0, 1.0 / cos, 0.0, 0.0, 0.0, tan],
-        })
-    }
-
-    /// Orthogonal directions in which to search: all but the blind one.
-    fn directions(self) -> DMatrix<f64> {
-        let n = self.len();
-        if !self.cubic() {
-            return DMatrix::identity(n, n);
-        }
-        let blind = DVector::from_fn(n, |i, _| BLIND.get(i).copied().unwrap_or(0.0)).normalize();
-        // A reflection that turns the first axis into the blind direction; its other columns are orthogonal to it.
-        let mut mirror = -blind;
-        mirror[0] += 1.0;
-        let mirror = mirror.normalize();
-        let reflection = DMatrix::identity(n, n) - &mirror * mirror.transpose() * 2.0;
-        reflection.columns(1, n - 1).into_owned()
-    }
-
-    /// Θ of normalised signals as a linear map to Θ of raw ones: u = (y − b)/a put into the polynomials.
-    fn to_raw(self, frame: &Ellipse) -> DMatrix<f64> {
-        let n = self.len();
-        let mut map = DMatrix::zeros(n, n);
-        let channel = |a: f64, b: f64| (1.0 / a, -b / a);
-        let (c, s) = (channel(frame.a_c, frame.b_c), channel(frame.a_s, frame.b_s));
-        match self {
-            Self::Four | Self::Five => {
-                for (i, (g, h)) in [(0, c), (2, s)] {
-                    map[(i, i)] = g;
-                    map[(i + 1, i)] = h;
-                    map[(i + 1, i + 1)] = 1.0;
-                }
-                if self == Self::Five {
-                    map[(4, 4)] = c.0;
-                    map[(3, 4)] = c.1;
-                }
-            }
-            Self::Eight | Self::Nine => {
-                for (i, (g, h)) in [(0, c), (4, s)] {
-                    // Rows y, y², y³, 1; columns u, u², u³, 1 with u = g y + h.
-                    let block = [
-                        [g, 2.0 * g * h, 3.0 * g * h * h, 0.0],
-                        [0.0, g * g, 3.0 * g * g * h, 0.0],
-                        [0.0, 0.0, g * g * g, 0.0],
-                        [h, h * h, h * h * h, 1.0],
-                    ];
-                    for (r, row) in block.iter().enumerate() {
-                        for (k, value) in row.iter().enumerate() {
-                            map[(i + r, i + k)] = *value;
-                        }
-                    }
-                }
-                if self == Self::Nine {
-                    map[(8, 8)] = 1.0;
-                }
-            }
-        }
-        map
-    }
-}
 
 /// A minimum of J.
 #[derive(Clone, Debug, PartialEq)]

@@ -3,8 +3,6 @@
 //! [`calibrate`] runs one [`Method`] of the paper's section 5; [`Method::Unbiased`] is the default. Signals are in any
 //! unit, both in the same one. [`cramer_rao`] is what no estimator can beat, [`report()`] the result to be read.
 
-#![cfg_attr(test, allow(clippy::unwrap_used))]
-
 mod calibrate;
 pub mod conic;
 pub mod cramer_rao;
@@ -17,6 +15,7 @@ mod report;
 mod result;
 mod samples;
 mod sandwich;
+pub mod set;
 pub mod unbiased;
 mod words;
 

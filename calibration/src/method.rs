@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::gradient::Set;
+use crate::set::Set;
 
 /// How to calibrate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

@@ -231,7 +231,7 @@ mod tests {
     }
 
     fn ratio(residuals: &[Residual]) -> (f64, f64) {
-        let found = variances(residuals, 1.0, 1.0).unwrap();
+        let found = variances(residuals, 1.0, 1.0).expect("there is one");
         ((found.sin / found.cos).sqrt(), found.log_ratio_error)
     }
 
@@ -262,7 +262,7 @@ mod tests {
     #[test]
     fn a_distortion_is_found_measured_and_taken_out() {
         let mut residuals = circle(5, 1.0, |_, a| 3.0 * (4.0 * a).cos());
-        let (rms, order) = take_shape(&mut residuals).unwrap();
+        let (rms, order) = take_shape(&mut residuals).expect("there is one");
         assert_eq!(order, 4);
         assert!((rms - 3.0 / 2f64.sqrt()).abs() < 0.1, "{rms}");
         assert!(ratio(&residuals).0.ln().abs() < 0.15);

@@ -36,7 +36,7 @@ pub struct Calibration {
     pub residual_rms: f64,
     /// The ellipse, equation (4).
     pub ellipse: Ellipse,
-    /// Θ of the method's own parameter set, for [`crate::gradient::Set::correct`]; none where nothing is known.
+    /// Θ of the method's own parameter set, for [`crate::set::Set::correct`]; none where nothing is known.
     pub theta: Vec<f64>,
     /// Physical parameters, then Θ.
     pub parameters: Vec<Parameter>,

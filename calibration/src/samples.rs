@@ -114,7 +114,7 @@ mod tests {
             (cos[k], sin[k]) = (0.0, 0.0);
         }
         sin[900] = 40.0;
-        let samples = Samples::of(&cos, &sin).unwrap();
+        let samples = Samples::of(&cos, &sin).expect("two channels");
         assert_eq!(samples.outliers, 5);
         assert_eq!(samples.cos.len(), 1995);
     }
@@ -126,7 +126,7 @@ mod tests {
         let still = (cos[77], sin[77]);
         cos.extend(vec![still.0; 18_000]);
         sin.extend(vec![still.1; 18_000]);
-        assert_eq!(Samples::of(&cos, &sin).unwrap().outliers, 0);
+        assert_eq!(Samples::of(&cos, &sin).expect("two channels").outliers, 0);
     }
 
     #[test]

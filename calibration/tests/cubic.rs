@@ -1,9 +1,9 @@
 //! Section 5.4: cubic channels, and the direction that the radius cannot see.
-#![allow(clippy::unwrap_used)]
 
 use std::f64::consts::TAU;
 
-use nonius_calibration::gradient::{BLIND, Set, minimise};
+use nonius_calibration::gradient::minimise;
+use nonius_calibration::set::{BLIND, Set};
 use nonius_calibration::{Calibration, Curve, Ellipse, Method, Options, calibrate};
 
 const SENSOR: Ellipse = Ellipse {
@@ -52,7 +52,7 @@ fn angle_error(found: &Calibration, cos: &[f64], sin: &[f64]) -> f64 {
 }
 
 fn found(method: Method, signals: &(Vec<f64>, Vec<f64>)) -> Calibration {
-    calibrate(&signals.0, &signals.1, method, &Options::default()).unwrap()
+    calibrate(&signals.0, &signals.1, method, &Options::default()).expect("a calibration")
 }
 
 /// On the unit circle the direction moves the pair across the radius, by ½ sin 2α per unit, and in no other way.

@@ -1,5 +1,4 @@
 //! Every method on signals whose parameters are known.
-#![allow(clippy::unwrap_used)]
 
 use nonius_calibration::conic::closed_form;
 use nonius_calibration::{Curve, Ellipse, Error, Method, Options, calibrate, undetermined};
@@ -31,7 +30,7 @@ fn every_method_finds_what_it_can_see() {
         );
         let truth = crooked(if sees_phase { 0.08 } else { 0.0 });
         let (cos, sin) = signals(&truth, 3.0, 3000);
-        let found = calibrate(&cos, &sin, method, &Options::default()).unwrap();
+        let found = calibrate(&cos, &sin, method, &Options::default()).expect("a calibration");
         let tolerance = if method == Method::Extremes {
             1e-5
         } else {
@@ -84,7 +83,7 @@ fn closed_form_solves_equations_5() {
                 - beta.cos().powi(2),
         ];
         for sign in [1.0, -1.0] {
-            let found = closed_form(theta.map(|t| t * sign)).unwrap();
+            let found = closed_form(theta.map(|t| t * sign)).expect("there is one");
             let miss = (found.parameters() - e.parameters()).amax();
             assert!(miss < 1e-12, "{found:?} {e:?}");
         }
@@ -102,7 +101,7 @@ fn theta_and_physical_parameters_are_each_other() {
 fn short_arcs_are_named() {
     let (cos, sin) = signals(&crooked(0.1), 0.4, 2000);
     for method in [Method::Unbiased, Method::Heydemann] {
-        let found = calibrate(&cos, &sin, method, &Options::default()).unwrap();
+        let found = calibrate(&cos, &sin, method, &Options::default()).expect("a calibration");
         assert!(
             found
                 .cannot_tell
@@ -151,7 +150,7 @@ fn what_is_no_pair_is_refused() {
 fn a_line_is_no_ellipse() {
     let wave: Vec<f64> = (0..100).map(|k| (f64::from(k) * 0.1).sin()).collect();
     for method in ALL {
-        let error = calibrate(&wave, &wave, method, &Options::default()).unwrap_err();
+        let error = calibrate(&wave, &wave, method, &Options::default()).expect_err("a refusal");
         assert_eq!(error, Error::NoEllipse);
         let said = undetermined(method, &wave, &wave, &error);
         assert!(

@@ -1,5 +1,4 @@
 //! What must hold of every method, whatever the sensor.
-#![allow(clippy::unwrap_used)]
 
 use nonius_calibration::cramer_rao::{Plan, bound, with_adc};
 use nonius_calibration::{Calibration, Curve, Ellipse, Method, Options, calibrate};
@@ -34,7 +33,7 @@ fn noisy(ellipse: &Ellipse, seed: u64, sigma: f64) -> (Vec<f64>, Vec<f64>) {
 }
 
 fn found(method: Method, cos: &[f64], sin: &[f64]) -> Calibration {
-    calibrate(cos, sin, method, &Options::default()).unwrap()
+    calibrate(cos, sin, method, &Options::default()).expect("a calibration")
 }
 
 proptest! {
@@ -89,14 +88,14 @@ proptest! {
         let glitched = found(Method::Unbiased, &cos, &sin);
         prop_assert_eq!(glitched.outliers, clean.outliers + 1);
         for (p, q) in clean.parameters.iter().zip(&glitched.parameters) {
-            let error = p.std_error.unwrap();
+            let error = p.std_error.expect("a standard error");
             prop_assert!((p.value - q.value).abs() < error, "{}: {} {}", p.name, p.value, q.value);
         }
         cos.reverse();
         sin.reverse();
         let reversed = found(Method::Unbiased, &cos, &sin);
         for (p, q) in glitched.parameters.iter().zip(&reversed.parameters) {
-            prop_assert!((p.value - q.value).abs() < 1e-2 * p.std_error.unwrap());
+            prop_assert!((p.value - q.value).abs() < 1e-2 * p.std_error.expect("a standard error"));
         }
     }
 
@@ -104,13 +103,13 @@ proptest! {
     #[test]
     fn the_bound_scales(ellipse in sensor(), sigma in 1e-4..0.05f64, start in 0.0..6.0f64) {
         let plan = Plan { ellipse, noise: [sigma; 2], lsb: [0.0; 2], samples: 720, start, periods: 1.0 };
-        let base = plan.bound().unwrap().covariance;
+        let base = plan.bound().expect("a bound").covariance;
         let near = |a: f64, b: f64| (a / b - 1.0).abs() < 1e-6;
-        let more = Plan { samples: 2880, periods: 4.0, ..plan }.bound().unwrap().covariance;
-        let louder = Plan { noise: [2.0 * sigma; 2], ..plan }.bound().unwrap().covariance;
-        let rounded = Plan { lsb: [sigma * 6.0; 2], ..plan }.bound().unwrap().covariance;
+        let more = Plan { samples: 2880, periods: 4.0, ..plan }.bound().expect("a bound").covariance;
+        let louder = Plan { noise: [2.0 * sigma; 2], ..plan }.bound().expect("a bound").covariance;
+        let rounded = Plan { lsb: [sigma * 6.0; 2], ..plan }.bound().expect("a bound").covariance;
         // Six tenths of the same samples.
-        let arc = Plan { samples: 432, periods: 0.6, ..plan }.bound().unwrap().covariance;
+        let arc = Plan { samples: 432, periods: 0.6, ..plan }.bound().expect("a bound").covariance;
         for i in 0..5 {
             prop_assert!(near(base[(i, i)], 4.0 * more[(i, i)]));
             prop_assert!(near(4.0 * base[(i, i)], louder[(i, i)]));
@@ -144,7 +143,7 @@ fn the_bound_of_a_circle() {
         start: 0.0,
         periods: 1.0,
     };
-    let found = plan.bound().unwrap();
+    let found = plan.bound().expect("a bound");
     let unit = sigma * sigma / n as f64;
     for (i, expected) in [3.0, 2.0, 3.0, 2.0, 8.0].into_iter().enumerate() {
         assert!(

@@ -1,5 +1,4 @@
 //! Measured recordings beside the workspace.
-#![allow(clippy::unwrap_used)]
 
 #[path = "support/recordings.rs"]
 mod recordings;
@@ -23,8 +22,9 @@ fn folder(check: &str) -> Option<std::path::PathBuf> {
 
 fn found(folder: &std::path::Path, name: &str, method: Method) -> (Recording, Calibration) {
     let path = folder.join(format!("{name}.csv"));
-    let recording = Recording::read(&path, &Overrides::default()).unwrap();
-    let found = calibrate(&recording.cos, &recording.sin, method, &Options::default()).unwrap();
+    let recording = Recording::read(&path, &Overrides::default()).expect("a recording");
+    let found = calibrate(&recording.cos, &recording.sin, method, &Options::default())
+        .expect("a calibration");
     (recording, found)
 }
 
@@ -33,7 +33,7 @@ fn the_tables_are_fresh() {
     let Some(folder) = folder("the tables of docs/offline-calibration.md") else {
         return;
     };
-    let page = std::fs::read_to_string(recordings::PAGE).unwrap();
+    let page = std::fs::read_to_string(recordings::PAGE).expect("a kept file");
     let now = recordings::with_tables(&page, &recordings::tables(&folder));
     assert!(
         page == now,
@@ -82,8 +82,8 @@ fn the_homodyne_interferometer() {
             "{:?}",
             found.cannot_tell
         );
-        let noise = found.noise.unwrap();
-        let error = found.noise_ratio_error.unwrap();
+        let noise = found.noise.expect("there is one");
+        let error = found.noise_ratio_error.expect("there is one");
         assert!((noise[1] / noise[0] - 1.7).abs() < 4.0 * error);
         (noise[1] / noise[0], error)
     });
@@ -123,7 +123,7 @@ fn the_valley_of_the_cubic_search() {
     let steps = (-300..=300).map(|k| f64::from(k) * 1e-3);
     let lowest = steps
         .min_by(|a, b| objective(*a).total_cmp(&objective(*b)))
-        .unwrap();
+        .expect("there is one");
     let held = recordings::angle_error(&recording, &moved(0.0));
     let free = recordings::angle_error(&recording, &moved(lowest));
     assert!(objective(lowest) > 0.99 * objective(0.0));

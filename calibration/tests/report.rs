@@ -1,5 +1,4 @@
 //! The report as it is read.
-#![allow(clippy::unwrap_used)]
 
 use nonius_calibration::{Curve, Ellipse, Method, Options, calibrate, report, undetermined};
 use rand::{SeedableRng, rngs::StdRng};
@@ -28,7 +27,7 @@ fn signals(periods: f64, sigma: f64, cubic: f64) -> (Vec<f64>, Vec<f64>) {
 }
 
 fn text(method: Method, (cos, sin): &(Vec<f64>, Vec<f64>)) -> String {
-    let found = calibrate(cos, sin, method, &Options::default()).unwrap();
+    let found = calibrate(cos, sin, method, &Options::default()).expect("a calibration");
     report(&found, Some([2.0 / 4096.0; 2]))
 }
 
@@ -60,7 +59,7 @@ fn a_short_arc() {
 #[test]
 fn a_standstill() {
     let (cos, sin) = signals(0.0, 0.004, 0.0);
-    let why = calibrate(&cos, &sin, Method::Unbiased, &Options::default()).unwrap_err();
+    let why = calibrate(&cos, &sin, Method::Unbiased, &Options::default()).expect_err("a refusal");
     insta::assert_snapshot!(report(
         &undetermined(Method::Unbiased, &cos, &sin, &why),
         None

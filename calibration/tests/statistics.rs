@@ -1,7 +1,6 @@
 //! Bias, efficiency and coverage of the default estimator, against the Cramér–Rao bound: the short form.
 //!
 //! The long form is `cargo run --release -p nonius-calibration --example statistics`.
-#![allow(clippy::unwrap_used)]
 
 #[path = "support/campaign.rs"]
 mod campaign;

@@ -1,5 +1,4 @@
 //! docs/offline-statistics.json and .md: fresh, and holding what the README promises of them.
-#![allow(clippy::unwrap_used)]
 
 #[path = "support/campaign.rs"]
 mod campaign;
@@ -9,17 +8,20 @@ mod table;
 use serde_json::Value;
 
 fn numbers() -> Value {
-    serde_json::from_str(&std::fs::read_to_string(table::NUMBERS).unwrap()).unwrap()
+    serde_json::from_str(&std::fs::read_to_string(table::NUMBERS).expect("a kept file"))
+        .expect("there is one")
 }
 
 fn list(row: &Value, name: &str) -> Vec<f64> {
-    let all = row[name].as_array().unwrap();
-    all.iter().map(|v| v.as_f64().unwrap()).collect()
+    let all = row[name].as_array().expect("there is one");
+    all.iter()
+        .map(|v| v.as_f64().expect("there is one"))
+        .collect()
 }
 
 #[test]
 fn the_page_is_made_from_the_numbers() {
-    let page = std::fs::read_to_string(table::PAGE).unwrap();
+    let page = std::fs::read_to_string(table::PAGE).expect("a kept file");
     assert_eq!(
         page,
         table::page(&numbers()),
@@ -32,7 +34,7 @@ fn the_page_is_made_from_the_numbers() {
 #[test]
 fn the_numbers_are_those_of_this_program() {
     let numbers = numbers();
-    let rows = numbers["rows"].as_array().unwrap();
+    let rows = numbers["rows"].as_array().expect("there is one");
     let cases = table::cases();
     let stale = format!("stale; run `{}`", table::COMMAND);
     assert_eq!(rows.len(), cases.len(), "{stale}");
@@ -60,7 +62,7 @@ fn what_is_promised_is_in_the_file() {
     let numbers = numbers();
     let promised: Vec<&Value> = numbers["rows"]
         .as_array()
-        .unwrap()
+        .expect("there is one")
         .iter()
         .filter(|row| row["method"] == "unbiased" && row["periods"] == 7.0)
         .collect();

@@ -5,14 +5,11 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use nonius_model::design::Design;
-use nonius_package::{DesignJson, package_with, write};
+use nonius_package::{DesignJson, ROWS, package_with, write};
 use nonius_testvectors::stimulus;
 
 use crate::play;
 use crate::recording_args::RecordingArgs;
-
-/// Samples of each named stimulus.
-const ROWS: usize = 2000;
 
 /// What to build.
 #[derive(Args)]
@@ -77,6 +74,12 @@ fn summary(j: &DesignJson, output: &Path, shown: &str) {
         j.simulated.rms_periods,
         j.budget.asked
     );
+    if let Some(metres) = j.position.metres_per_period {
+        say!(
+            "              {:.2e} m rms simulated",
+            j.simulated.rms_periods * metres
+        );
+    }
     say!(
         "  speed       {:.4} MS/s need a clock of {:.4} MHz: {} clocks per sample",
         rate / 1e6,
@@ -95,7 +98,28 @@ fn summary(j: &DesignJson, output: &Path, shown: &str) {
         j.tracking.bandwidth_3db_hz,
         j.tracking.speed_max_periods_per_s
     );
-    if j.simulated.rms_periods > j.budget.asked {
+    say!("  position    {}", position(j));
+    if j.budget.arithmetic > j.budget.arithmetic_allowed {
+        say!(
+            "  note        the words of [formats] add {:.2e} periods rms where the budget allows {:.2e}",
+            j.budget.arithmetic,
+            j.budget.arithmetic_allowed
+        );
+    }
+    if j.budget.uncorrected > j.budget.asked {
+        say!(
+            "  note        up to {:.2e} periods rms of that is what the design promises of the sensor and {} parameters \
+             do not correct",
+            j.budget.uncorrected,
+            j.spec.calibration.parameters
+        );
+    }
+    // With short words of the user's it is said above.
+    let missed = j.simulated.rms_periods > j.budget.asked;
+    if missed
+        && j.budget.arithmetic <= j.budget.arithmetic_allowed
+        && j.budget.uncorrected <= j.budget.asked
+    {
         say!(
             "  note        the simulated accuracy misses what was asked for: calibration noise and loop noise add up; \
              a smaller last gamma or a narrower loop would help"
@@ -107,4 +131,23 @@ fn summary(j: &DesignJson, output: &Path, shown: &str) {
     );
     say!("next: nonius verify {folder}");
     say!("      gtkwave {folder}/waves/{shown}.gtkw");
+}
+
+/// The position at the output in the units that the design has for it.
+fn position(j: &DesignJson) -> String {
+    let p = &j.position;
+    let bits = format!(
+        "{} bits of periods and {} of fraction",
+        p.period_bits, p.fraction_bits
+    );
+    match (p.step_m, p.range_m, p.radians_per_period) {
+        (Some(step), Some(range), _) => {
+            format!("{bits}: steps of {step:.2e} m, to {range:.3e} m either way")
+        }
+        (_, _, Some(radians)) => format!(
+            "{bits}: steps of {:.2e} rad of the revolution",
+            p.step_periods * radians
+        ),
+        _ => bits,
+    }
 }

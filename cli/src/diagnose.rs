@@ -96,7 +96,8 @@ pub(crate) fn run(args: &Diagnose) -> Result<bool> {
         ),
         (
             "report.html".into(),
-            nonius_diagnosis::report(&found, &hash, env!("CARGO_PKG_VERSION"))?.into_bytes(),
+            nonius_diagnosis::report(&found, &recording, &hash, env!("CARGO_PKG_VERSION"))?
+                .into_bytes(),
         ),
     ];
     let design = match design {
@@ -147,6 +148,9 @@ fn summary(found: &Diagnosis, output: &Path) {
         say!("{}{with}: {}", finding.cause, finding.evidence);
     }
     say!("left: {}", found.unexplained.signature);
+    for sentence in nonius_diagnosis::unseen(&found.context) {
+        say!("cannot be seen here: {sentence}");
+    }
     say!(
         "residual on held-out data: {:.4e} -> {:.4e} of the amplitude",
         found.simulation.held_out_residual_rms,

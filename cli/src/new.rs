@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
 use clap::Args;
-use nonius_model::design::Design;
+use nonius_model::design::{Design, DesignError};
 use nonius_model::spec::Spec;
 use nonius_recording::{AdcSource, Recording, Survey};
 
@@ -110,11 +110,18 @@ fn settle(draft: &mut Draft) -> Result<Design> {
             Err(_) if draft.accuracy < COARSEST => {
                 draft.accuracy = rounded_up(draft.accuracy * 1.1);
             }
+            // A name is no number, and says itself what is wrong.
+            Err(error) if names_the_name(&error) => return Err(error),
             Err(error) => {
                 return Err(error).context("no design can follow this; the number at fault is");
             }
         }
     }
+}
+
+fn names_the_name(error: &anyhow::Error) -> bool {
+    let field = error.downcast_ref::<DesignError>();
+    matches!(field, Some(DesignError::Field { field: "name", .. }))
 }
 
 fn designed(draft: &Draft) -> Result<Design> {
@@ -202,15 +209,15 @@ fn fitted(name: &str, file: &Path, recording: &Recording, survey: &Survey) -> Re
         )
     };
     let seen = survey.motion.max_speed_periods_per_sample;
-    if seen > 0.2 {
+    if seen > 0.25 {
         bail!(
-            "{}: the signals turn by up to {seen:.3} periods per sample; a chip needs five samples per period. Sample \
+            "{}: the signals turn by up to {seen:.3} periods per sample; a chip needs four samples per period. Sample \
              at {:.4e} Hz or more.",
             file.display(),
-            seen * rate * 5.0
+            seen * rate * 4.0
         );
     }
-    let speed = (seen * 1.3).clamp(1e-4, 0.2) * rate;
+    let speed = (seen * 1.3).clamp(1e-4, 0.25) * rate;
     let bandwidth = (8.0 * speed).clamp(0.02 * rate, 0.06 * rate);
     let offset = (offset_from(middle) * 1.3 + 0.05).min(0.6);
     Ok(Draft {

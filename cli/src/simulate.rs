@@ -9,7 +9,8 @@ use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use nonius_model::chip::Chip;
 use nonius_model::design::Design;
-use nonius_model::physical::{Converter, theta};
+use nonius_model::physical::{Converter, metres, radians_of_revolution, theta};
+use nonius_model::spec::Spec;
 use nonius_recording::Recording;
 use nonius_testvectors::waves::Waves;
 
@@ -40,6 +41,10 @@ pub(crate) struct Simulate {
     /// Plays a recording of whole turns so many times.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
     repeat: u32,
+    /// Adds position_m or position_rad (radians of the revolution), equation (1), as the design gives scale_period_m or
+    /// periods_per_revolution.
+    #[arg(long)]
+    physical: bool,
     #[command(flatten)]
     recording_args: RecordingArgs,
 }
@@ -179,6 +184,11 @@ pub(crate) fn run(args: &Simulate) -> Result<()> {
                 .transpose()?,
         })
     };
+    let units = if args.physical {
+        units(&spec).with_context(|| file.clone())?
+    } else {
+        vec![]
+    };
     let target = Target::new(&args.output)?;
     write(
         &target,
@@ -186,6 +196,7 @@ pub(crate) fn run(args: &Simulate) -> Result<()> {
         &recording,
         args.repeat,
         thetas,
+        &units,
     )
     .with_context(|| format!("cannot write {}", args.output.display()))?;
     interpolator.finish()?;
@@ -225,6 +236,24 @@ fn apart(args: &Simulate) -> Result<()> {
     Ok(())
 }
 
+/// What the position is written in besides periods: column and unit per period, equation (1).
+fn units(spec: &Spec) -> Result<Vec<(&'static str, f64)>> {
+    let known = [
+        ("position_m", metres(spec, 1.0)),
+        ("position_rad", radians_of_revolution(spec, 1.0)),
+    ];
+    let units: Vec<_> = known
+        .into_iter()
+        .filter_map(|(column, unit)| Some((column, unit?)))
+        .collect();
+    if units.is_empty() {
+        anyhow::bail!(
+            "--physical: neither sensor.scale_period_m nor sensor.periods_per_revolution is given"
+        );
+    }
+    Ok(units)
+}
+
 /// Waves of the chip into a file.
 fn waves(design: &Design, path: &Path) -> Result<(Waves<BufWriter<File>>, Target)> {
     let target = Target::new(path)?;
@@ -240,11 +269,15 @@ fn write(
     recording: &Recording,
     repeat: u32,
     thetas: &[usize],
+    units: &[(&str, f64)],
 ) -> Result<()> {
     let mut out = BufWriter::with_capacity(1 << 16, target.file());
     write!(out, "time_s,position_periods,speed_periods_per_s,locked")?;
     for i in thetas {
         write!(out, ",theta_{i}")?;
+    }
+    for (name, _) in units {
+        write!(out, ",{name}")?;
     }
     writeln!(out)?;
     let rate = recording.metadata.sample_rate_hz;
@@ -269,6 +302,10 @@ fn write(
             )?;
             for theta in &now.theta {
                 write!(out, ",{theta}")?;
+            }
+            for (_, unit) in units {
+                let periods: f64 = now.position.parse().context("a position is a number")?;
+                write!(out, ",{}", periods * unit)?;
             }
             writeln!(out)?;
             interpolator.step(recording.cos[k], recording.sin[k])?;

@@ -19,6 +19,9 @@ pub(crate) struct Verify {
     /// Which simulators to run.
     #[arg(long, value_enum, default_value_t = Simulator::Both)]
     simulator: Simulator,
+    /// Ends a simulation with the first stimulus that fails.
+    #[arg(long)]
+    stop_at_first: bool,
     /// Print the result as JSON.
     #[arg(long)]
     json: bool,
@@ -39,6 +42,7 @@ pub(crate) fn run(args: &Verify) -> Result<bool> {
     let options = Options {
         icarus: args.simulator != Simulator::Verilator,
         verilator: args.simulator != Simulator::Icarus,
+        stop_at_first: args.stop_at_first,
         ..Options::default()
     };
     let report = {

@@ -1,9 +1,11 @@
 //! `nonius calibrate` through the binary: contract, exit codes, and words where the data cannot tell.
 
+mod support;
+
 use std::fmt::Write;
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::Output;
 
 use serde_json::Value;
 
@@ -46,13 +48,7 @@ fn recording(samples: u32, periods: f64, sigma: [f64; 2]) -> String {
 }
 
 fn nonius(dir: &Path, arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_nonius"));
-    command
-        .current_dir(dir)
-        .arg("calibrate")
-        .args(arguments)
-        .output()
-        .expect("nonius runs")
+    support::nonius(dir, &[&["calibrate"], arguments].concat())
 }
 
 fn json(text: &str, arguments: &[&str]) -> Value {

@@ -64,6 +64,19 @@ fn error_degrees(turns: &[f64], reference: &[f64]) -> f64 {
     against(1.0).min(against(-1.0))
 }
 
+fn rms(values: &[f64]) -> f64 {
+    (values.iter().map(|v| v * v).sum::<f64>() / values.len() as f64).sqrt()
+}
+
+/// Net periods that the arctangent of the raw signals counts.
+fn travelled(recording: &Recording) -> f64 {
+    let angle = |k: usize| recording.sin[k].atan2(recording.cos[k]) / TAU;
+    (1..recording.samples())
+        .map(|k| angle(k) - angle(k - 1))
+        .map(|step| step - step.round())
+        .sum()
+}
+
 /// Positions that the chip of a design made for the recording says, and whether it was locked.
 fn followed(dir: &Path, path: &Path, name: &str, repeat: &str) -> (Vec<f64>, Vec<f64>) {
     let file = path.display().to_string();
@@ -114,31 +127,43 @@ fn designs_from_recordings_follow_them() {
         );
     }
     table += "\n## Homodyne interferometers\n\n\
-              Largest difference, in periods, between the chip's position and the angle of the off-line ellipse fit after the\n\
-              first 300 samples. Half a period would be a lost one.\n\n\
-              | recording | periods travelled | largest difference | locked |\n|---|---|---|---|\n";
+              In periods, against the angle of the off-line ellipse fit, sample by sample, after the first 300 samples. That angle\n\
+              is an arctangent and has the noise of single samples, which stands in its own column (radial residual of the fit\n\
+              over 2 pi): the chip's difference is mostly that noise, and the largest is its peak in a\n\
+              hundred thousand samples. Half a period would be a lost one. Uncorrected, the offsets are larger than the\n\
+              amplitude, and the arctangent of the raw signals does not count at all.\n\n\
+              | recording | periods travelled | arctangent, uncorrected: net periods lost | noise of a sample, rms | chip, rms | \
+              chip, largest | locked |\n|---|---|---|---|---|---|---|\n";
     for name in ["homodyne_settle", "homodyne_stop"] {
         let Some(path) = shared(&format!("{name}.csv")) else {
             complete = false;
             continue;
         };
         let recording = Recording::read(&path, &Overrides::default()).expect("a recording");
-        let motion = Survey::of(&recording).motion;
+        let survey = Survey::of(&recording);
+        let motion = survey.motion;
         let (positions, locked) = followed(dir.path(), &path, name, "1");
         let at = |k: usize| positions[k] - motion.angle_periods[k];
         let anchor = at(300).round();
-        let largest = (300..positions.len())
-            .map(|k| (at(k) - anchor).abs())
-            .fold(0.0, f64::max);
+        let differences: Vec<f64> = (300..positions.len()).map(|k| at(k) - anchor).collect();
+        let largest = differences.iter().fold(0.0, |most, d| d.abs().max(most));
+        let rms = rms(&differences);
+        let noise = survey.fit.residual_rms / TAU;
+        let lost = motion.periods_net.abs() - travelled(&recording).abs();
         let share = locked.iter().sum::<f64>() / locked.len() as f64;
         writeln!(
             table,
-            "| {name} | {:.1} | {largest:.3} | {:.2} % |",
+            "| {name} | {:.1} | {lost:.0} of {:.0} | {noise:.4} | {rms:.4} | {largest:.3} | {:.2} % |",
             motion.periods_travelled,
+            motion.periods_net.abs(),
             share * 100.0
         )
         .expect("text");
         assert!(largest < 0.1, "{name}: {largest} periods apart");
+        assert!(
+            rms < 1.5 * noise,
+            "{name}: {rms} periods rms, of which {noise} are noise"
+        );
         assert!(locked[300..].iter().all(|l| *l == 1.0), "{name} lost lock");
     }
     if !complete {

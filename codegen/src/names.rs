@@ -22,11 +22,11 @@ pub(crate) fn names(graph: &Graph) -> Vec<String> {
             names[id.index()] = Some(give(format!("{register}_next")));
         }
     }
-    for id in graph.ids() {
-        if let (None, Op::Mul(a, b)) = (&names[id.index()], graph.node(id).op)
-            && let (Some(a), Some(b)) = (&graph.node(a).name, &graph.node(b).name)
+    for id in graph.ids().filter(|id| graph.node(*id).name.is_none()) {
+        if names[id.index()].is_none()
+            && let Some(wish) = spoken(graph, id)
         {
-            names[id.index()] = Some(give(format!("{a}_times_{b}")));
+            names[id.index()] = Some(give(wish));
         }
     }
     // Last first, so that every consumer has its name before what goes into it.
@@ -48,6 +48,20 @@ pub(crate) fn names(graph: &Graph) -> Vec<String> {
         root[id.index()] = Some(whole);
     }
     names.into_iter().flatten().collect()
+}
+
+/// A product or comparison of values that have names, as one would say it.
+fn spoken(graph: &Graph, id: NodeId) -> Option<String> {
+    let name = |id: NodeId| graph.node(id).name.clone();
+    let signed = |id: NodeId| match graph.node(id).op {
+        Op::Neg(positive) => Some(format!("minus_{}", name(positive)?)),
+        _ => name(id),
+    };
+    match graph.node(id).op {
+        Op::Mul(a, b) => Some(format!("{}_times_{}", name(a)?, name(b)?)),
+        Op::LessThan(a, b) => Some(format!("{}_below_{}", name(a)?, signed(b)?)),
+        _ => None,
+    }
 }
 
 /// What a nameless value is in the one it goes into.

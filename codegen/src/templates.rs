@@ -2,7 +2,7 @@
 
 use askama::Template;
 use nonius_model::design::Design;
-use nonius_model::graph::{Kind, NodeId, Op};
+use nonius_model::graph::{Graph, Kind, NodeId, Op};
 use nonius_model::kernel::{Coefficients, Constant};
 
 use crate::netlist::{Netlist, Register, Section, meaning, width};
@@ -50,7 +50,8 @@ struct Testbench<'a> {
     count_bits: u32,
     alpha_bits: u32,
     outputs: &'a [Signal],
-    inner: &'a [Signal],
+    /// Where it stands (`chip.` or at a port), name, bits, in the order of the data flow.
+    flow: Vec<Signal>,
     columns: &'a [Signal],
     fields: usize,
     scan: String,
@@ -104,6 +105,19 @@ fn columns(design: &Design) -> Vec<(String, NodeId, u32)> {
         .iter()
         .chain(registers)
         .map(|(name, id)| (name.clone(), *id, width(graph, *id)))
+        .collect()
+}
+
+/// The columns in the order in which the sample computes them.
+fn flow(graph: &Graph, columns: &[(String, NodeId, u32)]) -> Vec<Signal> {
+    let mut flow: Vec<_> = columns.iter().collect();
+    flow.sort_by_key(|(name, id, _)| {
+        let next = graph.next.iter().find(|(register, _)| register == name);
+        next.map_or(*id, |(_, id)| *id)
+    });
+    let place = |name: &str| if has_port(name) { "" } else { "chip." };
+    flow.into_iter()
+        .map(|(name, _, bits)| (place(name).into(), name.clone(), *bits))
         .collect()
 }
 
@@ -192,7 +206,10 @@ fn ports(
             "this sample may move the parameters".into(),
         ),
         (
-            format!("output wire [{}:0] ", f.count.width + f.alpha.width - 1),
+            format!(
+                "output wire signed [{}:0] ",
+                f.count.width + f.alpha.width - 1
+            ),
             "position,".into(),
             format!(
                 "periods, s{}.{}: whole periods and alpha_hat for the next sample",
@@ -305,8 +322,7 @@ pub fn generate(
         .iter()
         .map(|(name, id, bits)| (range(graph, *id), name.clone(), *bits))
         .collect();
-    let (outputs, inner): (Vec<Signal>, Vec<Signal>) =
-        signals.iter().cloned().partition(|s| has_port(&s.1));
+    let outputs: Vec<Signal> = signals.iter().filter(|s| has_port(&s.1)).cloned().collect();
     let args: String = columns
         .iter()
         .map(|c| format!(", expect_{}", c.0))
@@ -318,7 +334,7 @@ pub fn generate(
         count_bits: f.count.width,
         alpha_bits: f.alpha.width,
         outputs: &outputs,
-        inner: &inner,
+        flow: flow(graph, &columns),
         columns: &signals,
         fields: columns.len() + 5,
         scan: vec!["%h"; columns.len() + 5].join(" "),

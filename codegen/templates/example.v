@@ -13,11 +13,11 @@ module ${ name }$_example (
     input  wire [${ adc_msb }$:0] adc_code_cos,
     input  wire [${ adc_msb }$:0] adc_code_sin,
     input  wire home,                          // makes this period number 0
-    output reg  [${ count_bits + alpha_bits - 1 }$:0] position_now,
+    output reg signed [${ count_bits + alpha_bits - 1 }$:0] position_now,
     output reg  fault
 );
 
-    wire [${ count_bits + alpha_bits - 1 }$:0] position;
+    wire signed [${ count_bits + alpha_bits - 1 }$:0] position;
     wire valid;
 //%- for p in outputs %//
     wire ${ p.0 }$${ p.1 }$;

@@ -2,7 +2,7 @@
 
 use nonius_recording::Recording;
 
-use crate::finding::{Finding, Parameter};
+use crate::finding::{Finding, Parameter, Place};
 use crate::timebase;
 
 /// What the checks found, and which samples do not count.
@@ -34,7 +34,21 @@ pub(crate) fn check(recording: &Recording) -> Checked {
         (CHANNELS[1], &codes.1, adc.sin.bits),
     ] {
         if described {
-            checked.findings.extend(bits_and_steps(name, codes, bits));
+            let channel = usize::from(name == CHANNELS[1]);
+            let of_channel = |f: Finding| {
+                let largest = f.parameters.first().map_or(0.0, |p| p.value);
+                let step = if f.cause == "stuck_bit" {
+                    2f64.powf(largest + 1.0)
+                } else {
+                    largest
+                };
+                f.at(Place::Code {
+                    channel,
+                    step: step as i64,
+                })
+            };
+            let found = bits_and_steps(name, codes, bits).map(of_channel);
+            checked.findings.extend(found);
         }
     }
     timebase::repeated(recording, &mut checked);
@@ -186,7 +200,11 @@ fn glitches(recording: &Recording, checked: &mut Checked) {
             let larger = (ninth(near) / typical).max(1.0) * alike[range(values[k])].max(1.0);
             let limit = (FAR * typical * larger).max(floor);
             // A doubled sample is late, not wrong.
-            let doubled = (k - 1..=k + 1).any(|near| checked.weight[near] == 0.0);
+            let same = |j: usize| {
+                recording.cos[j] == recording.cos[j - 1] && recording.sin[j] == recording.sin[j - 1]
+            };
+            let doubled =
+                (k - 1..=k + 1).any(|near| checked.weight[near] == 0.0) || same(k) || same(k + 1);
             // Across a gap in time there is no such curve.
             let step = |j: usize| recording.time_s[j] - recording.time_s[j - 1];
             let gap = (k + 1 - REACH..=k + REACH).any(|j| step(j) * rate > 1.5);
@@ -216,5 +234,5 @@ fn glitches(recording: &Recording, checked: &mut Checked) {
             Parameter::exact("largest", largest, "column"),
         ],
         format!("{} isolated samples lie far off the curve through their neighbours, by up to {largest:.4}; the first is sample {}", found.len(), found[0].0),
-    ));
+    ).at(Place::Sample(found[0].0)));
 }

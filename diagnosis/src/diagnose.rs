@@ -82,6 +82,8 @@ pub struct Diagnosis {
     pub context: Context,
     /// Radial and tangential residual before and after, for plots.
     pub residuals: [(Vec<f64>, Vec<f64>); 2],
+    /// What is left of real motion, where that is no part of the tangential residual, for plots.
+    pub left_motion: Option<Vec<f64>>,
     /// Sentences that go with the result.
     pub notes: Vec<String>,
 }
@@ -161,10 +163,11 @@ fn conclude(
 ) -> Diagnosis {
     let context = system.context;
     let notes = repaired.recording.notes.clone();
-    let all = [selection.base.shapes.as_slice(), &selection.fit.shapes].concat();
+    let extended = selection.named(system);
+    let all = [selection.base.shapes.as_slice(), &extended.fit.shapes].concat();
     let halves = system.halves(&all);
     let mut findings = checked.findings.clone();
-    let named = selection.findings(system, &halves);
+    let named = selection.findings(&extended, system, &halves);
     let left = system.residual(&selection.fit);
     // Only what is noise can be noise of a kind.
     let (mut noisy, strange) = if selection.unnamed.is_empty() {
@@ -176,11 +179,11 @@ fn conclude(
     noisy.extend(system.flicker.iter().map(Flicker::finding));
     let (held_before, held_after) = (
         halves.held_out(&selection.base.shapes),
-        halves.held_out(&selection.fit.shapes),
+        halves.held_out(&extended.fit.shapes),
     );
     let (position_before, position_after) = (
         halves.position_error(&selection.base),
-        halves.position_error(&selection.fit),
+        halves.position_error(&extended.fit),
     );
     for finding in &mut findings {
         finding.gain.held_out_residual_rms_before = held_before;
@@ -208,7 +211,9 @@ fn conclude(
         },
     };
     let was = system.residual(&selection.base);
+    let left = system.residual(&extended.fit);
     let residuals = [(was.radial, was.tangential), (left.radial, left.tangential)];
+    let left_motion = left.motion;
     let simulation = simulation(
         exact::ellipse(&context.ellipse, &selection.base.solution.x),
         system,
@@ -216,31 +221,32 @@ fn conclude(
         halves.rms(&selection.base),
         position_before,
     );
-    let extended = Extended {
-        residual_rms: halves.rms(&selection.fit),
+    let model = Extended {
+        residual_rms: halves.rms(&extended.fit),
         held_out_residual_rms: held_after,
         position_error_rms_rad: position_after,
     };
     // The angle, less what everything that is no motion does to it.
     let change = system
         .samples
-        .sum(&selection.sensor_amounts(), Row::Tangential);
+        .sum(&extended.sensor_amounts(), Row::Tangential);
     let own = repaired.place.iter();
     let positions = own
         .map(|&k| (context.measured[k] - change[k]) / std::f64::consts::TAU)
         .collect();
     let periods_travelled = travelled(context);
     let mut context = context.clone();
-    context.ellipse = exact::ellipse(&context.ellipse, &selection.fit.solution.x);
+    context.ellipse = exact::ellipse(&context.ellipse, &extended.fit.solution.x);
     Diagnosis {
         simulation,
         findings,
         unexplained,
-        extended,
+        extended: model,
         positions,
         periods_travelled,
         context,
         residuals,
+        left_motion,
         notes,
     }
 }

@@ -57,6 +57,31 @@ pub enum Chip {
     NotASensorError,
 }
 
+/// What a cause does at each sample, as the fit has it: for plots.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Effect {
+    /// Along the radius, in amplitudes.
+    pub radial: Vec<f32>,
+    /// Along the circle, in radians: above the motion, or against the reference.
+    pub tangential: Vec<f32>,
+    /// As real motion, radians, where that is a row of its own.
+    pub motion: Vec<f32>,
+}
+
+/// Where in the data something is wrong.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// At a sample of the recording.
+    Sample(usize),
+    /// In the codes of a channel (0 is cos), again every `step` of them.
+    Code {
+        /// Which channel.
+        channel: usize,
+        /// Codes.
+        step: i64,
+    },
+}
+
 /// A cause shown to be in a recording.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Finding {
@@ -77,9 +102,28 @@ pub struct Finding {
     /// log-likelihood that it explains: the order of the findings.
     #[serde(skip)]
     pub weight: f64,
+    /// What it does; `None` for noise, and for what is wrong in the data themselves.
+    #[serde(skip)]
+    pub effect: Option<Effect>,
+    /// Where in the data it is seen first; `None` for what a fit found.
+    #[serde(skip)]
+    pub place: Option<Place>,
 }
 
 impl Finding {
+    /// A parameter's value.
+    #[must_use]
+    pub fn parameter(&self, name: &str) -> Option<f64> {
+        let one = self.parameters.iter().find(|p| p.name == name);
+        one.map(|p| p.value)
+    }
+
+    /// The same with where it is seen.
+    pub(crate) fn at(mut self, place: Place) -> Self {
+        self.place = Some(place);
+        self
+    }
+
     /// From the codes or the time base alone: nothing random about it.
     pub(crate) fn digital(cause: &str, parameters: Vec<Parameter>, evidence: String) -> Self {
         Self {
@@ -91,6 +135,8 @@ impl Finding {
             evidence,
             chip: Chip::CannotCorrect,
             weight: f64::MAX,
+            effect: None,
+            place: None,
         }
     }
 }

@@ -52,13 +52,15 @@ const MISFIT: f64 = 15.0;
 
 /// Lines of the spectrum that are near each other.
 #[derive(Clone)]
-struct Band {
+pub(crate) struct Band {
+    /// Middle, hertz.
+    pub(crate) hertz: f64,
     /// Number of lines.
     count: f64,
     /// Mean power of a channel in a line.
-    power: f64,
+    pub(crate) power: f64,
     /// What noise of spectrum 1/f, one at a hertz, is expected to show there.
-    flicker: f64,
+    pub(crate) flicker: f64,
     octave: i64,
 }
 
@@ -193,6 +195,7 @@ fn bands(lines: &[Line]) -> Vec<Band> {
         .map(|part| {
             let count = part.len() as f64;
             Band {
+                hertz: part.iter().map(|l| l.0).sum::<f64>() / count,
                 count,
                 power: part.iter().map(|l| l.1).sum::<f64>() / count,
                 flicker: part.iter().map(|l| l.2).sum::<f64>() / count,
@@ -213,6 +216,13 @@ fn without_hum(lines: &mut [Line]) {
             line.1 = *median;
         }
     }
+}
+
+/// The spectrum of what is left of the radius in bands, without hum: for plots.
+pub(crate) fn gathered(context: &Context, radial: &[f64]) -> Vec<Band> {
+    let mut lines = spectrum(context, radial);
+    without_hum(&mut lines);
+    bands(&lines)
 }
 
 /// Flicker noise in what everything else leaves of the radius.
@@ -246,8 +256,8 @@ pub(crate) fn find(context: &Context, radial: &[f64]) -> Option<Flicker> {
     let at = |by: f64| beside(&bands, best.0 * by.exp()).1;
     let curvature = (2.0 * best.1 - at(step) - at(-step)) / (step * step);
     let (level, _) = beside(&bands, best.0);
-    // Mean square per line, over two sides, per samples per second: per hertz, one-sided.
-    let density = (2.0 * level * best.0 / context.rate).sqrt();
+    // The level is that of both channels over two sides of the spectrum: as much as that of one channel over one side.
+    let density = (level * best.0 / context.rate).sqrt();
     Some(Flicker {
         density: [density, 0.5 * density / curvature.max(1e-12).sqrt()],
         corner: best.0,
@@ -280,6 +290,8 @@ impl Flicker {
             ),
             chip: Chip::CannotCorrect,
             weight: self.gain,
+            effect: None,
+            place: None,
         }
     }
 }

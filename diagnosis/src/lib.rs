@@ -35,11 +35,13 @@ mod statistics;
 mod sweep;
 mod timebase;
 mod trig;
+mod unseen;
 mod variance;
 mod whiten;
 
 pub use context::{Context, ContextError};
 pub use diagnose::{Diagnosis, Extended, Simulation, Unexplained, diagnose};
-pub use finding::{Chip, Finding, Gain, Parameter};
-pub use report::report;
+pub use finding::{Chip, Effect, Finding, Gain, Parameter, Place};
+pub use report::{plots, report};
 pub use sensor::sensor_toml;
+pub use unseen::unseen;

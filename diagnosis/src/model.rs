@@ -4,6 +4,7 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::causes::Catalogue;
 use crate::context::Context;
+use crate::finding::Effect;
 use crate::flicker::{self, Flicker};
 use crate::library::{ROWS, Row, Shape};
 use crate::selection::Accepted;
@@ -263,6 +264,23 @@ impl<'a> System<'a> {
             radial,
             tangential,
             motion: (!motion.is_empty()).then_some(motion),
+        }
+    }
+
+    /// What some of the shapes of a fit do, as it is seen beside the motion.
+    pub(crate) fn effect(&self, fit: &Fit, range: std::ops::Range<usize>) -> Effect {
+        let own = amounts(&fit.shapes[range.clone()], &fit.solution.x[range]);
+        let left = self.samples.left(&own);
+        let taken = |row: Row| {
+            let pairs = self.samples.data[row as usize]
+                .iter()
+                .zip(&left[row as usize]);
+            pairs.map(|(d, l)| (d - l) as f32).collect()
+        };
+        Effect {
+            radial: taken(Row::Radial),
+            tangential: taken(Row::Tangential),
+            motion: taken(Row::Motion),
         }
     }
 

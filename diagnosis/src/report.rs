@@ -1,231 +1,249 @@
-//! `report.html`: one file that opens offline, the finding and the gain first.
+//! `report.html`: one file that opens offline. First the finding and the gain; then, for each finding, what shows it, its
+//! numbers, what it is confused with and what the chip can do; last what is left.
 
-use std::fmt::Write;
+mod binned;
+mod noisy;
+mod overview;
+mod pictures;
+mod raw;
+mod residue;
+mod spectra;
+mod words;
 
 use askama::Template;
+use nonius_plot::Plot;
+use nonius_recording::Recording;
 
 use crate::diagnose::Diagnosis;
-use crate::finding::{Chip, Finding};
-
-/// Points of a plot at most.
-const POINTS: usize = 3000;
+use crate::finding::{Finding, Parameter};
+use crate::unseen::unseen;
+use residue::Residue;
 
 #[derive(Template)]
 #[template(path = "diagnosis.html")]
 struct Page<'a> {
     headline: String,
-    gain: String,
+    others: String,
+    gain: Gain,
     hash: &'a str,
     version: &'a str,
     found: &'a Diagnosis,
-    sections: Vec<Section<'a>>,
-    lissajous: String,
+    sections: Vec<Section>,
+    figures: Vec<String>,
+    residuals: Vec<String>,
+    residue: &'a Residue,
+    residue_plot: String,
+    unseen: Vec<String>,
+    style: &'static str,
+    script: &'static str,
+}
+
+/// A number before and after.
+struct Gain {
+    what: &'static str,
     before: String,
     after: String,
-    spectrum: String,
+    change: String,
 }
 
-struct Section<'a> {
-    finding: &'a Finding,
+struct Section {
+    number: usize,
     title: String,
+    evidence: String,
+    rows: Vec<[String; 3]>,
+    gain: Option<Gain>,
+    without_gain: &'static str,
+    chance: String,
+    confused: Vec<(String, &'static str)>,
     chip: &'static str,
+    plots: Vec<String>,
 }
 
-/// The page.
+/// Pictures of a diagnosis, as they stand in the report: a name for each, and the plot.
+#[must_use]
+pub fn plots(found: &Diagnosis, recording: &Recording) -> Vec<(String, Plot)> {
+    let mut all: Vec<(String, Plot)> = vec![];
+    let mut add = |name: String, plots: Vec<Plot>| {
+        let numbered = plots.into_iter().enumerate();
+        all.extend(numbered.map(|(i, p)| (format!("{name}-{}", i + 1), p)));
+    };
+    for (i, finding) in found.findings.iter().enumerate() {
+        let name = format!("{}-{}", i + 1, finding.cause);
+        add(name, pictures::of(finding, found, recording));
+    }
+    add("figure".into(), overview::figures(found));
+    add("residual".into(), overview::residuals(found));
+    add("residue".into(), vec![Residue::of(found).plot().clone()]);
+    all
+}
+
+/// The page; `recording` is the one that was diagnosed, `hash` that of its file.
 ///
 /// # Errors
 /// Only a defect of the template.
-pub fn report(found: &Diagnosis, hash: &str, version: &str) -> Result<String, askama::Error> {
-    let mut named: Vec<String> = vec![];
-    for finding in &found.findings {
-        let name = finding.cause.replace('_', " ");
-        if !named.contains(&name) {
-            named.push(name);
+pub fn report(
+    found: &Diagnosis,
+    recording: &Recording,
+    hash: &str,
+    version: &str,
+) -> Result<String, askama::Error> {
+    let html = |plots: Vec<Plot>| plots.iter().map(Plot::html).collect::<Vec<_>>();
+    let sections: Vec<Section> = found
+        .findings
+        .iter()
+        .enumerate()
+        .map(|(i, finding)| section(i + 1, finding, found, recording))
+        .collect();
+    let headline = match sections.first() {
+        None if found.unexplained.significant => {
+            format!("No cause can be named: {}", found.unexplained.signature)
         }
-    }
-    let headline = match named.as_slice() {
-        [] => "Nothing but the five parameters and white noise".to_owned(),
-        [one] => format!("Found: {one}"),
-        many => format!("Found: {}", many.join(", ")),
+        None => "Nothing but the five parameters and white noise".to_owned(),
+        Some(first) => {
+            let sentence = first.evidence.split("; it raises").next();
+            sentence.unwrap_or_default().to_owned()
+        }
+    };
+    let others = match sections.len() {
+        0 | 1 => String::new(),
+        2 => "One more finding is below.".to_owned(),
+        n => format!("{} more findings are below.", n - 1),
     };
     let (simulated, extended) = (&found.simulation, &found.extended);
     let gain = match (
         simulated.position_error_rms_rad,
         extended.position_error_rms_rad,
     ) {
-        (Some(before), Some(after)) => format!(
-            "angle error against the reference {:.4}° → {:.4}° rms",
-            before.to_degrees(),
-            after.to_degrees()
-        ),
-        _ => format!(
-            "residual on held-out data {:.3} % → {:.3} % of the amplitude",
-            simulated.held_out_residual_rms * 100.0,
-            extended.held_out_residual_rms * 100.0
+        (Some(before), Some(after)) => angle(before, after),
+        _ => residual(
+            simulated.held_out_residual_rms,
+            extended.held_out_residual_rms,
         ),
     };
-    let sections = found
-        .findings
-        .iter()
-        .map(|finding| Section {
-            finding,
-            title: finding.cause.replace('_', " "),
-            chip: match finding.chip {
-                Chip::Corrects => "The chip corrects it.",
-                Chip::CannotCorrect => "The chip cannot correct it.",
-                Chip::NotASensorError => "It is real motion, not an error of the sensor.",
-            },
-        })
-        .collect();
-    let angle: Vec<f64> = found
-        .context
-        .alpha
-        .iter()
-        .map(|a| a.rem_euclid(std::f64::consts::TAU) / std::f64::consts::TAU)
-        .collect();
-    let [before, after] = &found.residuals;
-    let limit = before
-        .0
-        .iter()
-        .chain(&before.1)
-        .fold(1e-9f64, |m, v| m.max(v.abs()));
+    let residue = Residue::of(found);
     Page {
         headline,
+        others,
         gain,
         hash,
         version,
-        lissajous: lissajous(found),
-        before: scatter(
-            &angle,
-            before,
-            limit,
-            "Residual of the simulation against the angle",
-        ),
-        after: scatter(
-            &angle,
-            after,
-            limit,
-            "Residual of the extended model against the angle",
-        ),
-        spectrum: spectra(found),
         found,
         sections,
+        figures: html(overview::figures(found)),
+        residuals: html(overview::residuals(found)),
+        residue_plot: residue.plot().html(),
+        residue: &residue,
+        unseen: unseen(&found.context),
+        style: nonius_plot::STYLE,
+        script: nonius_plot::SCRIPT,
     }
     .render()
 }
 
-/// Raw figure about its centre, the radial error ten times as large.
-fn lissajous(found: &Diagnosis) -> String {
-    let context = &found.context;
-    let every = context.samples().div_ceil(POINTS);
-    let mut svg = String::from(
-        r#"<svg viewBox="0 0 360 360" role="img" aria-label="Corrected signals, radial error ten times as large"><circle class="round" cx="180" cy="180" r="130"/>"#,
-    );
-    let left = &found.residuals[0].0;
-    for (k, radial) in left.iter().enumerate().step_by(every) {
-        let r = 130.0 * (1.0 + 10.0 * radial).clamp(0.0, 1.38);
-        let (x, y) = (180.0 + r * context.cos[k], 180.0 - r * context.sin[k]);
-        let _ = write!(
-            svg,
-            r#"<circle class="r" cx="{x:.1}" cy="{y:.1}" r="1.1"/>"#
-        );
-    }
-    svg + r#"<text x="180" y="350" text-anchor="middle">radial error × 10</text></svg>"#
-}
-
-fn scatter(angle: &[f64], residual: &(Vec<f64>, Vec<f64>), limit: f64, label: &str) -> String {
-    let (left, right, top, bottom) = (58.0, 630.0, 10.0, 190.0);
-    let y = |v: f64| top + (0.5 - 0.5 * v / limit) * (bottom - top);
-    let mut svg = format!(r#"<svg viewBox="0 0 640 230" role="img" aria-label="{label}">"#);
-    for share in [-1.0, 0.0, 1.0] {
-        let at = y(share * limit);
-        let _ = write!(
-            svg,
-            r#"<line class="grid" x1="{left}" x2="{right}" y1="{at:.1}" y2="{at:.1}"/><text x="{}" y="{:.1}" text-anchor="end">{:.2} %</text>"#,
-            left - 6.0,
-            at + 4.0,
-            share * limit * 100.0
-        );
-    }
-    for turn in [0.0, 0.25, 0.5, 0.75, 1.0] {
-        let at = left + turn * (right - left);
-        let _ = write!(
-            svg,
-            r#"<line class="grid" x1="{at:.1}" x2="{at:.1}" y1="{top}" y2="{bottom}"/><text x="{at:.1}" y="{}" text-anchor="middle">{turn}</text>"#,
-            bottom + 18.0
-        );
-    }
-    let every = angle.len().div_ceil(POINTS / 2);
-    for (class, values) in [("r", &residual.0), ("t", &residual.1)] {
-        for k in (0..angle.len()).step_by(every) {
-            let x = left + angle[k] * (right - left);
-            let _ = write!(
-                svg,
-                r#"<circle class="{class}" cx="{x:.1}" cy="{:.1}" r="1.2"/>"#,
-                y(values[k].clamp(-limit, limit))
-            );
-        }
-    }
-    svg + r#"<text x="344" y="226" text-anchor="middle">angle in scale periods</text></svg>"#
-}
-
-/// Spectra of the residual before and after, radial and tangential together.
-fn spectra(found: &Diagnosis) -> String {
-    let (left, right, top, bottom) = (58.0, 630.0, 10.0, 190.0);
-    let [before, after] = &found.residuals;
-    let rate = found.context.rate;
-    let levels = |r: &(Vec<f64>, Vec<f64>)| -> Vec<f64> {
-        let (power, _) = crate::lines::pair_spectrum(&r.0, &r.1);
-        let bins = 560;
-        let per = power.len().div_ceil(bins).max(1);
-        power
-            .chunks(per)
-            .map(|c| 5.0 * c.iter().copied().fold(1e-300, f64::max).log10() * 2.0)
-            .collect()
+fn section(number: usize, finding: &Finding, found: &Diagnosis, recording: &Recording) -> Section {
+    let g = &finding.gain;
+    let gain = match (
+        g.position_error_rms_before_rad,
+        g.position_error_rms_after_rad,
+    ) {
+        (Some(before), Some(after)) => angle(before, after),
+        _ => residual(
+            g.held_out_residual_rms_before,
+            g.held_out_residual_rms_after,
+        ),
     };
-    let (a, b) = (levels(before), levels(after));
-    let high = a.iter().chain(&b).copied().fold(f64::MIN, f64::max);
-    let y = |v: f64| top + (high - v).clamp(0.0, 70.0) / 70.0 * (bottom - top);
-    let line = |v: &[f64], class: &str| {
-        let points: Vec<String> = v
-            .iter()
-            .enumerate()
-            .map(|(i, v)| {
-                let x = left + (right - left) * i as f64 / v_len(a.len());
-                format!("{x:.1},{:.1}", y(*v))
+    let gain = finding.effect.is_some().then_some(gain);
+    let confused = finding.confounded_with.iter();
+    let plots = pictures::of(finding, found, recording);
+    Section {
+        number,
+        title: words::title(finding),
+        evidence: words::capital(&finding.evidence),
+        rows: finding.parameters.iter().map(row).collect(),
+        gain,
+        without_gain: words::without_gain(finding),
+        chance: words::chance(finding),
+        confused: confused
+            .map(|other| {
+                let test = words::experiment(&finding.cause, other);
+                (words::plain(other), test)
             })
-            .collect();
-        format!(
-            r#"<polyline class="{class}" points="{}"/>"#,
-            points.join(" ")
-        )
-    };
-    let mut svg = String::from(
-        r#"<svg viewBox="0 0 640 230" role="img" aria-label="Spectrum of the residual before and after">"#,
-    );
-    for db in [0.0, -20.0, -40.0, -60.0] {
-        let at = y(high + db);
-        let _ = write!(
-            svg,
-            r#"<line class="grid" x1="{left}" x2="{right}" y1="{at:.1}" y2="{at:.1}"/><text x="{}" y="{:.1}" text-anchor="end">{db} dB</text>"#,
-            left - 6.0,
-            at + 4.0
-        );
+            .collect(),
+        chip: words::chip(finding),
+        plots: plots.iter().map(Plot::html).collect(),
     }
-    for share in [0.0, 0.25, 0.5, 0.75, 1.0] {
-        let at = left + share * (right - left);
-        let _ = write!(
-            svg,
-            r#"<text x="{at:.1}" y="{}" text-anchor="middle">{:.4}</text>"#,
-            bottom + 18.0,
-            share * rate / 2.0
-        );
-    }
-    svg += &line(&a, "was");
-    svg += &line(&b, "is");
-    svg + r#"<text x="344" y="226" text-anchor="middle">frequency, Hz</text></svg>"#
 }
 
-fn v_len(n: usize) -> f64 {
-    n.max(2) as f64 - 1.0
+fn angle(before: f64, after: f64) -> Gain {
+    Gain {
+        what: "Angle error against the reference",
+        before: format!("{:.4}°", before.to_degrees()),
+        after: format!("{:.4}° rms", after.to_degrees()),
+        change: change(before, after),
+    }
+}
+
+fn residual(before: f64, after: f64) -> Gain {
+    Gain {
+        what: "Residual on data that was not fitted",
+        before: format!("{:.4} %", before * 100.0),
+        after: format!("{:.4} % of the amplitude, rms", after * 100.0),
+        change: change(before, after),
+    }
+}
+
+fn change(before: f64, after: f64) -> String {
+    let change = 100.0 * (after / before.max(f64::MIN_POSITIVE) - 1.0);
+    // Not −0.
+    if change.abs() < 0.05 {
+        "unchanged".into()
+    } else {
+        format!(
+            "{} {:.1} %",
+            if change < 0.0 { '−' } else { '+' },
+            change.abs()
+        )
+    }
+}
+
+/// Name, value ± error with two digits of the error, unit.
+fn row(p: &Parameter) -> [String; 3] {
+    let value = if p.std_error > 0.0 && p.std_error.is_finite() {
+        let power = p.value.abs().max(p.std_error).log10().floor();
+        let digits = (power - p.std_error.log10().floor() + 1.0).clamp(0.0, 12.0) as usize;
+        if (-3.0..6.0).contains(&power) {
+            let decimals = (digits as f64 - power).clamp(0.0, 15.0) as usize;
+            format!("{:.decimals$} ± {:.decimals$}", p.value, p.std_error)
+        } else {
+            let scale = 10f64.powf(power);
+            let (value, error) = (p.value / scale, p.std_error / scale);
+            format!("({value:.digits$} ± {error:.digits$})·10^{power}")
+        }
+    } else {
+        format!("{}", p.value)
+    };
+    let unit = match p.unit.as_str() {
+        "1" => String::new(),
+        "amplitude" => "of the amplitude".into(),
+        "column" => "as recorded".into(),
+        other => other.into(),
+    };
+    [p.name.replace('_', " "), value, unit]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_have_the_digits_that_their_error_allows() {
+        let of = |value: f64, error: f64| {
+            row(&Parameter::measured("tau_s", value, error, "s"))[1].clone()
+        };
+        assert_eq!(of(254.837_12, 0.012_3), "254.837 ± 0.012");
+        assert_eq!(of(0.004_012_3, 0.000_031), "0.004012 ± 0.000031");
+        assert_eq!(of(-4.012e-7, 3.1e-9), "(-4.012 ± 0.031)·10^-7");
+        assert_eq!(of(1.0e-9, 3.1e-7), "(0.0 ± 3.1)·10^-7");
+        assert_eq!(of(3.0, 0.0), "3");
+    }
 }

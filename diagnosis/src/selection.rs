@@ -62,33 +62,56 @@ pub(crate) struct Selection {
 }
 
 impl Selection {
-    /// The findings, the one that explains most first.
-    pub(crate) fn findings(&self, system: &System, halves: &Halves) -> Vec<Finding> {
+    /// The model that can be simulated: the five parameters and the causes that have a name, without the shapes that stand
+    /// in for what has none. Those would make anything look explained.
+    pub(crate) fn named(&self, system: &System) -> Self {
+        let mut shapes = self.base.shapes.clone();
+        let mut accepted = self.accepted.clone();
+        for one in &mut accepted {
+            one.first = shapes.len();
+            shapes.extend(one.candidate.shapes.iter().cloned());
+        }
+        Self {
+            fit: system.fit(shapes),
+            base: self.base.clone(),
+            accepted,
+            unnamed: vec![],
+            again: vec![],
+        }
+    }
+
+    /// The findings, the one that explains most first; their numbers are those of the model that can be simulated.
+    pub(crate) fn findings(&self, named: &Self, system: &System, halves: &Halves) -> Vec<Finding> {
         let mut list = vec![];
-        for (i, accepted) in self.accepted.iter().enumerate() {
+        let fit = &named.fit;
+        let less = |fit: &Fit, range: &std::ops::Range<usize>| {
+            let shapes = fit.shapes.iter().enumerate();
+            let others = shapes.filter(|(k, _)| !range.contains(k));
+            system.fit(others.map(|(_, s)| s.clone()).collect())
+        };
+        for (i, accepted) in named.accepted.iter().enumerate() {
             let range = accepted.range();
             let error: Vec<f64> = range
                 .clone()
-                .map(|k| self.fit.solution.covariance[(k, k)].sqrt())
+                .map(|k| fit.solution.covariance[(k, k)].sqrt())
                 .collect();
             let parameters = (accepted.candidate.parameters)(&Estimate {
-                x: &self.fit.solution.x[range.clone()],
+                x: &fit.solution.x[range.clone()],
                 error: &error,
                 inner: accepted.candidate.exact.as_ref().map_or(&[], |e| &e.inner),
                 inner_error: accepted.inner_error.as_deref(),
             });
-            let shapes = self.fit.shapes.iter().enumerate();
-            let others = shapes.filter(|(k, _)| !range.contains(k));
-            let without = system.fit(others.map(|(_, s)| s.clone()).collect());
-            // What the others explain as well in the end is no finding of its own.
-            let gain = self.fit.solution.gain() - without.solution.gain();
-            let freedom = self.fit.solution.rank.saturating_sub(without.solution.rank);
+            // What the others and what has no name explain as well in the end is no finding of its own.
+            let others = less(&self.fit, &self.accepted[i].range());
+            let gain = self.fit.solution.gain() - others.solution.gain();
+            let freedom = self.fit.solution.rank.saturating_sub(others.solution.rank);
             let trials = accepted.candidate.trials * KINDS;
             let log_p = after_trials(log_tail(2.0 * gain, freedom), trials);
             if freedom == 0 || log_p > SHOWN.ln() {
                 continue;
             }
             let p_value = log_p.exp();
+            let without = less(fit, &range);
             let seen = (accepted.candidate.evidence)(&parameters);
             list.push(Finding {
                 cause: accepted.candidate.name.into(),
@@ -98,12 +121,14 @@ impl Selection {
                 parameters,
                 gain: Gain {
                     held_out_residual_rms_before: halves.held_out(&without.shapes),
-                    held_out_residual_rms_after: halves.held_out(&self.fit.shapes),
+                    held_out_residual_rms_after: halves.held_out(&fit.shapes),
                     position_error_rms_before_rad: halves.position_error(&without),
-                    position_error_rms_after_rad: halves.position_error(&self.fit),
+                    position_error_rms_after_rad: halves.position_error(fit),
                 },
                 chip: accepted.candidate.chip,
                 weight: gain - i as f64 * 1e-9,
+                effect: Some(system.effect(fit, range)),
+                place: None,
             });
         }
         list.sort_by(|a, b| b.weight.total_cmp(&a.weight));

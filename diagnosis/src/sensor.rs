@@ -5,6 +5,7 @@ use std::fmt::Write;
 use nonius_recording::Recording;
 
 use crate::diagnose::Diagnosis;
+use crate::finding::{Finding, Parameter, Place};
 
 /// The sensor that the recording shows.
 #[must_use]
@@ -15,9 +16,19 @@ pub fn sensor_toml(found: &Diagnosis, recording: &Recording) -> String {
         .causes
         .iter()
         .find(|c| c.cause == "white_noise");
-    let noise = noise
+    let white = noise
         .and_then(|c| c.parameters.first())
         .map_or(0.0, |p| p.value);
+    // Along the radius, noise in proportion to the channels has ¾ of its square.
+    let with_signal = found
+        .findings
+        .iter()
+        .filter(|f| f.cause == "amplitude_noise");
+    let with_signal: f64 = with_signal
+        .filter_map(|f| f.parameter("rms"))
+        .map(|rms| 0.75 * rms * rms)
+        .sum();
+    let noise = (white * white - with_signal).max(0.0).sqrt();
     let adc = recording.metadata.adc.cos;
     let mut out = String::from(
         "# The sensor that a recording shows: equation (4), its noise, its ADC, and the causes that were found.\n\n[signals]\n",
@@ -53,7 +64,7 @@ pub fn sensor_toml(found: &Diagnosis, recording: &Recording) -> String {
     }
     for finding in &found.findings {
         let _ = writeln!(out, "\n[[cause]]\nname = {:?}", finding.cause);
-        for p in &finding.parameters {
+        for p in parameters(finding, recording) {
             let key = p
                 .name
                 .replace(|c: char| !c.is_ascii_alphanumeric() && c != '_', "_");
@@ -65,6 +76,46 @@ pub fn sensor_toml(found: &Diagnosis, recording: &Recording) -> String {
                 p.unit
             );
         }
+        if let Some(Place::Code { channel, .. }) = finding.place {
+            let _ = writeln!(out, "channel = {:?}", ["cos", "sin"][channel]);
+        }
     }
     out
+}
+
+/// What the simulation needs to know of a finding: its parameters, and what follows from the recording.
+fn parameters(finding: &Finding, recording: &Recording) -> Vec<Parameter> {
+    let mut all = finding.parameters.clone();
+    let samples = recording.samples() as f64;
+    match (finding.cause.as_str(), finding.place) {
+        // As a share: a simulated recording is longer or shorter.
+        ("dropped_samples", _) => {
+            let lost = finding.parameter("count").unwrap_or(0.0);
+            all = vec![Parameter::exact("share", lost / (samples + lost), "1")];
+        }
+        ("repeated_samples", _) => {
+            let doubled = finding.parameter("count").unwrap_or(0.0);
+            all = vec![Parameter::exact("share", doubled / samples, "1")];
+        }
+        (name, Some(Place::Code { channel, .. })) => {
+            let adc = recording.metadata.adc;
+            let bits = [adc.cos.bits, adc.sin.bits][channel];
+            let codes = recording.codes().map(|(c, s)| [c, s][channel]);
+            // From the lowest code on.
+            let first = codes.map(|c| c + (1i64 << (bits - 1))).next().unwrap_or(0);
+            if name == "stuck_bit" {
+                let bit = finding.parameter("bit").unwrap_or(0.0) as u32;
+                all = vec![
+                    Parameter::exact("bit", f64::from(bit), "1"),
+                    Parameter::exact("level", (first >> bit & 1) as f64, "1"),
+                ];
+            } else {
+                let step = finding.parameter("step_lsb").unwrap_or(1.0).max(1.0);
+                let remainder = first.rem_euclid(step as i64) as f64;
+                all.push(Parameter::exact("remainder_lsb", remainder, "LSB"));
+            }
+        }
+        _ => {}
+    }
+    all
 }

@@ -5,7 +5,7 @@ use nonius_recording::Recording;
 
 use crate::checks::{Checked, ninth};
 use crate::context::unwrapped;
-use crate::finding::{Finding, Parameter};
+use crate::finding::{Finding, Parameter, Place};
 
 /// Samples on either side of a jump that are compared, and the order of the curve through them; on slow axes more of them
 /// show it.
@@ -80,15 +80,18 @@ pub(crate) fn repeated(recording: &Recording, checked: &mut Checked) {
     };
     let put_in = |k: &usize| way(*k, k + 1) < 1.5 * way(k - 2, k - 1);
     checked.extra = twins.iter().copied().filter(put_in).collect();
-    checked.findings.push(Finding::digital(
-        "repeated_samples",
-        vec![Parameter::exact("count", twins.len() as f64, "samples")],
-        format!(
-            "{} samples repeat the one before while the scale moves; the first is sample {}",
-            twins.len(),
-            twins[0]
-        ),
-    ));
+    checked.findings.push(
+        Finding::digital(
+            "repeated_samples",
+            vec![Parameter::exact("count", twins.len() as f64, "samples")],
+            format!(
+                "{} samples repeat the one before while the scale moves; the first is sample {}",
+                twins.len(),
+                twins[0]
+            ),
+        )
+        .at(Place::Sample(twins[0])),
+    );
 }
 
 /// Samples that are missing: where the clock shows a gap, and where the angle jumps by what it moves in whole samples.
@@ -129,11 +132,14 @@ pub(crate) fn dropped(recording: &Recording, checked: &mut Checked) {
             "{lost} samples are missing at {count} places, where the angle jumps by what it moves in whole samples; the first is before sample {first}"
         )
     };
-    checked.findings.push(Finding::digital(
-        "dropped_samples",
-        vec![Parameter::exact("count", lost as f64, "samples")],
-        seen,
-    ));
+    checked.findings.push(
+        Finding::digital(
+            "dropped_samples",
+            vec![Parameter::exact("count", lost as f64, "samples")],
+            seen,
+        )
+        .at(Place::Sample(first)),
+    );
     // A long pause is no loss of samples that anything could bridge.
     if lost < n / 10 {
         checked.gaps = gaps;
@@ -161,13 +167,13 @@ fn step_weights(side: usize, order: i32) -> Vec<f64> {
 /// Lays straight lines over samples that do not count.
 fn bridge(values: &mut [f64], weight: &[f64]) {
     let mut last = 0;
-    for k in 1..values.len() {
-        if weight[k] == 0.0 {
+    for (k, weight) in weight.iter().enumerate().skip(1) {
+        if *weight == 0.0 {
             continue;
         }
         let (from, by) = (values[last], values[k] - values[last]);
-        for j in last + 1..k {
-            values[j] = from + by * (j - last) as f64 / (k - last) as f64;
+        for (i, value) in values[last + 1..k].iter_mut().enumerate() {
+            *value = from + by * (i + 1) as f64 / (k - last) as f64;
         }
         last = k;
     }

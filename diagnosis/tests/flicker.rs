@@ -96,7 +96,7 @@ fn it_is_found() {
         let density = 0.0005 * (3.0 / 10f64.ln()).sqrt();
         let p = &found.findings[0].parameters[0];
         assert!(
-            (p.value / density).ln().abs() < 0.35,
+            (p.value / density).ln().abs() < 0.2,
             "seed {seed}: {} +/- {}, true {density}",
             p.value,
             p.std_error

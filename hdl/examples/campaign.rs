@@ -17,7 +17,7 @@ use std::time::Duration;
 use nonius_hdl::progress::silent;
 use nonius_hdl::{ChipDir, Options, verify};
 use nonius_model::design::Design;
-use nonius_model::spec::{All, CalibrationMethod, Multipliers, Spec};
+use nonius_model::spec::{All, CalibrationMethod, CalibrationStart, Multipliers, Spec};
 
 /// Rows of each of the nine stimuli: at least 100 000 samples for Verilator, 2 000 for Icarus.
 const LONG: (usize, usize) = (11_200, 230);
@@ -141,6 +141,18 @@ fn variants() -> Result<Vec<Variant>, Box<dyn Error>> {
             s.calibration.completion = completion;
         }));
     }
+    for (what, method, parameters) in [
+        ("started", CalibrationMethod::Final, 4),
+        ("started", CalibrationMethod::Final, 5),
+        ("started", CalibrationMethod::Final, 9),
+        ("started, exact", CalibrationMethod::Exact, 5),
+    ] {
+        list.push(with(what, &|s| {
+            s.calibration.start = CalibrationStart::LeastSquares;
+            s.calibration.method = method;
+            s.calibration.parameters = parameters;
+        }));
+    }
     list.push(with("completed", &|s| {
         s.calibration.parameters = 9;
         s.chip.multipliers = all;
@@ -186,6 +198,7 @@ fn samples(
         icarus: !verilator,
         verilator,
         time_limit: Some(Duration::from_secs(1800)),
+        stop_at_first: false,
     };
     let report = verify(dir.path(), &options, &silent)?;
     let run = report.runs.first().ok_or("no simulator ran")?;

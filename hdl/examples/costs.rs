@@ -2,7 +2,7 @@
 //!
 //!     cargo run --release -p nonius-hdl --example costs -- docs
 //!
-//! writes docs/on-line-costs.md for the optical design with each method and parameter set. Some minutes of Yosys.
+//! writes docs/on-line-costs.md, and .csv for the table of convergence, for the optical design with each method and parameter set. Some minutes of Yosys.
 
 use std::env;
 use std::error::Error;
@@ -14,7 +14,7 @@ use nonius_hdl::ChipDir;
 use nonius_hdl::place::{Device, place};
 use nonius_hdl::progress::silent;
 use nonius_model::design::Design;
-use nonius_model::spec::{CalibrationMethod, Spec};
+use nonius_model::spec::{CalibrationMethod, CalibrationStart, Spec};
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = env::args().skip(1).collect();
@@ -31,40 +31,64 @@ fn main() -> ExitCode {
     }
 }
 
-/// Name, method, parameters, completion.
-const CHIPS: [(&str, CalibrationMethod, u32, bool); 12] = [
-    ("none", CalibrationMethod::Final, 0, false),
-    ("residual, final form", CalibrationMethod::Final, 4, false),
-    ("residual, final form", CalibrationMethod::Final, 5, false),
-    ("residual, final form", CalibrationMethod::Final, 8, false),
-    ("residual, final form", CalibrationMethod::Final, 9, false),
-    ("residual, completed", CalibrationMethod::Final, 8, true),
-    ("residual, completed", CalibrationMethod::Final, 9, true),
-    ("residual, exact", CalibrationMethod::Exact, 4, false),
-    ("residual, exact", CalibrationMethod::Exact, 5, false),
+use CalibrationMethod::{Batch, Exact, Final, SumOfSquares};
+use CalibrationStart::{Gears, LeastSquares};
+
+/// Name, method, start, parameters, completion.
+const CHIPS: [(&str, CalibrationMethod, CalibrationStart, u32, bool); 17] = [
+    ("none", Final, Gears, 0, false),
+    ("residual, final form", Final, Gears, 4, false),
+    ("residual, final form", Final, Gears, 5, false),
+    ("residual, final form", Final, Gears, 8, false),
+    ("residual, final form", Final, Gears, 9, false),
+    ("residual, completed", Final, Gears, 8, true),
+    ("residual, completed", Final, Gears, 9, true),
+    ("residual, exact", Exact, Gears, 4, false),
+    ("residual, exact", Exact, Gears, 5, false),
+    ("sum of squares, λ", SumOfSquares, Gears, 4, false),
+    ("sum of squares, λ", SumOfSquares, Gears, 5, false),
+    ("sum of squares, batch", Batch, Gears, 4, false),
+    ("sum of squares, batch", Batch, Gears, 5, false),
     (
-        "sum of squares, λ",
-        CalibrationMethod::SumOfSquares,
+        "final form, started by least squares",
+        Final,
+        LeastSquares,
         4,
         false,
     ),
     (
-        "sum of squares, λ",
-        CalibrationMethod::SumOfSquares,
+        "final form, started by least squares",
+        Final,
+        LeastSquares,
         5,
         false,
     ),
-    ("sum of squares, batch", CalibrationMethod::Batch, 5, false),
+    (
+        "completed, started by least squares",
+        Final,
+        LeastSquares,
+        9,
+        true,
+    ),
+    (
+        "exact, started by least squares",
+        Exact,
+        LeastSquares,
+        5,
+        false,
+    ),
 ];
 
 fn run(docs: &Path) -> Result<(), Box<dyn Error>> {
     let file = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../designs/optical.toml");
     let base = Spec::from_toml(&std::fs::read_to_string(file)?, "optical.toml")?;
     let mut page = String::from(HEAD);
+    let mut csv = String::from("method,start,parameters,completion,clocks,lut4\n");
     let mut bare = 0;
-    for (name, method, parameters, completion) in CHIPS {
+    for (name, method, start, parameters, completion) in CHIPS {
         let mut spec = base.clone();
         spec.calibration.method = method;
+        spec.calibration.start = start;
         spec.calibration.parameters = parameters;
         spec.calibration.completion = completion;
         let design = Design::new(&spec)?;
@@ -84,15 +108,25 @@ fn run(docs: &Path) -> Result<(), Box<dyn Error>> {
             placed.chip.lut4,
             placed.chip.ff
         )?;
+        let (clocks, luts) = (package.json.clocks_per_sample, placed.chip.lut4);
+        writeln!(
+            csv,
+            "{method:?},{start:?},{parameters},{completion},{clocks},{luts}"
+        )?;
         eprintln!("{name}, {parameters} parameters");
     }
     std::fs::create_dir_all(docs)?;
-    let path = docs.join("on-line-costs.md");
-    let scratch = docs.join("on-line-costs.md.part");
-    std::fs::write(&scratch, &page)?;
-    std::fs::rename(scratch, path)?;
+    write(docs, "on-line-costs.md", &page)?;
+    write(docs, "on-line-costs.csv", &csv)?;
     print!("{page}");
     Ok(())
+}
+
+/// Under a temporary name first.
+fn write(docs: &Path, name: &str, text: &str) -> std::io::Result<()> {
+    let scratch = docs.join(format!("{name}.part"));
+    std::fs::write(&scratch, text)?;
+    std::fs::rename(scratch, docs.join(name))
 }
 
 const HEAD: &str = "\

@@ -13,7 +13,12 @@ use crate::verdict::judge;
 const BUILD_LIMIT: Duration = Duration::from_secs(300);
 
 /// Compiles with all warnings and simulates; stops the simulation at the limit.
-pub fn simulate(chip: &ChipDir, limit: Duration, progress: Progress) -> Result<Run, Error> {
+pub fn simulate(
+    chip: &ChipDir,
+    limit: Duration,
+    plusargs: &[&str],
+    progress: Progress,
+) -> Result<Run, Error> {
     let [iverilog, vvp] = require([Tool::Iverilog, Tool::Vvp])?;
     let scratch = tempfile::tempdir().map_err(Error::Scratch)?;
     let program = scratch.path().join("chip_tb.vvp");
@@ -35,6 +40,7 @@ pub fn simulate(chip: &ChipDir, limit: Duration, progress: Progress) -> Result<R
     let simulated = Job::new(&vvp.path, &chip.root, limit)
         .arg("-N")
         .arg(&program)
+        .args(plusargs)
         .run()?;
     progress(Event::Finished(Tool::Iverilog));
     let verdict = judge(&simulated, &chip.stimuli);

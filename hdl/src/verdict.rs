@@ -204,7 +204,7 @@ mod tests {
                 "reported an error",
             ),
         ] {
-            let failure = judged(said).failure.unwrap();
+            let failure = judged(said).failure.expect("a failure");
             assert!(failure.contains(why), "{said:?} gave {failure:?}");
         }
     }

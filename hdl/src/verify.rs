@@ -21,6 +21,8 @@ pub struct Options {
     pub icarus: bool,
     /// Simulate in Verilator.
     pub verilator: bool,
+    /// End a simulation with the first stimulus that fails.
+    pub stop_at_first: bool,
     /// Time that each simulation may take; by default a minute and what a slow machine needs
     /// for the rows.
     pub time_limit: Option<Duration>,
@@ -31,7 +33,19 @@ impl Default for Options {
         Options {
             icarus: true,
             verilator: true,
+            stop_at_first: false,
             time_limit: None,
+        }
+    }
+}
+
+impl Options {
+    /// What the testbench is told.
+    fn plusargs(&self) -> &'static [&'static str] {
+        if self.stop_at_first {
+            &["+stop_at_first"]
+        } else {
+            &[]
         }
     }
 }
@@ -71,13 +85,14 @@ pub fn verify(
     }
     let limit = options.time_limit.unwrap_or(default_limit(&chip));
     let effort = Effort::for_rows(chip.rows);
+    let plusargs = options.plusargs();
     let (icarus, verilator) = thread::scope(|scope| {
         let icarus = options
             .icarus
-            .then(|| scope.spawn(|| icarus::simulate(&chip, limit, progress)));
+            .then(|| scope.spawn(|| icarus::simulate(&chip, limit, plusargs, progress)));
         let verilator = options
             .verilator
-            .then(|| verilator::simulate(&chip, effort, limit, progress));
+            .then(|| verilator::simulate(&chip, effort, limit, plusargs, progress));
         (icarus.map(joined), verilator)
     });
     let runs: Vec<Run> = [icarus, verilator]

@@ -49,6 +49,7 @@ pub fn simulate(
     chip: &ChipDir,
     effort: Effort,
     limit: Duration,
+    plusargs: &[&str],
     progress: Progress,
 ) -> Result<Run, Error> {
     let [verilator, _, _] = require([Tool::Verilator, Tool::Cxx, Tool::Make])?;
@@ -66,6 +67,7 @@ pub fn simulate(
     let program = scratch.path().join(format!("V{TESTBENCH}"));
     let simulated = Job::new(&program, &chip.root, limit)
         .args(["+verilator+rand+reset+2", "+verilator+seed+1"])
+        .args(plusargs)
         .run()?;
     progress(Event::Finished(Tool::Verilator));
     let verdict = judge(&simulated, &chip.stimuli);

@@ -5,7 +5,7 @@ mod chip;
 use chip::{optical, shipped, write};
 use nonius_hdl::ChipDir;
 use nonius_hdl::verify::{Options, verify};
-use nonius_model::spec::{All, CalibrationMethod, Coding, Multipliers, Spec};
+use nonius_model::spec::{All, CalibrationMethod, CalibrationStart, Coding, Multipliers, Spec};
 
 fn agrees(spec: &Spec, rows: usize, options: &Options) {
     let dir = tempfile::tempdir().expect("scratch folder");
@@ -50,6 +50,16 @@ fn variants() -> Vec<Spec> {
         }),
         with(&|s| s.calibration.parameters = 4),
         with(&|s| s.calibration.parameters = 0),
+        // Four samples a period: the increments have a bit more.
+        with(&|s| {
+            s.tracking.method = 1;
+            s.sensor.speed_max_periods_per_s = 250e3;
+        }),
+        with(&|s| {
+            s.sensor.speed_max_periods_per_s = 250e3;
+            s.tracking.filter_type = 1;
+            s.tracking.pole = Some(0.9995);
+        }),
         with(&|s| s.adc.coding = Coding::OffsetBinary),
         with(&|s| s.chip.multipliers = Multipliers::All(All::All)),
     ];
@@ -93,11 +103,30 @@ fn variants() -> Vec<Spec> {
     all
 }
 
+/// Chips that start by least squares.
+fn started() -> Vec<Spec> {
+    let with = |parameters: u32, method: CalibrationMethod, multipliers: Multipliers| {
+        let mut spec = optical();
+        spec.calibration.start = CalibrationStart::LeastSquares;
+        spec.calibration.parameters = parameters;
+        spec.calibration.method = method;
+        spec.chip.multipliers = multipliers;
+        spec
+    };
+    use CalibrationMethod::{Exact, Final};
+    vec![
+        with(5, Final, Multipliers::Count(1)),
+        with(4, Final, Multipliers::All(All::All)),
+        with(5, Exact, Multipliers::Count(2)),
+        with(9, Final, Multipliers::Count(1)),
+    ]
+}
+
 /// Nobody's linter has anything to say, without waivers: Verilator -Wall, Icarus -Wall, Yosys check.
 #[test]
 fn every_variant_is_clean() {
     let others = ["magnetic", "interferometer"].map(shipped);
-    for spec in variants().into_iter().chain(others) {
+    for spec in variants().into_iter().chain(started()).chain(others) {
         let dir = tempfile::tempdir().expect("scratch folder");
         write(&spec, 2, dir.path());
         let chip = ChipDir::open(dir.path()).expect("a chip");
@@ -117,6 +146,13 @@ fn every_variant_in_icarus() {
     };
     for spec in variants() {
         agrees(&spec, 250, &options);
+    }
+}
+
+#[test]
+fn starts_in_icarus_and_verilator() {
+    for spec in started() {
+        agrees(&spec, 120, &Options::default());
     }
 }
 

@@ -8,11 +8,13 @@ use std::path::Path;
 use chip::{optical, write};
 use nonius_hdl::verify::{Options, verify};
 
-const ROWS: usize = 400;
+/// As `nonius build` writes them.
+const ROWS: usize = nonius_package::ROWS;
 
 fn verdict(dir: &Path) -> (bool, String) {
     let options = Options {
         verilator: false,
+        stop_at_first: true,
         ..Options::default()
     };
     let report =
@@ -52,6 +54,21 @@ fn another_last_step(verilog: &str, by: i32) -> String {
     replaced(verilog, &["wire last ="], &step, &other.to_string())
 }
 
+/// The chip that rounds `name` to the nearest, but exact halves down in place of up.
+fn half_down(verilog: &str, name: &str) -> String {
+    let words = ["wire", &format!(" {name}_rounded =")];
+    let guard = between(verilog, &words, "'b0, ", "};");
+    let (signal, bit) = guard.trim_end_matches(']').split_once('[').expect("a bit");
+    let below = bit.parse::<u32>().expect("a number") - 1;
+    let down = format!("{guard} & (|{signal}[{below}:0])");
+    replaced(
+        verilog,
+        &words,
+        &format!("{guard}}};"),
+        &format!("{down}}};"),
+    )
+}
+
 type Fault = (&'static str, Box<dyn Fn(&str) -> String>);
 
 /// Faults in the Verilog, each of one place.
@@ -70,7 +87,24 @@ fn faults() -> Vec<Fault> {
             replaced(v, &["wire", " c_rounded ="], "c_exact[10]", "1'b0")
         }),
         fault("rounding of theta_1: cut off", |v| {
-            replaced(v, &["wire", " theta_1_rounded ="], "200 +", "000 +")
+            replaced(v, &["wire", " theta_1_rounded ="], "400 +", "000 +")
+        }),
+        fault("half of theta_1's last bit rounds down", |v| {
+            replaced(v, &["wire", " theta_1_rounded ="], "a000400 +", "a0003ff +")
+        }),
+        fault("half of theta_5's last bit rounds down", |v| {
+            half_down(v, "theta_5")
+        }),
+        fault("half of c's last bit rounds down", |v| half_down(v, "c")),
+        fault("half of s's last bit rounds down", |v| half_down(v, "s")),
+        fault("half of e_seen's last bit rounds down", |v| {
+            half_down(v, "e_seen")
+        }),
+        fault("half of rho_c's last bit rounds down", |v| {
+            half_down(v, "rho_c")
+        }),
+        fault("half of rho_s's last bit rounds down", |v| {
+            half_down(v, "rho_s")
         }),
         fault("saturation of s: wraps", |v| {
             let kept = between(v, &["wire", " s_now = "], "? ", " :");
@@ -85,7 +119,7 @@ fn faults() -> Vec<Fault> {
         }),
         fault("saturation of theta_4: at the other end", |v| {
             let words = ["wire", " theta_4_deviation_next_now = "];
-            replaced(v, &words, "{24{~", "{24{")
+            replaced(v, &words, "{25{~", "{25{")
         }),
         fault("sign extension of a product", |v| {
             let words = ["wire", " sin_magnitude_sum ="];

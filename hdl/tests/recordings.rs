@@ -26,16 +26,19 @@ fn shared() -> Option<PathBuf> {
 const ICARUS: Options = Options {
     icarus: true,
     verilator: false,
+    stop_at_first: false,
     time_limit: None,
 };
 const VERILATOR: Options = Options {
     icarus: false,
     verilator: true,
+    stop_at_first: false,
     time_limit: None,
 };
 const BOTH: Options = Options {
     icarus: true,
     verilator: true,
+    stop_at_first: false,
     time_limit: None,
 };
 

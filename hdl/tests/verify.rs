@@ -15,7 +15,7 @@ const SECONDS: Duration = Duration::from_secs(20);
 
 /// Where a tool is missing the message names the install command.
 fn in_icarus(toy: &Toy) -> Run {
-    icarus::simulate(&toy.open(), SECONDS, &silent).unwrap_or_else(|it| panic!("{it}"))
+    icarus::simulate(&toy.open(), SECONDS, &[], &silent).unwrap_or_else(|it| panic!("{it}"))
 }
 
 /// Icarus refuses the toy, and says so with these words.

@@ -117,6 +117,7 @@ pub fn registers(structure: &Structure) -> (Vec<&'static str>, Vec<&'static str>
         "loop_gear" => structure.loop_gears > 0,
         "theta_9_deviation" | "null_gradient" | "null_gradient_rate" | "travel_samples"
         | "moving" => structure.completion.is_some(),
+        "start_periods" => structure.least_squares_start,
         "null_gradient_error" => structure.completion.is_some() && two_products,
         name if name.starts_with("alpha_gradient") => {
             let phase = name.ends_with('5');
@@ -248,6 +249,7 @@ pub fn register_format(name: &str, structure: &Structure) -> crate::format::Form
         "gamma_gear" => f.gamma_gear,
         "gear_periods" => f.gear_periods,
         "travel_samples" => f.travel_samples,
+        "start_periods" => f.start_periods,
         name if name.contains("gradient_error") => f.signal.format,
         name if name.contains("_gradient") => f.alpha_gradient.format,
         name if name.starts_with("gathered") => f.gathered.format,

@@ -7,6 +7,7 @@ use nonius_model::chip::{Chip, register_format, registers};
 use nonius_model::design::Design;
 use nonius_model::graph::Evaluation;
 use nonius_model::kernel::Input;
+use nonius_model::spec::{CalibrationMethod, CalibrationStart};
 use support::{Encoder, optical, wrapped};
 
 /// From rest into any speed up to the promised one, from any phase, with a miscalibrated sensor.
@@ -132,9 +133,32 @@ fn graph_and_chip_agree_in_every_bit() {
     }
 }
 
-/// The paper counts sixteen products for five parameters.
+/// Products of a sample. The paper counts sixteen for five parameters, and six more than the bare loop for four: that loop
+/// with a fixed correction has ten here, and four parameters four more.
 #[test]
-fn sixteen_products() {
-    let design = Design::new(&optical()).expect("a shipped design");
-    assert_eq!(design.graph.products(), 16);
+fn products_of_a_sample() {
+    use CalibrationMethod::{Batch, Exact, Final, SumOfSquares};
+    for (method, start, parameters, products) in [
+        (Final, CalibrationStart::Gears, 0, 10),
+        (Final, CalibrationStart::Gears, 4, 14),
+        (Final, CalibrationStart::Gears, 5, 16),
+        (Final, CalibrationStart::Gears, 8, 31),
+        (Final, CalibrationStart::Gears, 9, 33),
+        (Final, CalibrationStart::LeastSquares, 5, 26),
+        (SumOfSquares, CalibrationStart::Gears, 5, 18),
+        (Batch, CalibrationStart::Gears, 5, 18),
+        (Exact, CalibrationStart::Gears, 4, 28),
+        (Exact, CalibrationStart::Gears, 5, 34),
+    ] {
+        let mut spec = optical();
+        spec.calibration.method = method;
+        spec.calibration.start = start;
+        spec.calibration.parameters = parameters;
+        let design = Design::new(&spec).expect("a design that works");
+        assert_eq!(
+            design.graph.products(),
+            products,
+            "{method:?} {start:?} {parameters}"
+        );
+    }
 }

@@ -2,7 +2,6 @@
 //!
 //! The chip makes decisions that the paper does not know (γ shifts gear, each sector of travel counts once, the modes
 //! are equalised). The reference is told them sample by sample; everything else it computes from the physical design.
-#![cfg_attr(test, allow(clippy::unwrap_used))]
 
 mod agreement;
 mod support;
@@ -98,7 +97,7 @@ fn the_equations_agree() {
     for (name, mut spec) in structures() {
         spec.formats.signal_fraction = Some(24);
         spec.formats.sine_rows_log2 = Some(13);
-        let design = Design::new(&spec).unwrap();
+        let design = Design::new(&spec).expect("a design that works");
         let found = compare(
             &design,
             &mut Chip::unrounded(&design),
@@ -115,7 +114,7 @@ fn the_equations_agree() {
 #[test]
 fn the_bits_agree_to_the_rounding() {
     for (name, spec) in structures() {
-        let design = Design::new(&spec).unwrap();
+        let design = Design::new(&spec).expect("a design that works");
         let found = compare(
             &design,
             &mut Chip::bit_true(&design),
@@ -139,7 +138,7 @@ fn a_small_difference_in_the_design_is_seen() {
     let mut spec = optical();
     spec.formats.signal_fraction = Some(24);
     spec.formats.sine_rows_log2 = Some(13);
-    let design = Design::new(&spec).unwrap();
+    let design = Design::new(&spec).expect("a design that works");
     let worst = WorstCase::of(&design, false);
     let mut wider = design.clone();
     wider.spec.tracking.bandwidth_hz *= 1.01;
@@ -162,7 +161,7 @@ fn a_small_difference_in_the_design_is_seen() {
 #[test]
 fn the_travel_gates_decide_alike() {
     let spec = optical();
-    let design = Design::new(&spec).unwrap();
+    let design = Design::new(&spec).expect("a design that works");
     let encoder = Encoder::ideal(&spec);
     let mut chip = Chip::bit_true(&design);
     let always = Window {

@@ -4,56 +4,8 @@ mod chip_support;
 
 use std::f64::consts::TAU;
 
-use chip_support::{Bench, largest, optical, rms};
-use nonius_model::spec::{CalibrationMethod, Spec};
-
-/// Offsets 10 %, gain ratio 1.2, β = 5°, with these signs.
-fn sensor(signs: u32) -> impl Fn(f64) -> (f64, f64) {
-    let sign = move |bit: u32| if signs >> bit & 1 == 0 { 1.0 } else { -1.0 };
-    let ratio = 1.2f64.powf(0.5 * sign(0));
-    let beta = 5f64.to_radians() * sign(3);
-    move |alpha: f64| {
-        (
-            ratio * alpha.cos() + 0.1 * sign(1),
-            (alpha - beta).sin() / ratio + 0.1 * sign(2),
-        )
-    }
-}
-
-/// Largest share of the first miscalibration that is left after 1, 2, … `periods` periods of travel in lock, over all
-/// signs, at 64 samples a period; percent.
-fn course(spec: &Spec, periods: usize) -> Vec<f64> {
-    let mut worst = vec![0.0f64; periods];
-    for signs in 0..16 {
-        let signals = sensor(signs);
-        let mut bench = Bench::new(spec, u64::from(signs));
-        let before = rms(&bench.miscalibration(&signals));
-        let (mut locked, mut k) = (0, 0);
-        while locked < periods * 64 {
-            // A little off 64 a period, so that the sectors are not always met at the same places.
-            bench.step(signals(TAU / 64.37 * f64::from(k)));
-            k += 1;
-            assert!(k < 20_000, "never locked");
-            if bench.chip.state.locked {
-                locked += 1;
-                if locked % 64 == 0 {
-                    let left = rms(&bench.miscalibration(&signals)) / before;
-                    let worst = &mut worst[locked / 64 - 1];
-                    *worst = worst.max(100.0 * left);
-                }
-            }
-        }
-    }
-    worst
-}
-
-/// The optical design at 64 samples a period: 12 bits, 0.1 % noise, a loop that follows.
-fn fast() -> Spec {
-    let mut spec = optical();
-    spec.tracking.bandwidth_hz = 20e3;
-    spec.accuracy.rms_periods = 200e-6;
-    spec
-}
+use chip_support::{Bench, course, fast, largest, optical, rms, sensor};
+use nonius_model::spec::{CalibrationMethod, CalibrationStart};
 
 /// Below 1 % within five periods, whatever the amplitude is of the ADC's range and however wide the loop.
 #[test]
@@ -70,21 +22,34 @@ fn the_chip_converges_in_five_periods() {
     }
 }
 
-/// The other searches of the paper and the larger sets get there too, later.
+/// The other searches of the paper get there as fast, the batch and the larger sets later.
 #[test]
 fn every_search_and_set_converges() {
     for (method, parameters, within) in [
-        (CalibrationMethod::Exact, 5, 12),
-        (CalibrationMethod::SumOfSquares, 5, 12),
-        (CalibrationMethod::Batch, 5, 40),
-        (CalibrationMethod::Final, 9, 20),
+        (CalibrationMethod::Exact, 5, 5),
+        (CalibrationMethod::SumOfSquares, 5, 5),
+        (CalibrationMethod::Batch, 5, 8),
+        (CalibrationMethod::Final, 9, 9),
     ] {
         let mut spec = fast();
         spec.calibration.method = method;
         spec.calibration.parameters = parameters;
         let left = course(&spec, within);
         println!("{method:?}, {parameters} parameters: {left:.2?} % left");
-        assert!(left[within - 1] < 2.5, "{method:?} {left:?}");
+        assert!(left[within - 1] < 1.0, "{method:?} {left:?}");
+    }
+}
+
+/// The exact gradient behind a loop that follows in part or hardly (the signal has 7.8 kHz).
+#[test]
+fn the_exact_gradient_converges_behind_a_slow_loop() {
+    for (bandwidth, within) in [(1e3, 9), (4e3, 5), (8e3, 5), (20e3, 5)] {
+        let mut spec = fast();
+        spec.calibration.method = CalibrationMethod::Exact;
+        spec.tracking.bandwidth_hz = bandwidth;
+        let left = course(&spec, within);
+        println!("loop {bandwidth} Hz: {left:.2?} % left");
+        assert!(left[within - 1] < 1.0, "{left:?}");
     }
 }
 
@@ -148,38 +113,14 @@ fn a_drifting_offset_is_followed() {
     assert!(worst < 2e-4, "{worst}");
 }
 
-/// Speeds of exactly 8 and 64 samples a period neither stall nor bias the calibration; 4 are beyond what a design may
-/// promise.
-#[test]
-fn commensurate_speeds_calibrate() {
-    for (per_period, limit) in [(8, 1e-3), (64, 1e-3)] {
-        let mut spec = fast();
-        spec.tracking.bandwidth_hz = 20e3;
-        spec.sensor.speed_max_periods_per_s = 126e3;
-        for signs in [3, 9] {
-            let signals = sensor(signs);
-            let mut bench = Bench::new(&spec, 3);
-            for k in 0..6000 * per_period {
-                bench.step(signals(
-                    TAU * (f64::from(k) / f64::from(per_period) + 0.013),
-                ));
-            }
-            let left = rms(&bench.miscalibration(&signals));
-            println!(
-                "{per_period} samples a period, signs {signs}: {left:.2e} rad rms left, locked {}",
-                bench.chip.state.locked
-            );
-            assert!(bench.chip.state.locked && left < limit, "{left}");
-        }
-    }
-}
-
 /// The signal goes and comes back: the parameters are no worse than before.
 #[test]
 fn loss_of_signal_leaves_the_parameters() {
-    for parameters in [5, 9] {
+    use CalibrationStart::{Gears, LeastSquares};
+    for (parameters, start) in [(5, Gears), (9, Gears), (5, LeastSquares), (9, LeastSquares)] {
         let mut spec = optical();
         spec.calibration.parameters = parameters;
+        spec.calibration.start = start;
         let signals = sensor(6);
         let mut bench = Bench::new(&spec, 4);
         let step = 1.0 / 301.0;
@@ -200,14 +141,15 @@ fn loss_of_signal_leaves_the_parameters() {
                 bench.step((fade * y.0, fade * y.1));
             }
         }
-        // Forty periods of travel more, for what the fading left.
-        for k in 0..12_000u32 {
+        // Two hundred periods of travel more, for what the fading left: nine parameters take so long.
+        for k in 0..60_000u32 {
             bench.step(signals(TAU * step * f64::from(k)));
         }
         let after = rms(&bench.miscalibration(&signals));
-        println!("{parameters} parameters: {before:.2e} -> {after:.2e} rad rms");
+        println!("{parameters} parameters, {start:?}: {before:.2e} -> {after:.2e} rad rms");
         assert!(bench.chip.state.locked);
-        assert!(after < before.max(1e-3), "{before} {after}");
+        // The noise of the parameters themselves is some 5e-5.
+        assert!(after < before.max(1e-4), "{before} {after}");
     }
 }
 
@@ -215,7 +157,11 @@ fn loss_of_signal_leaves_the_parameters() {
 /// no parameter moves by more than three times its noise.
 #[test]
 fn vibration_moves_no_parameter() {
-    for parameters in [5, 9] {
+    for (parameters, start) in [
+        (5, CalibrationStart::Gears),
+        (9, CalibrationStart::Gears),
+        (5, CalibrationStart::LeastSquares),
+    ] {
         for (name, amplitude) in [("standstill", 0.0), ("vibration", 0.1)] {
             let mut spec = optical();
             spec.adc.sample_rate_hz = 5e3;
@@ -223,6 +169,7 @@ fn vibration_moves_no_parameter() {
             spec.tracking.bandwidth_hz = 300.0;
             spec.accuracy.rms_periods = 200e-6;
             spec.calibration.parameters = parameters;
+            spec.calibration.start = start;
             let bent = |u: f64| u + 0.01 * u * u + 0.03 * u * u * u;
             let signals = |alpha: f64| (bent(alpha.cos()), bent(alpha.sin()));
             let mut bench = Bench::new(&spec, 6);

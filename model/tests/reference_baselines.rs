@@ -1,5 +1,4 @@
 //! What the paper argues against: the open-loop arctangent, and the extremes of the signals.
-#![cfg_attr(test, allow(clippy::unwrap_used))]
 
 mod reference_support;
 

@@ -1,5 +1,4 @@
 //! The completed gradient: what the radius cannot show, one scalar sensitivity can.
-#![cfg_attr(test, allow(clippy::unwrap_used))]
 
 mod reference_support;
 
@@ -61,7 +60,8 @@ fn calibrate(
     bandwidth: f64,
     signals: fn(f64) -> [f64; 2],
 ) -> [f64; 3] {
-    let mut reference = Reference::new(config(set, search, bandwidth)).unwrap();
+    let mut reference =
+        Reference::new(config(set, search, bandwidth)).expect("a configuration that works");
     let mut noise = Noise::new(3, 0.001);
     let before = order(set, reference.theta(), signals, 2);
     let mut square = 0.0;
@@ -160,7 +160,7 @@ fn nine_parameters_correct_a_wholly_miscalibrated_sensor() {
             for gain in [0, 4] {
                 settings.gamma.first[(gain, gain)] /= amplitude * amplitude;
             }
-            let mut reference = Reference::new(settings).unwrap();
+            let mut reference = Reference::new(settings).expect("a configuration that works");
             let mut noise = Noise::new(5, 0.001 * amplitude);
             for k in 0..150_000 {
                 let (y, n) = (signals(SPEED * f64::from(k)), noise.pair());
@@ -196,9 +196,9 @@ fn the_completion_learns_at_the_rate_stated() {
         };
         let mut settings = config(set, Search::Completed(completed), bandwidth);
         settings.gamma = Gamma::constant(0.0);
-        let v = set.null_direction(&settings.theta).unwrap();
+        let v = set.null_direction(&settings.theta).expect("a cubic set");
         settings.theta += v * 0.01;
-        let mut reference = Reference::new(settings).unwrap();
+        let mut reference = Reference::new(settings).expect("a configuration that works");
         let mut displaced = |samples: std::ops::Range<u32>| {
             for k in samples {
                 let (sin, cos) = (SPEED * f64::from(k)).sin_cos();
@@ -239,7 +239,7 @@ fn below_its_gate_the_completion_rests() {
                 speed: speed / TS,
                 e_1: 0.0,
             };
-            let mut reference = Reference::new(settings).unwrap();
+            let mut reference = Reference::new(settings).expect("a configuration that works");
             for k in 0..20_000 {
                 let y = cubic(0.3 + motion(f64::from(k)));
                 reference.step(y[0], y[1]);
@@ -259,7 +259,8 @@ fn below_its_gate_the_completion_rests() {
 #[test]
 fn motion_at_two_cycles_per_period_is_taken_for_sensor_error() {
     let set = Parameters::ChebyshevEight;
-    let mut reference = Reference::new(config(set, COMPLETED, 0.5)).unwrap();
+    let mut reference =
+        Reference::new(config(set, COMPLETED, 0.5)).expect("a configuration that works");
     for k in 0..60_000 {
         let mean = SPEED * f64::from(k);
         let (sin, cos) = (mean + 5e-3 * (2.0 * mean).sin()).sin_cos();
@@ -285,7 +286,8 @@ fn what_cannot_converge_is_refused() {
         settings.gamma = Gamma::constant(0.02);
         Reference::new(settings)
     };
-    let mut fastest = with(4.0, Parameters::ChebyshevEight, Gate::EverySample).unwrap();
+    let mut fastest =
+        with(4.0, Parameters::ChebyshevEight, Gate::EverySample).expect("there is one");
     for k in 0..40_000 {
         let y = cubic(SPEED * f64::from(k));
         fastest.step(y[0], y[1]);

@@ -1,5 +1,4 @@
 //! Section 5.5: the gradient of the residual, and what its approximations cost.
-#![cfg_attr(test, allow(clippy::unwrap_used))]
 
 mod reference_support;
 

@@ -1,5 +1,4 @@
 //! The paper's system as a whole: Figure 7, every search, and the guards that the paper leaves out.
-#![cfg_attr(test, allow(clippy::unwrap_used))]
 
 mod reference_support;
 mod support;
@@ -48,7 +47,7 @@ fn record(signals: impl Fn(f64) -> [f64; 2], samples: u32) -> Vec<[f64; 2]> {
 
 /// Mean of Θ over the last quarter.
 fn converged(config: Config, record: &[[f64; 2]]) -> Theta {
-    let mut reference = Reference::new(config).unwrap();
+    let mut reference = Reference::new(config).expect("a configuration that works");
     let (mut sum, from) = (Theta::zeros(), record.len() * 3 / 4);
     for (k, y) in record.iter().enumerate() {
         let seen = reference.step(y[0], y[1]);
@@ -64,7 +63,7 @@ fn converged(config: Config, record: &[[f64; 2]]) -> Theta {
 fn figure_7_converges_to_heydemann() {
     let set = Parameters::Five;
     let record = record(|a| MISCALIBRATED.signals(a), 60_000);
-    let expected = set.from_five(heydemann::calibrate(&record).unwrap().theta());
+    let expected = set.from_five(heydemann::calibrate(&record).expect("an ellipse").theta());
     assert!((expected - set.nominal(1.0)).amax() > 0.09);
     for (name, search, gamma) in [
         ("final form", FINAL, 0.005),
@@ -121,7 +120,7 @@ fn with_distortion_the_objectives_differ() {
         [y[0] + 0.03 * (2.0 * a).cos(), y[1] + 0.02 * (3.0 * a).sin()]
     };
     let record = record(distorted, 60_000);
-    let heydemann = set.from_five(heydemann::calibrate(&record).unwrap().theta());
+    let heydemann = set.from_five(heydemann::calibrate(&record).expect("an ellipse").theta());
     let residual = converged(config(set, FINAL, 0.003), &record);
     let difference = (residual - heydemann).amax();
     println!("with distortion: {difference:.1e} from Heydemann's values");
@@ -136,7 +135,8 @@ fn gamma_sets_the_noise_that_stays() {
     for gamma in [0.02, 0.005] {
         let sigma = 0.01;
         let mut noise = Noise::new(1, sigma);
-        let mut reference = Reference::new(config(set, FINAL, gamma)).unwrap();
+        let mut reference =
+            Reference::new(config(set, FINAL, gamma)).expect("a configuration that works");
         let (mut square, mut n) = (0.0, 0.0);
         for k in 0..200_000 {
             let (sin, cos) = (SPEED * f64::from(k)).sin_cos();
@@ -167,7 +167,7 @@ fn without_lock_the_paper_destroys_itself() {
             e_1: 0.0,
         };
         settings.gate = gate;
-        let mut reference = Reference::new(settings).unwrap();
+        let mut reference = Reference::new(settings).expect("a configuration that works");
         for k in 0..100_000 {
             let y = MISCALIBRATED.signals(1.3 * f64::from(k));
             reference.step(y[0], y[1]);
@@ -194,7 +194,7 @@ fn standstill_and_vibration_do_not_bias_the_travelled_gate() {
     let run = |gate, motion: &dyn Fn(f64) -> f64| {
         let mut settings = config(set, FINAL, 0.01);
         settings.gate = gate;
-        let mut reference = Reference::new(settings).unwrap();
+        let mut reference = Reference::new(settings).expect("a configuration that works");
         let (turn, rest) = (40_000, 200_000);
         for k in 0..turn {
             let y = distorted(SPEED * f64::from(k));
@@ -235,7 +235,7 @@ fn the_arctangent_pulls_the_loop_in() {
             settings.tracking = type_2(0.02);
             settings.gate = Gate::Travelled(WINDOW);
             settings.start = Start::Arctangent { samples: 64 };
-            let mut reference = Reference::new(settings).unwrap();
+            let mut reference = Reference::new(settings).expect("a configuration that works");
             let mut locked = 0;
             for k in 0..2000 {
                 let y = MISCALIBRATED.signals(at(k));
@@ -263,7 +263,7 @@ fn loss_of_signal_leaves_the_parameters() {
     let mut settings = config(set, FINAL, 0.01);
     settings.gate = Gate::Travelled(WINDOW);
     settings.start = Start::Arctangent { samples: 64 };
-    let mut reference = Reference::new(settings).unwrap();
+    let mut reference = Reference::new(settings).expect("a configuration that works");
     let mut noise = Noise::new(2, 0.002);
     let mut at_loss = Theta::zeros();
     let mut last = None;
@@ -285,7 +285,7 @@ fn loss_of_signal_leaves_the_parameters() {
         }
         last = Some(seen);
     }
-    let last = last.unwrap();
+    let last = last.expect("there is one");
     assert!(last.locked);
     assert!(wrapped(last.alpha_hat - SPEED * 119_999.0).abs() < 0.02);
     let rms = |theta: &Theta| miscalibration(set, theta, |a| MISCALIBRATED.signals(a)).0;
@@ -297,7 +297,7 @@ fn loss_of_signal_leaves_the_parameters() {
 fn parameters_stay_within_their_bounds() {
     let mut settings = config(Parameters::Five, FINAL, 0.05);
     settings.bound = Theta::repeat(0.05);
-    let mut reference = Reference::new(settings).unwrap();
+    let mut reference = Reference::new(settings).expect("a configuration that works");
     for k in 0..20_000 {
         let y = MISCALIBRATED.signals(SPEED * f64::from(k));
         let seen = reference.step(3.0 * y[0], y[1]);
@@ -311,7 +311,9 @@ fn parameters_stay_within_their_bounds() {
 fn a_design_makes_a_reference() {
     let spec = support::optical();
     let normalise = from_spec::Normalise::of(&spec);
-    let mut reference = Reference::new(from_spec::config(&spec).unwrap()).unwrap();
+    let mut reference =
+        Reference::new(from_spec::config(&spec).expect("a design that the paper knows"))
+            .expect("a configuration that works");
     let mut noise = Noise::new(9, spec.sensor.noise_rms);
     let mut largest = 0.0f64;
     for k in 0..60_000 {

@@ -1,5 +1,4 @@
 //! Section 4: what the paper says of its three loops.
-#![cfg_attr(test, allow(clippy::unwrap_used))]
 
 mod reference_support;
 
@@ -63,14 +62,14 @@ proptest! {
     fn the_response_has_the_poles_designed(
         omega_ts in 0.02f64..1.0, xi in 0.3f64..3.0, which in 0usize..5,
     ) {
-        let poles = Poles::new(omega_ts / TS, xi, TS).unwrap();
-        let h = impulse_response(LoopConfig::new(METHODS[which], &poles, TS).unwrap(), 5);
+        let poles = Poles::new(omega_ts / TS, xi, TS).expect("poles inside the unit circle");
+        let h = impulse_response(LoopConfig::new(METHODS[which], &poles, TS).expect("the paper builds it"), 5);
         // h has the numerator in its first two values; from then on it is the recursion alone.
         let past = Matrix2::new(h[2], -h[1], h[3], -h[2]);
         let found = past.lu().solve(&Vector2::new(h[3], h[4]));
         // Where the zero cancels a pole the response has one pole only, and nothing can be identified.
         prop_assume!(past.determinant().abs() > 1e-9 * h[1] * h[1]);
-        let found = found.unwrap();
+        let found = found.expect("there is one");
         prop_assert!((found[0] - poles.sum()).abs() < 1e-5, "{} {}", found[0], poles.sum());
         prop_assert!((found[1] - poles.product()).abs() < 1e-5, "{} {}", found[1], poles.product());
     }
@@ -78,7 +77,7 @@ proptest! {
     /// The poles are those of the continuous system: z = exp(s ts) with s² + 2ξω0 s + ω0² = 0.
     #[test]
     fn poles_are_those_of_a_second_order_system(omega_0 in 10.0f64..1e5, xi in 0.2f64..5.0) {
-        let poles = Poles::new(omega_0, xi, TS).unwrap();
+        let poles = Poles::new(omega_0, xi, TS).expect("poles inside the unit circle");
         for p in [poles.p1, poles.p2] {
             let s = p.ln() / TS;
             let value = s * s + s * (2.0 * xi * omega_0) + omega_0 * omega_0;
@@ -89,9 +88,9 @@ proptest! {
     /// Zero steady-state error after a step, for each method and type.
     #[test]
     fn a_step_leaves_no_error(omega_ts in 0.05f64..0.5, xi in 0.5f64..1.5, step in -1.5f64..1.5) {
-        let poles = Poles::new(omega_ts / TS, xi, TS).unwrap();
+        let poles = Poles::new(omega_ts / TS, xi, TS).expect("poles inside the unit circle");
         for method in METHODS {
-            let config = LoopConfig::new(method, &poles, TS).unwrap();
+            let config = LoopConfig::new(method, &poles, TS).expect("the paper builds it");
             let (error, speed) = follow(config, (100.0 / omega_ts) as u32, |_| step);
             prop_assert!(error.abs() < 1e-12, "{method:?}: {error}");
             prop_assert!(speed.abs() * TS < 1e-12, "{method:?}: {speed}");
@@ -102,9 +101,9 @@ proptest! {
     /// phase detector; the speed is right in either case.
     #[test]
     fn a_ramp_leaves_the_known_lag(omega_ts in 0.05f64..0.5, xi in 0.7f64..1.5, part in -0.5f64..0.5) {
-        let poles = Poles::new(omega_ts / TS, xi, TS).unwrap();
+        let poles = Poles::new(omega_ts / TS, xi, TS).expect("poles inside the unit circle");
         for method in METHODS {
-            let config = LoopConfig::new(method, &poles, TS).unwrap();
+            let config = LoopConfig::new(method, &poles, TS).expect("the paper builds it");
             // A speed that lags by at most half a radian, and from rest does not lose the lock.
             let speed = part * omega_ts / TS / 4.0;
             let lag = config.lag(speed);
@@ -119,8 +118,8 @@ proptest! {
     /// Method 2's lag in the poles alone: v ts (1 − p1p2)/(1 − p1 − p2 + p1p2).
     #[test]
     fn method_2_lags_by_its_poles(p1 in 0.1f64..0.95, p2 in 0.1f64..0.95) {
-        let poles = Poles::real(p1, p2).unwrap();
-        let config = LoopConfig::new(Method::Two, &poles, TS).unwrap();
+        let poles = Poles::real(p1, p2).expect("poles inside the unit circle");
+        let config = LoopConfig::new(Method::Two, &poles, TS).expect("the paper builds it");
         let v = 0.05 * (1.0 - p1) * (1.0 - p2) / TS;
         let expected = v * TS * (1.0 - p1 * p2) / (1.0 - p1 - p2 + p1 * p2);
         let (error, _) = follow(config, 3000, |k| v * TS * k);
@@ -130,9 +129,9 @@ proptest! {
     /// Method 2 is Method 1 of type 1 with its second pole at p1p2.
     #[test]
     fn method_2_is_type_1_with_a_pole_that_is_not_free(p1 in 0.1f64..0.95, p2 in 0.1f64..0.95) {
-        let poles = Poles::real(p1, p2).unwrap();
-        let two = LoopConfig::new(Method::Two, &poles, TS).unwrap().filter;
-        let one = Filter::placing(&poles, FilterType::One { pole: p1 * p2 }).unwrap();
+        let poles = Poles::real(p1, p2).expect("poles inside the unit circle");
+        let two = LoopConfig::new(Method::Two, &poles, TS).expect("the paper builds it").filter;
+        let one = Filter::placing(&poles, FilterType::One { pole: p1 * p2 }).expect("the paper builds it");
         for (x, y) in [(two.a, one.a), (two.b, one.b), (two.c, one.c), (two.d, one.d)] {
             prop_assert!((x - y).abs() < 1e-14, "{two:?} {one:?}");
         }
@@ -143,8 +142,8 @@ proptest! {
     /// (3): the response to a slow sine is that of G_cl, and 1 − G_cl = 1/(1 + G).
     #[test]
     fn the_closed_loop_is_equation_3(omega_ts in 0.05f64..0.5, ratio in 0.05f64..4.0, which in 0usize..5) {
-        let poles = Poles::new(omega_ts / TS, 0.8, TS).unwrap();
-        let config = LoopConfig::new(METHODS[which], &poles, TS).unwrap();
+        let poles = Poles::new(omega_ts / TS, 0.8, TS).expect("poles inside the unit circle");
+        let config = LoopConfig::new(METHODS[which], &poles, TS).expect("the paper builds it");
         let w = (omega_ts * ratio).min(2.5);
         let z = Complex::from_polar(1.0, w);
         let expected = config.filter.closed_loop(z);
@@ -165,11 +164,14 @@ proptest! {
 /// does not round, and what remains is algebra. Its speed is the difference that Method 1 must take.
 #[test]
 fn method_3_is_method_1_exactly() {
-    let poles = Poles::real(0.5, 0.75).unwrap();
+    let poles = Poles::real(0.5, 0.75).expect("poles inside the unit circle");
     for kind in [FilterType::Two, FilterType::One { pole: 0.25 }] {
         let ts = 0.5;
-        let mut one = Loop::new(LoopConfig::new(Method::One(kind), &poles, ts).unwrap());
-        let mut three = Loop::new(LoopConfig::new(Method::Three(kind), &poles, ts).unwrap());
+        let mut one =
+            Loop::new(LoopConfig::new(Method::One(kind), &poles, ts).expect("the paper builds it"));
+        let mut three = Loop::new(
+            LoopConfig::new(Method::Three(kind), &poles, ts).expect("the paper builds it"),
+        );
         for alpha in [0.5, 0.75, -0.25, 0.125, 1.0, -0.5, 0.625, 0.25, 0.0] {
             one.advance(alpha - one.alpha_hat());
             three.advance(alpha - three.alpha_hat());
@@ -183,9 +185,9 @@ fn method_3_is_method_1_exactly() {
 /// The same over a long and fast way, to rounding: a period is divided into more than 10^12 parts.
 #[test]
 fn method_3_is_method_1_after_a_long_way() {
-    let poles = Poles::new(0.1 / TS, 0.707, TS).unwrap();
+    let poles = Poles::new(0.1 / TS, 0.707, TS).expect("poles inside the unit circle");
     let [mut one, mut three] = [Method::One(FilterType::Two), Method::Three(FilterType::Two)]
-        .map(|m| Loop::new(LoopConfig::new(m, &poles, TS).unwrap()));
+        .map(|m| Loop::new(LoopConfig::new(m, &poles, TS).expect("the paper builds it")));
     let mut largest = 0.0f64;
     for k in 0..200_000 {
         let (sin, cos) = (0.3 * f64::from(k)).sin_cos();
@@ -201,7 +203,7 @@ fn method_3_is_method_1_after_a_long_way() {
 
 #[test]
 fn what_the_paper_calls_impossible_is_refused() {
-    let poles = Poles::new(0.1 / TS, 1.0, TS).unwrap();
+    let poles = Poles::new(0.1 / TS, 1.0, TS).expect("poles inside the unit circle");
     let named = |method, kind, pole| LoopConfig::named(method, kind, pole, &poles, TS);
     for (method, kind, pole, word) in [
         (2, 2, None, "type 2"),

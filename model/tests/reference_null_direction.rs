@@ -1,5 +1,4 @@
 //! Section 5.4 is singular: one direction of the eight cubic parameters changes no radius, but turns the angle.
-#![cfg_attr(test, allow(clippy::unwrap_used))]
 
 mod reference_support;
 
@@ -20,7 +19,7 @@ const CUBIC: [Parameters; 4] = [
 /// Radial and tangential effect of v at the angle α, with a calibrated Θ and α̂ = α.
 fn effect(set: Parameters, sensor: &Sensor, alpha: f64) -> (f64, f64) {
     let theta = set.from_five(sensor.theta());
-    let v = set.null_direction(&theta).unwrap();
+    let v = set.null_direction(&theta).expect("a cubic set");
     let seen = Observation::new(set, &theta, sensor.signals(alpha), alpha);
     let moved = seen.m * v;
     let (sin, cos) = alpha.sin_cos();
@@ -64,7 +63,7 @@ proptest! {
     fn v_scales_with_amplitude_and_offset(a in 0.3f64..2.0, b in -0.5f64..0.5) {
         let sensor = Sensor { a_c: a, b_c: b, a_s: a, b_s: 0.0, beta: 0.0 };
         let set = Parameters::Eight;
-        let v = set.null_direction(&set.from_five(sensor.theta())).unwrap();
+        let v = set.null_direction(&set.from_five(sensor.theta())).expect("a cubic set");
         let expected = [
             -1.0 / a + 3.0 * b * b / a.powi(3), -3.0 * b / a.powi(3), 1.0 / a.powi(3), b / a - (b / a).powi(3),
             1.0 / a, 0.0, -1.0 / a.powi(3), 0.0,
@@ -79,7 +78,7 @@ proptest! {
     fn moving_along_v_turns_the_corrected_pair(step in 1e-4f64..1e-3, alpha in -3.0f64..3.0) {
         for set in CUBIC {
             let theta: Theta = set.nominal(0.8);
-            let moved = theta + set.null_direction(&theta).unwrap() * step;
+            let moved = theta + set.null_direction(&theta).expect("a cubic set") * step;
             let [c, s] = set.corrected(&moved, [0.8 * alpha.cos(), 0.8 * alpha.sin()]);
             let turned = s.atan2(c) - alpha;
             prop_assert!((turned - step * (2.0 * alpha).sin() / 2.0).abs() < step * step, "{set:?}");
@@ -105,7 +104,7 @@ fn the_information_of_the_radius_lacks_one_direction() {
             assert!(values[1] > 1e-5, "{set:?}: {values:?}");
             let v = set
                 .null_direction(&set.from_five(sensor.theta()))
-                .unwrap()
+                .expect("there is one")
                 .normalize();
             let unseen = eigen.eigenvectors.column(eigen.eigenvalues.imin());
             let along: f64 = unseen.iter().zip(v.iter()).map(|(x, y)| x * y).sum();

@@ -1,5 +1,4 @@
 //! Equations (1), (4), (5) and the parameters of sections 5.2 to 5.4.
-#![cfg_attr(test, allow(clippy::unwrap_used))]
 
 mod reference_support;
 
@@ -57,18 +56,18 @@ proptest! {
     /// Physical → Θ → physical.
     #[test]
     fn theta_and_back(sensor in sensors()) {
-        prop_assert!(close(&Sensor::from_theta(sensor.theta()).unwrap(), &sensor, 1e-11));
+        prop_assert!(close(&Sensor::from_theta(sensor.theta()).expect("a sensor"), &sensor, 1e-11));
     }
 
     /// Heydemann: (5) and its closed-form inversion, for the origin inside the ellipse and outside it (there the five
     /// numbers change their sign). Only on the ellipse is the form "= 1" singular.
     #[test]
     fn equation_5_and_back(sensor in sensors()) {
-        let conic = heydemann::conic(&sensor).unwrap();
+        let conic = heydemann::conic(&sensor).expect("an ellipse");
         let k = sensor.theta();
         let inside = (k[1].powi(2) + k[3].powi(2) - 1.0).abs();
         prop_assume!(inside > 1e-3);
-        prop_assert!(close(&heydemann::sensor(&conic).unwrap(), &sensor, 1e-9));
+        prop_assert!(close(&heydemann::sensor(&conic).expect("an ellipse"), &sensor, 1e-9));
     }
 
     /// Least squares over noise-free samples finds the sensor, from an arc as from a whole turn.
@@ -77,7 +76,7 @@ proptest! {
         let k = sensor.theta();
         prop_assume!((k[1].powi(2) + k[3].powi(2) - 1.0).abs() > 0.05);
         let samples: Vec<_> = (0..200).map(|k| sensor.signals(arc * f64::from(k) / 200.0)).collect();
-        let found = heydemann::calibrate(&samples).unwrap();
+        let found = heydemann::calibrate(&samples).expect("an ellipse");
         prop_assert!(close(&found, &sensor, 1e-7), "{found:?}");
     }
 
@@ -155,8 +154,8 @@ fn extremes_take_the_noise_in() {
                 [y[0] + n[0], y[1] + n[1]]
             })
             .collect();
-        of_extremes.push(extremes::calibrate(&noisy).unwrap().a_c - MISCALIBRATED.a_c);
-        of_squares.push(heydemann::calibrate(&noisy).unwrap().a_c - MISCALIBRATED.a_c);
+        of_extremes.push(extremes::calibrate(&noisy).expect("both signs").a_c - MISCALIBRATED.a_c);
+        of_squares.push(heydemann::calibrate(&noisy).expect("an ellipse").a_c - MISCALIBRATED.a_c);
     }
     let rms = |x: &[f64]| (x.iter().map(|x| x * x).sum::<f64>() / x.len() as f64).sqrt();
     let (extremes, squares) = (rms(&of_extremes), rms(&of_squares));

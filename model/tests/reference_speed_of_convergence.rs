@@ -1,6 +1,5 @@
 //! How many periods of travel the on-line searches take, with 12-bit codes and 0.1 % noise: the paper's single γ, γ with
 //! the modes equalised, and a start by recursive least squares.
-#![cfg_attr(test, allow(clippy::unwrap_used))]
 
 mod reference_support;
 
@@ -61,7 +60,7 @@ fn left(search: Search, gamma: Gamma, periods: u32) -> f64 {
             start: Start::Arctangent { samples: 16 },
             ..Config::paper(SET, type_2(1.0), 0.0)
         })
-        .unwrap();
+        .expect("there is one");
         let before = miscalibration(SET, reference.theta(), |a| sensor.signals(a)).0;
         let mut noise = Noise::new(seed as u64, 0.001);
         let range = 1.25;

@@ -2,10 +2,10 @@
 
 mod support;
 
-use nonius_model::design::{Design, DesignError};
-use nonius_model::spec::Spec;
+use nonius_model::design::{Design, DesignError, Words};
+use nonius_model::spec::{CalibrationMethod, CalibrationStart, Overrides, Spec};
 use proptest::prelude::*;
-use support::{Encoder, optical, wrapped};
+use support::{Encoder, optical, shipped, wrapped};
 
 fn text() -> String {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../designs/optical.toml");
@@ -31,12 +31,16 @@ fn an_unknown_key_is_named_with_its_line_and_the_nearest_known_one() {
 #[test]
 fn what_cannot_work_names_the_field() {
     type Change = fn(&mut Spec);
-    let cases: [(&str, Change); 8] = [
+    let cases: [(&str, Change); 9] = [
         ("loop.type", |s| s.tracking.method = 2),
         ("loop.method", |s| s.tracking.method = 4),
         ("loop.bandwidth_hz", |s| s.tracking.bandwidth_hz = 4e5),
         ("adc.sample_rate_hz", |s| {
             s.sensor.speed_max_periods_per_s = 4e5
+        }),
+        ("calibration.start", |s| {
+            s.calibration.method = CalibrationMethod::Batch;
+            s.calibration.start = CalibrationStart::LeastSquares;
         }),
         ("adc.bits", |s| s.adc.bits = 24),
         ("accuracy.rms_periods", |s| s.accuracy.rms_periods = 1e-6),
@@ -62,33 +66,88 @@ fn words_follow_from_the_accuracy() {
     let wide = Design::new(&spec).expect("a design that works");
     spec.accuracy.rms_periods /= 2.0;
     let wider = Design::new(&spec).expect("a design that works");
+    for (field, word, _) in WORDS {
+        let (one, two) = (word(&wide.words), word(&wider.words));
+        assert!(two >= one, "{field}: {one} bits, then {two}");
+    }
     assert!(wider.words.signal_fraction > wide.words.signal_fraction);
 
     assert!(wide.budget.arithmetic() <= wide.budget.allowed);
-    spec.accuracy.rms_periods *= 2.0;
-    let words = wide.words;
-    type Shorten = fn(&mut Spec);
-    let fix = |spec: &mut Spec| {
-        spec.formats.signal_fraction = Some(words.signal_fraction);
-        spec.formats.phase_bits = Some(words.phase_bits);
-        spec.formats.sine_phase_bits = Some(words.sine_phase_bits);
-        spec.formats.sine_rows_log2 = Some(words.sine_rows_log2);
-        spec.formats.accumulator_fraction = Some(words.accumulator_fraction);
-    };
-    let shorter: [Shorten; 2] = [
-        |s| s.formats.signal_fraction = s.formats.signal_fraction.map(|n| n - 1),
-        |s| s.formats.accumulator_fraction = s.formats.accumulator_fraction.map(|n| n - 1),
-    ];
-    for shorten in shorter {
-        let mut spec = spec.clone();
-        fix(&mut spec);
-        shorten(&mut spec);
-        let design = Design::new(&spec).expect("an override may miss the budget");
-        assert!(
-            design.budget.arithmetic() > design.budget.allowed,
-            "{:?}",
-            design.words
-        );
+}
+
+/// The field of a word in `design.toml`, the word, and how to ask for it.
+type Word = (&'static str, fn(&Words) -> u32, fn(&mut Overrides, u32));
+
+const WORDS: [Word; 5] = [
+    (
+        "formats.signal_fraction",
+        |w| w.signal_fraction,
+        |f, n| f.signal_fraction = Some(n),
+    ),
+    (
+        "formats.sine_rows_log2",
+        |w| w.sine_rows_log2,
+        |f, n| f.sine_rows_log2 = Some(n),
+    ),
+    (
+        "formats.sine_phase_bits",
+        |w| w.sine_phase_bits,
+        |f, n| f.sine_phase_bits = Some(n),
+    ),
+    (
+        "formats.phase_bits",
+        |w| w.phase_bits,
+        |f, n| f.phase_bits = Some(n),
+    ),
+    (
+        "formats.accumulator_fraction",
+        |w| w.accumulator_fraction,
+        |f, n| f.accumulator_fraction = Some(n),
+    ),
+];
+
+/// One bit less in any word misses the budget.
+#[test]
+fn each_word_is_the_shortest() {
+    for spec in ["optical", "magnetic", "interferometer"].map(shipped) {
+        let chosen = Design::new(&spec).expect("a shipped design");
+        for (short, ..) in WORDS {
+            let mut spec = spec.clone();
+            for (field, word, set) in WORDS {
+                let n = word(&chosen.words) - u32::from(field == short);
+                set(&mut spec.formats, n);
+            }
+            let design = Design::new(&spec).expect("an override may miss the budget");
+            assert!(
+                design.budget.arithmetic() > design.budget.allowed,
+                "{}: {short}: {:?}",
+                spec.name,
+                design.words
+            );
+        }
+    }
+}
+
+/// A short word of the user's makes the error of that word, and the others are not blamed for it.
+#[test]
+fn an_override_that_misses_the_budget_is_built() {
+    let chosen = Design::new(&optical()).expect("a shipped design");
+    for (field, word, set) in WORDS {
+        let mut spec = optical();
+        let short = match field {
+            // As short as the phases that stand on it allow.
+            "formats.phase_bits" => chosen.words.sine_phase_bits,
+            _ => word(&chosen.words) - 3,
+        };
+        set(&mut spec.formats, short.max(4));
+        match Design::new(&spec) {
+            Ok(design) => {
+                assert_eq!(word(&design.words), short.max(4), "{field}");
+                let (is, may) = (design.budget.arithmetic(), design.budget.allowed);
+                assert!(is > may, "{field}: {:?}", design.words);
+            }
+            Err(error) => panic!("{field}: {error}"),
+        }
     }
 }
 

@@ -1,9 +1,10 @@
 //! `design.json`: every number that was derived.
 
 use nonius_model::design::Design;
-use nonius_model::format::{Format, Quantiser};
-use nonius_model::graph::{Kind, Op};
+use nonius_model::format::Format;
+use nonius_model::graph::Op;
 use nonius_model::kernel::{Coefficients, Constant};
+use nonius_model::physical::{metres, radians_of_revolution};
 use nonius_model::spec::Spec;
 use serde::Serialize;
 
@@ -30,6 +31,8 @@ pub struct DesignJson {
     /// The loop.
     #[serde(rename = "loop")]
     pub tracking: Tracking,
+    /// The position at the output.
+    pub position: Position,
     /// Every coefficient with its rounding error.
     pub coefficients: Vec<Coefficient>,
     /// Every signal with a name.
@@ -57,6 +60,41 @@ pub struct Latency {
     pub position_is_ahead_by_samples: u32,
 }
 
+/// The position that the chip puts out, equation (1) at its edge.
+#[derive(Clone, Debug, Serialize)]
+pub struct Position {
+    /// Bits of whole periods.
+    pub period_bits: u32,
+    /// Bits of the fraction of a period.
+    pub fraction_bits: u32,
+    /// Weight of the last bit, periods.
+    pub step_periods: f64,
+    /// Metres per scale period, where the design says.
+    pub metres_per_period: Option<f64>,
+    /// Weight of the last bit, metres.
+    pub step_m: Option<f64>,
+    /// Largest displacement either way, metres.
+    pub range_m: Option<f64>,
+    /// Radians of the revolution per scale period, where the design says how many make one.
+    pub radians_per_period: Option<f64>,
+}
+
+impl Position {
+    fn of(design: &Design) -> Self {
+        let (f, spec) = (&design.structure.formats, &design.spec);
+        let step = f.alpha.lsb();
+        Self {
+            period_bits: f.count.width,
+            fraction_bits: f.alpha.width,
+            step_periods: step,
+            metres_per_period: metres(spec, 1.0),
+            step_m: metres(spec, step),
+            range_m: metres(spec, 2f64.powi(f.count.width as i32 - 1)),
+            radians_per_period: radians_of_revolution(spec, 1.0),
+        }
+    }
+}
+
 /// The loop in numbers.
 #[derive(Clone, Debug, Serialize)]
 pub struct Tracking {
@@ -66,6 +104,10 @@ pub struct Tracking {
     pub pole_sum: f64,
     /// p1 p2.
     pub pole_product: f64,
+    /// p1 and p2: real and imaginary part.
+    pub poles: [[f64; 2]; 2],
+    /// The same of the coefficients as they are rounded.
+    pub poles_quantised: [[f64; 2]; 2],
     /// Second pole of the filter; 1 is type 2.
     pub filter_pole: f64,
     /// −3 dB of the closed loop, hertz.
@@ -146,6 +188,10 @@ pub struct Budget {
     pub adc: f64,
     /// The sensor's noise through the loop.
     pub noise: f64,
+    /// Noise that the calibration at its last gamma lets into the parameters.
+    pub calibration: f64,
+    /// What the design promises of the sensor and does not calibrate, at its worst.
+    pub uncorrected: f64,
     /// What the arithmetic may add.
     pub arithmetic_allowed: f64,
     /// What it adds.
@@ -191,6 +237,8 @@ impl DesignJson {
                 omega0_ts: t.omega,
                 pole_sum: t.pole_sum,
                 pole_product: t.pole_product,
+                poles: roots(t.pole_sum, t.pole_product),
+                poles_quantised: poles_quantised(design),
                 filter_pole: t.pole,
                 bandwidth_3db_hz: curves::bandwidth(t) * rate,
                 noise_bandwidth_hz: t.noise_gain * rate / 2.0,
@@ -201,8 +249,9 @@ impl DesignJson {
                 acquisition_gears: design.acquisition.gears,
                 acquisition_stride: design.acquisition.stride,
             },
+            position: Position::of(design),
             coefficients: coefficients(design),
-            formats: formats(design),
+            formats: crate::why::formats(design),
             sine_table: SineTable {
                 rows: rom.rows(),
                 row_bits: rom.row_width(),
@@ -213,6 +262,8 @@ impl DesignJson {
                 asked: spec.accuracy.rms_periods,
                 adc: b.adc,
                 noise: b.noise,
+                calibration: b.calibration,
+                uncorrected: b.uncorrected,
                 arithmetic_allowed: b.allowed,
                 arithmetic: b.arithmetic(),
                 total: b.total(),
@@ -229,6 +280,34 @@ impl DesignJson {
             spec: spec.clone(),
         }
     }
+}
+
+/// The roots of z² − `sum` z + `product`, real and imaginary part.
+fn roots(sum: f64, product: f64) -> [[f64; 2]; 2] {
+    let square = sum * sum / 4.0 - product;
+    let root = square.abs().sqrt();
+    if square < 0.0 {
+        [[sum / 2.0, root], [sum / 2.0, -root]]
+    } else {
+        [[sum / 2.0 + root, 0.0], [sum / 2.0 - root, 0.0]]
+    }
+}
+
+/// The poles that the rounded coefficients make: the relations of the paper's sections 4.1 to 4.3 backwards.
+fn poles_quantised(design: &Design) -> [[f64; 2]; 2] {
+    let (k, tracking) = (&design.constants, &design.spec.tracking);
+    let turns = std::f64::consts::TAU;
+    let (a, ab) = (k.loop_a.value() * turns, k.loop_ab.value() * turns);
+    let filter_pole = if tracking.filter_type == 2 {
+        1.0
+    } else {
+        1.0 - k.loop_leak.value()
+    };
+    if tracking.method == 2 {
+        return roots(1.0 + filter_pole - a, filter_pole);
+    }
+    let sum = 1.0 + filter_pole - a;
+    roots(sum, sum - 1.0 + ab)
 }
 
 fn coefficients(design: &Design) -> Vec<Coefficient> {
@@ -277,74 +356,4 @@ fn is_read(design: &Design, id: nonius_model::graph::NodeId) -> bool {
         .iter()
         .chain(&graph.probes)
         .any(|(_, n)| *n == id)
-}
-
-fn formats(design: &Design) -> Vec<Signal> {
-    let graph = &design.graph;
-    let mut list = vec![];
-    for id in graph.ids() {
-        let node = graph.node(id);
-        let (Some(name), false) = (&node.name, matches!(node.op, Op::Constant(_))) else {
-            continue;
-        };
-        if node.kind == Kind::Flag {
-            continue;
-        }
-        let lsb = node.format.lsb();
-        let kind = match node.op {
-            Op::Input => "register",
-            _ if graph.probes.iter().any(|(n, _)| n == name) => "probe",
-            _ => "value",
-        };
-        list.push(Signal {
-            name: name.clone(),
-            kind,
-            format: node.format.to_string(),
-            range: [node.range.0 as f64 * lsb, node.range.1 as f64 * lsb],
-            resolution: lsb,
-            why: why(design, &node.op, node.format),
-        });
-    }
-    list
-}
-
-fn why(design: &Design, op: &Op, format: Format) -> String {
-    let f = &design.structure.formats;
-    let stated = |to: &Quantiser| to.format == format;
-    let named = [
-        (
-            stated(&f.signal),
-            "signals: the budget's rounding of signals",
-        ),
-        (
-            format == f.alpha,
-            "phase: the budget's dead band of the integrator",
-        ),
-        (
-            stated(&f.rate),
-            "increments of the phase: its resolution, half a turn at most",
-        ),
-        (
-            stated(&f.sine_phase),
-            "phase in the sine: the budget's truncation",
-        ),
-        (format == f.count, "counted periods, as asked for"),
-        (
-            f.deviation.iter().any(stated),
-            "parameter: bounded to what the design promises, a quarter more, up to a power of two; resolution by the budget",
-        ),
-        (
-            stated(&f.step),
-            "step of a parameter: one bit more than the widest of them",
-        ),
-        (format == f.adc, "the ADC"),
-    ];
-    let known = named.iter().find(|n| n.0).map(|n| n.1);
-    match (known, op) {
-        (Some(why), Op::Input | Op::Quantise(..) | Op::QuantiseGeared { .. }) => why.into(),
-        (_, Op::Quantise(..) | Op::QuantiseGeared { .. } | Op::Input) => {
-            "stated by its formula".into()
-        }
-        _ => "exact: every bit of the operation, range by interval analysis".into(),
-    }
 }

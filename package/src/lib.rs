@@ -2,8 +2,10 @@
 
 mod curves;
 mod design_json;
+mod diagram;
 mod measure;
 mod report;
+mod why;
 mod write;
 
 pub use design_json::DesignJson;
@@ -37,6 +39,9 @@ pub enum PackageError {
     #[error("waves cannot be written: {0}")]
     Waves(#[from] std::io::Error),
 }
+
+/// Samples of each named stimulus, unless asked otherwise.
+pub const ROWS: usize = 2000;
 
 /// Makes the package of a design with `rows` samples of each named stimulus.
 ///

@@ -83,14 +83,17 @@ pub fn accuracy(design: &Design) -> Accuracy {
     let last = 2f64.powi(spec.calibration.gamma_last as i32);
     let periods = 60.0 + 10.0 * last / 64.0 * 2.0;
     let converge = ((periods / fast) as usize).clamp(5_000, 400_000);
-    let (settle, sweep) = (5_000, 20_000);
-    let slow = 0.37 / sweep as f64;
+    // A whole period.
+    let (settle, sweep) = (5_000, 100_000);
+    let slow = 1.0 / sweep as f64;
     let mut noise = Noise(1);
     let mut chip = Chip::bit_true(design);
     let mut at = 0.1;
     let mut errors = vec![];
     for k in 0..converge + settle + sweep {
-        at += if k < converge { fast } else { slow };
+        // An axis slows down; a step in speed would show the loop's transient in the residual.
+        let slowed = (k.saturating_sub(converge) as f64 / settle as f64).min(1.0);
+        at += fast + (slow - fast) * slowed;
         let alpha = at * TAU;
         let mut channel =
             |v: f64| converter.code(spec.adc.middle + v + a * s.noise_rms * noise.next());

@@ -1,21 +1,32 @@
 //! `report.html`: the data sheet.
 
-use std::fmt::Write;
-
 use askama::Template;
 use nonius_model::design::Design;
+use nonius_plot::{Axis, Look, Mark, Plot, Series};
 
 use crate::curves;
 use crate::design_json::DesignJson;
+use crate::diagram::Diagram;
 
 #[derive(Template)]
 #[template(path = "report.html")]
 struct Page<'a> {
     j: &'a DesignJson,
-    facts: Vec<(&'static str, String, String)>,
+    facts: Vec<Fact>,
+    diagram: Diagram,
     bode: String,
+    style: &'static str,
+    script: &'static str,
     bars: Vec<Bar>,
     files: Vec<(String, String)>,
+}
+
+struct Fact {
+    name: &'static str,
+    value: String,
+    note: String,
+    /// It is worse than what was asked for.
+    missed: bool,
 }
 
 struct Bar {
@@ -38,7 +49,25 @@ fn engineering(value: f64, unit: &str) -> String {
     format!("{scaled:.digits$} {prefix}{unit}")
 }
 
-fn facts(design: &Design, j: &DesignJson) -> Vec<(&'static str, String, String)> {
+fn facts(design: &Design, j: &DesignJson) -> Vec<Fact> {
+    let asked = j.budget.asked;
+    let fact = |(name, value, note): (&'static str, String, String)| Fact {
+        missed: match name {
+            PREDICTED => j.budget.total > asked,
+            SIMULATED => j.simulated.rms_periods > asked || !j.simulated.locked,
+            _ => false,
+        },
+        name,
+        value,
+        note,
+    };
+    said(design, j).into_iter().map(fact).collect()
+}
+
+const PREDICTED: &str = "Accuracy predicted";
+const SIMULATED: &str = "Accuracy simulated";
+
+fn said(design: &Design, j: &DesignJson) -> Vec<(&'static str, String, String)> {
     let (spec, t) = (&design.spec, &j.tracking);
     let per_period = |periods: f64| match spec.sensor.scale_period_m {
         Some(length) => format!(
@@ -50,14 +79,23 @@ fn facts(design: &Design, j: &DesignJson) -> Vec<(&'static str, String, String)>
     let phase = &design.structure.formats.alpha;
     vec![
         (
-            "Accuracy predicted",
+            PREDICTED,
             per_period(j.budget.total),
             format!("rms, slow, calibrated; asked {:.2e}", j.budget.asked),
         ),
         (
-            "Accuracy simulated",
+            SIMULATED,
             per_period(j.simulated.rms_periods),
-            format!("bit-true, rms; largest {:.2e}", j.simulated.largest_periods),
+            format!(
+                "bit-true, rms; largest {:.2e}; asked {:.2e}{}",
+                j.simulated.largest_periods,
+                j.budget.asked,
+                if j.simulated.locked {
+                    ""
+                } else {
+                    "; the loop did not lock"
+                }
+            ),
         ),
         (
             "Resolution",
@@ -127,56 +165,31 @@ fn facts(design: &Design, j: &DesignJson) -> Vec<(&'static str, String, String)>
     ]
 }
 
-/// The closed loop's magnitude in dB over frequency, logarithmic.
-fn bode(design: &Design) -> String {
+/// The closed loop's magnitude in dB over frequency.
+fn bode(design: &Design) -> Plot {
+    /// Lowest magnitude that is shown, dB.
+    const LOWEST: f64 = -42.0;
     let rate = design.spec.adc.sample_rate_hz;
-    let (left, right, top, bottom) = (52.0, 624.0, 12.0, 232.0);
-    let (low, high) = ((design.tracking.omega / 60.0).log10(), 0.5f64.log10());
-    let x = |f: f64| left + (f.log10() - low) / (high - low) * (right - left);
-    let y = |db: f64| top + (6.0 - db.clamp(-42.0, 6.0)) / 48.0 * (bottom - top);
-    let mut svg = String::from(
-        r#"<svg viewBox="0 0 640 270" role="img" aria-label="Magnitude of the closed loop over frequency">"#,
-    );
-    for db in [0.0, -10.0, -20.0, -30.0, -40.0] {
-        let at = y(db);
-        let _ = write!(
-            svg,
-            r#"<line class="grid" x1="{left}" x2="{right}" y1="{at:.1}" y2="{at:.1}"/><text x="{}" y="{:.1}" text-anchor="end">{db:.0} dB</text>"#,
-            left - 6.0,
-            at + 4.0
-        );
-    }
-    let decades = ((low + rate.log10()).ceil() as i32)..=((high + rate.log10()).floor() as i32);
-    for decade in decades {
-        let at = x(10f64.powi(decade) / rate);
-        let _ = write!(
-            svg,
-            r#"<line class="grid" x1="{at:.1}" x2="{at:.1}" y1="{top}" y2="{bottom}"/><text x="{at:.1}" y="{}" text-anchor="middle">{}</text>"#,
-            bottom + 18.0,
-            engineering(10f64.powi(decade), "Hz")
-        );
-    }
-    let points: Vec<String> = (0..=240)
+    let (low, high) = (design.tracking.omega / 60.0, 0.5f64);
+    let points: Vec<[f64; 2]> = (0..=240)
         .map(|i| {
-            let f = 10f64.powf(low + (high - low) * f64::from(i) / 240.0);
+            let f = low * (high / low).powf(f64::from(i) / 240.0);
             let db = 20.0 * curves::magnitude(&design.tracking, f).log10();
-            format!("{:.1},{:.1}", x(f), y(db))
+            [f * rate, db.max(LOWEST)]
         })
         .collect();
-    let _ = write!(
-        svg,
-        r#"<polyline class="curve" points="{}"/>"#,
-        points.join(" ")
-    );
-    let at = x(curves::bandwidth(&design.tracking).max(10f64.powf(low)));
-    let _ = write!(
-        svg,
-        r#"<line class="mark" x1="{at:.1}" x2="{at:.1}" y1="{top}" y2="{bottom}"/><text x="{:.1}" y="{}">−3 dB: {}</text></svg>"#,
-        at + 6.0,
-        top + 14.0,
-        engineering(curves::bandwidth(&design.tracking) * rate, "Hz")
-    );
-    svg
+    let hertz = curves::bandwidth(&design.tracking) * rate;
+    Plot {
+        title: "Magnitude of the closed loop, from the angle to its estimate".into(),
+        x: Axis::logarithmic("frequency, Hz", points.iter().map(|p| p[0])),
+        y: Axis::fitted("magnitude, dB", points.iter().map(|p| p[1]).chain([6.0])),
+        series: vec![Series::new("closed loop", Look::Model, points)],
+        marks: vec![Mark {
+            x: hertz,
+            text: format!("−3 dB: {}", engineering(hertz, "Hz")),
+        }],
+        round: false,
+    }
 }
 
 fn bars(j: &DesignJson) -> Vec<Bar> {
@@ -187,7 +200,16 @@ fn bars(j: &DesignJson) -> Vec<Bar> {
             "given",
         ),
         ("ADC".to_owned(), j.budget.adc, "given"),
+        (
+            "noise of the calibration at its last gamma".to_owned(),
+            j.budget.calibration,
+            "own",
+        ),
     ];
+    if j.budget.uncorrected > 0.0 {
+        let what = "errors of the sensor that are not calibrated, at worst".to_owned();
+        list.push((what, j.budget.uncorrected, "given"));
+    }
     list.extend(
         j.budget
             .terms
@@ -237,7 +259,10 @@ pub(crate) fn page(
     Page {
         j,
         facts: facts(design, j),
-        bode: bode(design),
+        diagram: Diagram::of(&design.spec),
+        bode: bode(design).html(),
+        style: nonius_plot::STYLE,
+        script: nonius_plot::SCRIPT,
         bars: bars(j),
         files: files(written),
     }

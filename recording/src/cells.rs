@@ -148,7 +148,7 @@ mod tests {
 
     fn cells(line: &str, separator: char) -> Vec<String> {
         Cells::new(line, separator)
-            .map(|c| c.unwrap().text.into_owned())
+            .map(|c| c.expect("a cell").text.into_owned())
             .collect()
     }
 
@@ -164,7 +164,7 @@ mod tests {
     #[test]
     fn cells_know_their_place() {
         let at: Vec<_> = Cells::new("1, 22 ,\"3\"", ',')
-            .map(|c| c.unwrap().at)
+            .map(|c| c.expect("a cell").at)
             .collect();
         assert_eq!(at, [0, 3, 7]);
     }

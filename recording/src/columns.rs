@@ -203,7 +203,7 @@ mod tests {
 
     fn header(line: &str, overrides: &Overrides) -> Result<Header, Error> {
         let mut lines = Lines::new(line.as_bytes(), "f");
-        let line = lines.next().unwrap().unwrap().to_owned();
+        let line = lines.next().expect("memory").expect("a line").to_owned();
         Header::read(&line, &lines, overrides)
     }
 
@@ -213,7 +213,7 @@ mod tests {
 
     #[test]
     fn columns_find_their_roles() {
-        let h = header("Time_s;sin;x;cos;", &Overrides::default()).unwrap();
+        let h = header("Time_s;sin;x;cos;", &Overrides::default()).expect("a header");
         let expected = [
             Role::Time,
             Role::Sin,
@@ -232,7 +232,7 @@ mod tests {
             sin_column: Some("B".into()),
             ..Overrides::default()
         };
-        let h = header("cos,A,B", &overrides).unwrap();
+        let h = header("cos,A,B", &overrides).expect("a header");
         assert_eq!(h.roles, [Role::Other(0), Role::Cos, Role::Sin]);
         let same = Overrides {
             sin_column: Some("A".into()),

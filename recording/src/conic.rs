@@ -96,7 +96,7 @@ mod tests {
                 let alpha = f64::from(k) * 0.39;
                 conic.add(a_c * alpha.cos() + b_c, a_s * (alpha - beta).sin() + b_s);
             }
-            let found = conic.ellipse().unwrap();
+            let found = conic.ellipse().expect("an ellipse");
             let pairs = [
                 (found.a_c, a_c),
                 (found.b_c, b_c),

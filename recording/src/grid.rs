@@ -127,7 +127,7 @@ mod tests {
             .map(|k| {
                 let text = format!("{:.decimals$}", origin + k as f64 * step);
                 digits.see(&text);
-                text.parse().unwrap()
+                text.parse().expect("a number")
             })
             .collect();
         (distinct(&values), digits)
@@ -147,7 +147,10 @@ mod tests {
         let (values, digits) = seen(2.446_34e-4, 1e-4, 6, |_| true);
         let found = find(&values, digits);
         assert_step(found, 2.446_34e-4);
-        assert!((found.unwrap().origin - 1e-4).abs() < 2e-6, "{found:?}");
+        assert!(
+            (found.expect("a grid").origin - 1e-4).abs() < 2e-6,
+            "{found:?}"
+        );
     }
 
     #[test]
@@ -187,7 +190,7 @@ mod tests {
             .map(|k| format!("{:.3}", f64::from(k).sin()))
             .collect();
         texts.iter().for_each(|t| digits.see(t));
-        let values: Vec<f64> = texts.iter().map(|t| t.parse().unwrap()).collect();
+        let values: Vec<f64> = texts.iter().map(|t| t.parse().expect("a number")).collect();
         assert_step(find(&distinct(&values), digits), 1e-3);
     }
 }

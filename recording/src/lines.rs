@@ -78,7 +78,7 @@ mod tests {
     fn mark_and_line_ends_are_removed() {
         let mut lines = Lines::new("\u{feff}a\r\nb\n\nc".as_bytes(), "f");
         let mut all = Vec::new();
-        while let Some(line) = lines.next().unwrap() {
+        while let Some(line) = lines.next().expect("memory") {
             all.push(line.to_owned());
         }
         assert_eq!(all, ["a", "b", "", "c"]);
@@ -88,7 +88,7 @@ mod tests {
     #[test]
     fn bytes_that_are_no_text_have_a_place() {
         let mut lines = Lines::new(&b"ok\n1,\xFF"[..], "f");
-        lines.next().unwrap();
+        lines.next().expect("memory");
         let error = lines.next().unwrap_err();
         assert_eq!(error.place, Place::at("f", 2, 3));
         assert!(matches!(*error.kind, ErrorKind::NotUtf8));

@@ -90,10 +90,10 @@ mod tests {
             .map(|k| f64::from(k + 500 * i32::from(k > 300)) / 120.0)
             .map(|t| (t * 1e3).round() / 1e3)
             .collect();
-        let rate = rate(&time).unwrap();
+        let rate = rate(&time).expect("a rate");
         assert!((rate - 120.0).abs() < 0.02, "{rate}");
         assert_eq!(disagreement(120.0, rate), None);
-        let note = disagreement(100.0, 120.0).unwrap();
+        let note = disagreement(100.0, 120.0).expect("a note");
         assert_eq!(
             note,
             "time_s and sample_rate_hz disagree: 120 Hz and 100 Hz; time_s wins"
@@ -103,8 +103,8 @@ mod tests {
     #[test]
     fn time_may_repeat_only_with_its_sample() {
         let mut clock = Clock::default();
-        clock.check(0.0, 1.0, 2.0).unwrap();
-        clock.check(0.0, 1.0, 2.0).unwrap();
+        clock.check(0.0, 1.0, 2.0).expect("in time");
+        clock.check(0.0, 1.0, 2.0).expect("in time");
         let still = clock.check(0.0, 1.0, 3.0).unwrap_err();
         assert!(matches!(still, ErrorKind::TimeStill { .. }));
         let back = clock.check(-1.0, 1.0, 3.0).unwrap_err();

@@ -4,11 +4,18 @@
 //! It is written apart from the diagnosis: that one knows shapes, this one signals. A test brings them together.
 
 mod cause;
+mod channel;
+mod converter;
+mod coupling;
+mod flicker;
+mod keys;
+mod lag;
 mod motion;
+mod rows;
 mod sensor;
 mod signals;
 
-pub use cause::Cause;
+pub use cause::{Cause, Channel};
 pub use motion::Motion;
 pub use sensor::{Adc, Sensor, SensorError, Signals};
 pub use signals::Samples;

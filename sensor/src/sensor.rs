@@ -4,6 +4,7 @@ use serde::Deserialize;
 use thiserror::Error;
 
 use crate::cause::Cause;
+use crate::keys::with_nearest;
 
 /// What is wrong with a `sensor.toml`.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -90,6 +91,27 @@ pub struct Moved {
     pub periods_per_revolution: Option<u32>,
 }
 
+/// Every number of a cause is one.
+fn finite(text: &str, file: &str) -> Result<(), SensorError> {
+    let table: toml::Table = text.parse().unwrap_or_default();
+    let causes = table.get("cause").and_then(toml::Value::as_array);
+    let keys = causes
+        .into_iter()
+        .flatten()
+        .filter_map(toml::Value::as_table);
+    for (key, value) in keys.flatten() {
+        if let Some(value) = value.as_float().filter(|v| !v.is_finite()) {
+            return Err(SensorError::Value {
+                file: file.into(),
+                field: format!("cause.{key}"),
+                value,
+                reason: "a cause is as large as a number",
+            });
+        }
+    }
+    Ok(())
+}
+
 impl Sensor {
     /// Reads the text of a `sensor.toml`; `file` is its name for error messages.
     ///
@@ -105,10 +127,11 @@ impl Sensor {
             });
             SensorError::Form {
                 file: file.into(),
-                message: format!("{at}{}", error.message()),
+                message: format!("{at}{}", with_nearest(&error)),
             }
         })?;
         sensor.check(file)?;
+        finite(text, file)?;
         Ok(sensor)
     }
 

@@ -1,51 +1,55 @@
 //! What the diagnosis writes, the sensor reads, and what the sensor shows, the diagnosis finds: name, numbers, signs and
 //! phases. The two are written apart.
-#![allow(clippy::unwrap_used)]
+
+mod support;
 
 use nonius_diagnosis::{diagnose, sensor_toml};
-use nonius_recording::{Overrides, Recording};
 use nonius_sensor::{Motion, Sensor};
+use support::{PLAIN, recorded};
 
-const PLAIN: &str = "
-[signals]
-a_c = 0.8
-b_c = 0.03
-a_s = 0.75
-b_s = -0.02
-beta = 0.04
-noise_rms = 0.001
-[adc]
-bits = 14
-lsb = 0.0001220703125
-centre = 0.0
-sample_rate_hz = 10000.0
-[motion]
-periods_travelled = 900.0
-speed_max_periods_per_s = 700.0
-periods_per_revolution = 16
-";
-
-fn recorded(sensor: &Sensor, seed: u64) -> Recording {
-    let samples = sensor.simulate(&Motion::to_and_fro(sensor), seed);
-    let overrides = Overrides {
-        adc_bits: Some(sensor.adc.bits),
-        full_scale: Some(sensor.adc.lsb * 2f64.powi(sensor.adc.bits as i32 - 1)),
-        periods_per_revolution: sensor.motion.periods_per_revolution,
-        ..Overrides::default()
-    };
-    Recording::from_samples(samples.time_s, samples.cos, samples.sin, &overrides).unwrap()
-}
+/// Causes of the catalogue beyond the five parameters.
+const CATALOGUE: [&str; 29] = [
+    "even_nonlinearity",
+    "odd_nonlinearity",
+    "spatial_harmonic",
+    "saturation",
+    "adc_nonlinearity",
+    "stuck_bit",
+    "coarse_quantisation",
+    "channel_skew",
+    "bandwidth_mismatch",
+    "common_bandwidth",
+    "latency",
+    "ac_coupling",
+    "interference",
+    "amplitude_ripple",
+    "offset_drift",
+    "gain_drift",
+    "runout",
+    "graduation_error",
+    "contamination",
+    "glitches",
+    "dropped_samples",
+    "repeated_samples",
+    "clock_jitter",
+    "flicker_noise",
+    "amplitude_noise",
+    "hysteresis",
+    "delayed_crosstalk",
+    "vibration",
+    "cogging",
+];
 
 /// The cause alone is found, its numbers are those that were written, and so it is when what was found is simulated.
 fn round_trip(cause: &str) {
     let mut text = format!("{PLAIN}[[cause]]\n{cause}");
     for round in 0..2 {
-        let sensor = Sensor::from_toml(&text, "sensor.toml").unwrap();
+        let sensor = Sensor::from_toml(&text, "sensor.toml").expect("a sensor");
         let recording = recorded(&sensor, 5 + round);
-        let found = diagnose(&recording).unwrap();
+        let found = diagnose(&recording).expect("an ellipse");
         let names: Vec<&str> = found.findings.iter().map(|f| f.cause.as_str()).collect();
-        let expected: toml::Table = cause.parse().unwrap();
-        let name = expected["name"].as_str().unwrap();
+        let expected: toml::Table = cause.parse().expect("TOML");
+        let name = expected["name"].as_str().expect("a name");
         assert_eq!(names, [name], "{}", found.unexplained.signature);
         for p in &found.findings[0].parameters {
             let truth = expected
@@ -75,6 +79,10 @@ fn round_trip(cause: &str) {
 fn static_causes() {
     round_trip("name = \"even_nonlinearity\"\nk_cos = 0.006\nk_sin = -0.004\n");
     round_trip("name = \"odd_nonlinearity\"\nk_cos = 0.01\nk_sin = 0.004\n");
+    round_trip("name = \"saturation\"\nthreshold = 0.8\ncompression = 0.05\n");
+    round_trip(
+        "name = \"saturation\"\nthreshold = 0.8\ncompression = 0.05\ncompression_lower = 0.0\n",
+    );
     round_trip(
         "name = \"spatial_harmonic\"\norder = 3.0\namplitude_cos = 0.004\nphase_cos = 0.7\namplitude_sin = 0.003\nphase_sin = -2.0\n",
     );
@@ -84,13 +92,36 @@ fn static_causes() {
 fn causes_with_speed() {
     round_trip("name = \"channel_skew\"\ndelay_s = 4e-7\n");
     round_trip("name = \"common_bandwidth\"\ntau_s = 2e-5\n");
+    round_trip(
+        "name = \"delayed_crosstalk\"\nproduct_into_cos_s = 8e-7\nproduct_into_sin_s = -6e-7\n",
+    );
     round_trip("name = \"hysteresis\"\noffset_cos = 0.004\noffset_sin = -0.003\n");
+}
+
+#[test]
+fn causes_in_the_data() {
+    round_trip("name = \"stuck_bit\"\nbit = 1\nchannel = \"sin\"\nlevel = 1\n");
+    round_trip(
+        "name = \"coarse_quantisation\"\nstep_lsb = 8.0\nchannel = \"cos\"\nremainder_lsb = 3.0\n",
+    );
+    round_trip("name = \"dropped_samples\"\nshare = 0.001\n");
+    round_trip("name = \"repeated_samples\"\nshare = 0.001\n");
+}
+
+#[test]
+fn causes_in_the_noise() {
+    round_trip("name = \"flicker_noise\"\ndensity_at_1_hz = 3e-4\n");
+    round_trip("name = \"amplitude_noise\"\nrms = 0.002\n");
+    round_trip("name = \"clock_jitter\"\nrms_s = 4e-7\n");
 }
 
 #[test]
 fn causes_with_time() {
     round_trip(
         "name = \"interference\"\nfrequency_hz = 311.3\namplitude_cos = 0.003\nphase_cos = 0.4\namplitude_sin = 0.004\nphase_sin = 1.9\n",
+    );
+    round_trip(
+        "name = \"interference\"\nfrequency_hz = 50.2\namplitude_cos = 0.003\nphase_cos = 0.4\namplitude_sin = 0.004\nphase_sin = 1.9\namplitude_cos_2 = 0.001\nphase_cos_2 = 0.3\namplitude_sin_2 = 0.001\nphase_sin_2 = 2.5\namplitude_cos_3 = 0.002\nphase_cos_3 = -0.5\namplitude_sin_3 = 0.0015\nphase_sin_3 = 0.8\n",
     );
     round_trip("name = \"amplitude_ripple\"\nfrequency_hz = 100.2\ndepth = 0.004\nphase = 1.1\n");
     round_trip("name = \"offset_drift\"\nchange_cos = 0.01\nchange_sin = -0.006\n");
@@ -104,7 +135,9 @@ fn causes_with_the_revolution() {
 #[test]
 fn bad_files_are_refused_with_their_place() {
     let refused = |text: &str, words: &[&str]| {
-        let said = Sensor::from_toml(text, "s.toml").unwrap_err().to_string();
+        let said = Sensor::from_toml(text, "s.toml")
+            .expect_err("a bad file")
+            .to_string();
         for word in words {
             assert!(said.contains(word), "{word} is not in: {said}");
         }
@@ -113,6 +146,11 @@ fn bad_files_are_refused_with_their_place() {
     refused(
         &format!("{PLAIN}[[cause]]\nname = \"gremlins\"\n"),
         &["s.toml:1", "gremlins", "spatial_harmonic"],
+    );
+    // The list of what is known names every cause that a diagnosis can find.
+    refused(
+        &format!("{PLAIN}[[cause]]\nname = \"gremlins\"\n"),
+        &CATALOGUE,
     );
     refused(
         &PLAIN.replace("a_c = 0.8", "a_c = -1.0"),
@@ -123,5 +161,80 @@ fn bad_files_are_refused_with_their_place() {
         &PLAIN.replace("beta = 0.04", "beta = nan"),
         &["signals.beta"],
     );
-    refused(&PLAIN.replace("lsb", "lbs"), &["lbs", "lsb"]);
+    refused(
+        &PLAIN.replace("lsb", "lbs"),
+        &["s.toml:11:1", "lbs", "did you mean `lsb`?"],
+    );
+    refused(
+        &format!("{PLAIN}[[cause]]\nname = \"channel_skew\"\ndelay_s = nan\n"),
+        &["cause.delay_s", "NaN"],
+    );
+    refused(
+        &format!("{PLAIN}[[cause]]\nname = \"channel_skew\"\ndelay = 1e-6\n"),
+        &["delay", "did you mean `delay_s`?"],
+    );
+    refused(
+        &format!("{PLAIN}[[cause]]\nname = \"stuck_bits\"\nbit = 3\n"),
+        &["stuck_bits", "did you mean `stuck_bit`?"],
+    );
+}
+
+/// The extended simulation, along the motion that the diagnosis followed and without noise, is the recording but for the
+/// noise that it was made with.
+fn reproduced(causes: &[&str]) {
+    let text = causes.iter().fold(PLAIN.to_owned(), |all, one| {
+        format!("{all}[[cause]]\n{one}\n")
+    });
+    let sensor = Sensor::from_toml(&text, "sensor.toml").expect("a sensor");
+    let recording = recorded(&sensor, 11);
+    let found = diagnose(&recording).expect("an ellipse");
+    let names: Vec<&str> = found.findings.iter().map(|f| f.cause.as_str()).collect();
+    assert_eq!(names.len(), causes.len(), "{names:?}");
+    let emitted = sensor_toml(&found, &recording);
+    let mut extended = Sensor::from_toml(&emitted, "extended.toml").expect("what was emitted");
+    assert!(
+        (extended.signals.noise_rms / sensor.signals.noise_rms - 1.0).abs() < 0.05,
+        "noise {}",
+        extended.signals.noise_rms
+    );
+    extended.signals.noise_rms = 0.0;
+    let context = &found.context;
+    let slow = context.alpha.iter().zip(&context.fast).map(|(a, f)| a - f);
+    let motion = Motion {
+        time_s: context.time.clone(),
+        alpha: slow.collect(),
+    };
+    let simulated = extended.simulate(&motion, 12);
+    let channels = [
+        (&recording.cos, &simulated.cos, sensor.signals.a_c),
+        (&recording.sin, &simulated.sin, sensor.signals.a_s),
+    ];
+    for (measured, simulated, amplitude) in channels {
+        let square = |k: usize| (measured[k] - simulated[k]).powi(2);
+        let n = measured.len();
+        let rms = ((0..n).map(square).sum::<f64>() / n as f64).sqrt();
+        // Two ADCs round, one to either side.
+        let noise = sensor.signals.noise_rms * amplitude;
+        let expected = noise.hypot(sensor.adc.lsb / 6f64.sqrt());
+        assert!(
+            (rms / expected - 1.0).abs() < 0.04,
+            "{causes:?}: off by {rms:.3e} rms, noise {expected:.3e}"
+        );
+    }
+}
+
+#[test]
+fn the_extended_simulation_is_the_recording_but_for_its_noise() {
+    let harmonic = "name = \"spatial_harmonic\"\norder = 3.0\namplitude_cos = 0.02\nphase_cos = 0.7\namplitude_sin = 0.015\nphase_sin = -2.0";
+    let skew = "name = \"channel_skew\"\ndelay_s = 3e-6";
+    let hum = "name = \"interference\"\nfrequency_hz = 311.3\namplitude_cos = 0.01\nphase_cos = 0.4\namplitude_sin = 0.008\nphase_sin = 1.9";
+    let rail = "name = \"saturation\"\nthreshold = 0.8\ncompression = 0.1\ncompression_upper = 0.0";
+    let crosstalk =
+        "name = \"delayed_crosstalk\"\nproduct_into_cos_s = 3e-6\nproduct_into_sin_s = -2e-6";
+    let vibration = "name = \"vibration\"\nfrequency_hz = 1210.0\namplitude = 0.01\nphase = 0.3";
+    let stuck = "name = \"stuck_bit\"\nbit = 0.0\nchannel = \"cos\"\nlevel = 1.0";
+    for one in [harmonic, skew, hum, rail, crosstalk, vibration, stuck] {
+        reproduced(&[one]);
+    }
+    reproduced(&[harmonic, hum]);
 }

@@ -2,5 +2,6 @@
 
 pub mod read_vectors;
 pub mod stimulus;
+pub mod ties;
 pub mod vectors;
 pub mod waves;

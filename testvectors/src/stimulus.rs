@@ -3,6 +3,8 @@
 use nonius_model::design::Design;
 use rand::{Rng, SeedableRng, rngs::StdRng};
 
+use crate::ties::Ties;
+
 /// What arrives with one sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sample {
@@ -74,6 +76,9 @@ pub fn named(design: &Design, rows: usize) -> Vec<Stimulus> {
             )
         })
         .collect();
+    let slow = motion("slow turn", &|k| {
+        pair(0.007 * k as f64 * (top / 0.1), 1.0, 0.0)
+    });
     vec![
         motion("standstill", &|_| pair(0.3, 1.0, 0.0)),
         motion("forwards", &|k| {
@@ -121,12 +126,10 @@ pub fn named(design: &Design, rows: usize) -> Vec<Stimulus> {
                 (rail(alpha.cos()), rail(alpha.sin()))
             }
         }),
-        motion("ties", &|k| {
-            (
-                middle + (1 << (k % (spec.adc.bits as usize - 1))),
-                middle - (1 << ((k / 5) % (spec.adc.bits as usize - 1))),
-            )
-        }),
+        Stimulus {
+            name: "ties".into(),
+            samples: Ties::new(design).search(design, &slow.samples),
+        },
         motion("random", &|k| noise[k]),
     ]
 }

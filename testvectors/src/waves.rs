@@ -1,5 +1,7 @@
 //! Waves of the bit-true model (VCD): the signals of the Verilog under their names, at the times of its testbench.
 //!
+//! The strobes are there, the clock is not: the model has none, and its edges would be most of the file.
+//!
 //! Every change is written as it comes, so that hours of samples need no memory.
 
 use std::collections::HashMap;
@@ -28,6 +30,9 @@ pub struct Waves<W: Write> {
     /// Signal, identifier, fraction bits; no fraction for a flag.
     columns: Vec<(Column, IdCode, Option<u32>)>,
     inputs: [(IdCode, u32); 4],
+    rst_n: IdCode,
+    sample_valid: IdCode,
+    valid: IdCode,
     position: (IdCode, u32),
     reals: [IdCode; 3],
     last: HashMap<IdCode, u128>,
@@ -63,6 +68,8 @@ impl<W: Write> Waves<W> {
             out.add_var(VarType::Real, 64, "speed_turns_per_sample", None)?,
         ];
         out.add_module("chip")?;
+        let strobes = ["rst_n", "sample_valid", "valid"];
+        let [rst_n, sample_valid, valid] = strobes.map(|name| vector(&mut out, name, 1));
         let adc = design.spec.adc.bits;
         let inputs = [
             (vector(&mut out, "adc_cos", adc)?, adc),
@@ -85,6 +92,9 @@ impl<W: Write> Waves<W> {
             out,
             columns: list,
             inputs,
+            rst_n: rst_n?,
+            sample_valid: sample_valid?,
+            valid: valid?,
             position,
             reals,
             last: HashMap::new(),
@@ -95,6 +105,9 @@ impl<W: Write> Waves<W> {
         waves.out.begin(vcd::SimulationCommand::Dumpvars)?;
         for (id, bits) in waves.inputs {
             waves.change(id, 0, bits)?;
+        }
+        for id in [waves.rst_n, waves.sample_valid, waves.valid] {
+            waves.change(id, 0, 1)?;
         }
         waves.change(position.0, 0, position_bits)?;
         for i in 0..waves.columns.len() {
@@ -133,8 +146,18 @@ impl<W: Write> Waves<W> {
         for ((id, bits), value) in self.inputs.into_iter().zip(values) {
             self.change(id, value.into(), bits)?;
         }
-        // The chip commits in its last clock.
-        self.out.timestamp(start + (self.clocks - 1) * CLOCK_NS)?;
+        self.change(self.rst_n, 1, 1)?;
+        self.change(self.sample_valid, 1, 1)?;
+        // The testbench changes its side of the pins at the falling edge of the clock, the chip at the rising one.
+        let edge = CLOCK_NS / 2;
+        self.out.timestamp(start + edge)?;
+        self.change(self.valid, 0, 1)?;
+        self.out.timestamp(start + CLOCK_NS)?;
+        self.change(self.sample_valid, 0, 1)?;
+        // The chip commits at the end of its last clock.
+        self.out
+            .timestamp(start + (self.clocks - 1) * CLOCK_NS + edge)?;
+        self.change(self.valid, 1, 1)?;
         for i in 0..self.columns.len() {
             let ((name, _, bits), code, fraction) = &self.columns[i];
             let (code, bits) = (*code, *bits);
@@ -215,11 +238,11 @@ pub fn gtkw(file: &str, design: &Design, columns: &[Column], clocks: usize) -> S
     }
     let adc = design.spec.adc.bits - 1;
     out += &format!(
-        "{TITLE}\n-inputs\n{SIGNED}\nchip_tb.chip.adc_cos[{adc}:0]\nchip_tb.chip.adc_sin[{adc}:0]\n{FLAG}\nchip_tb.chip.preset\nchip_tb.chip.calibrate\n"
+        "{TITLE}\n-inputs\n{SIGNED}\nchip_tb.chip.adc_cos[{adc}:0]\nchip_tb.chip.adc_sin[{adc}:0]\n{FLAG}\nchip_tb.chip.sample_valid\nchip_tb.chip.preset\nchip_tb.chip.calibrate\n"
     );
     let f = &design.structure.formats;
     out += &format!(
-        "{TITLE}\n-outputs\n{HEX}\nchip_tb.chip.position[{}:0]\n",
+        "{TITLE}\n-outputs\n{FLAG}\nchip_tb.chip.valid\n{HEX}\nchip_tb.chip.position[{}:0]\n",
         f.count.width + f.alpha.width - 1
     );
     let group = |title: &str, member: &dyn Fn(&str) -> bool| {

@@ -134,14 +134,29 @@ fn waves_read_back_as_the_chip() {
             _ => {}
         }
     }
-    // Before the first stamp, then two stamps a sample: inputs, results; the end closes the last.
-    assert_eq!(snapshots.len(), 1 + 2 * ROWS);
+    // Before the first stamp, then the two strobes begin and end; the end closes the last. Results stand where `valid`
+    // rises.
+    assert_eq!(snapshots.len(), 1 + 4 * ROWS);
+    let strobed = |name: &str| {
+        let values = snapshots.iter().map(|s| s.1.get(&path(name)) == Some(&1));
+        values.collect::<Vec<bool>>()
+    };
+    let results: Vec<bool> = (0..=4 * ROWS).map(|i| i > 0 && i % 4 == 0).collect();
+    let held: Vec<bool> = (0..=4 * ROWS).map(|i| i > 1 && i % 4 <= 1).collect();
+    assert_eq!(strobed("valid"), held);
+    assert!(strobed("rst_n")[1..].iter().all(|&v| v));
+    let offered: Vec<bool> = (0..=4 * ROWS).map(|i| matches!(i % 4, 1 | 2)).collect();
+    assert_eq!(strobed("sample_valid"), offered);
     let mut replay = Chip::bit_true(&design);
     let position = header
         .find_var(&["chip_tb", "position_periods"])
         .expect("a real")
         .code;
-    for (k, after) in snapshots.iter().skip(2).step_by(2).enumerate() {
+    let after = snapshots
+        .iter()
+        .zip(&results)
+        .filter(|(_, result)| **result);
+    for (k, (after, _)) in after.enumerate() {
         let (stamp, values, analogue) = after;
         let bits = design.spec.adc.bits;
         let signed = |name: &str| integer(values[&path(name)] as u64, bits, false) as i64;
@@ -153,7 +168,7 @@ fn waves_read_back_as_the_chip() {
         );
         assert_eq!(
             *stamp as usize,
-            (2 + k * files.clocks + files.clocks - 1) * 10
+            (2 + k * files.clocks + files.clocks - 1) * 10 + 5
         );
         for (name, id, bits) in &files.columns {
             let node = design.graph.node(*id);

@@ -51,7 +51,7 @@ pub(crate) fn glitches(draw: &mut Draw) -> Box<dyn Effect> {
 
 /// Samples lost; the magnitude, less one, is the number of the set of places.
 struct Dropped {
-    sets: Vec<Vec<usize>>,
+    sets: Sets,
     clock: bool,
 }
 
@@ -63,26 +63,25 @@ impl Effect for Dropped {
         true
     }
     fn limit(&self) -> f64 {
-        self.sets.len() as f64
+        self.sets.limit()
     }
     fn choices(&self) -> Option<Vec<f64>> {
-        Some((1..=self.sets.len()).map(|k| k as f64).collect())
+        Some(self.sets.choices())
     }
     fn damage(&self, m: f64, rows: &mut Rows, _world: &World) {
-        let Some(places) = (m as usize).checked_sub(1).and_then(|k| self.sets.get(k)) else {
-            return;
-        };
-        for k in places {
+        for k in self.sets.chosen(m) {
             rows.drop_sample(*k, self.clock);
         }
     }
 }
 
-/// Sets of places, from the last to the first, not at the ends.
-fn sets(draw: &mut Draw, most: usize) -> Vec<Vec<usize>> {
-    let samples = draw.world.samples;
-    (0..24)
-        .map(|_| {
+/// Sets of places, each from the last to the first, not at the ends: which set is the magnitude.
+struct Sets(Vec<Vec<usize>>);
+
+impl Sets {
+    fn draw(draw: &mut Draw, most: usize) -> Self {
+        let samples = draw.world.samples;
+        let set = |_| {
             let count = draw.random.random_range(1..=most);
             let mut places: Vec<usize> =
                 index::sample(draw.random, samples - samples / 10, count).into_vec();
@@ -91,12 +90,27 @@ fn sets(draw: &mut Draw, most: usize) -> Vec<Vec<usize>> {
             }
             places.sort_unstable_by(|a, b| b.cmp(a));
             places
-        })
-        .collect()
+        };
+        Self((0..24).map(set).collect())
+    }
+
+    fn limit(&self) -> f64 {
+        self.0.len() as f64
+    }
+
+    fn choices(&self) -> Vec<f64> {
+        (1..=self.0.len()).map(|k| k as f64).collect()
+    }
+
+    /// The places of magnitude `m`; none for 0.
+    fn chosen(&self, m: f64) -> &[usize] {
+        let set = (m as usize).checked_sub(1).and_then(|k| self.0.get(k));
+        set.map_or(&[], Vec::as_slice)
+    }
 }
 
 pub(crate) fn dropped(draw: &mut Draw) -> Box<dyn Effect> {
-    let sets = sets(draw, 4);
+    let sets = Sets::draw(draw, 4);
     // Most loggers count; some have a clock and show the gap.
     let clock = draw.random.random_bool(0.3);
     Box::new(Dropped { sets, clock })
@@ -104,7 +118,7 @@ pub(crate) fn dropped(draw: &mut Draw) -> Box<dyn Effect> {
 
 /// Samples shown twice; wild: in the place of the next one, and the time base goes on as it should.
 struct Repeated {
-    sets: Vec<Vec<usize>>,
+    sets: Sets,
     hold: bool,
 }
 
@@ -116,16 +130,13 @@ impl Effect for Repeated {
         !self.hold
     }
     fn limit(&self) -> f64 {
-        self.sets.len() as f64
+        self.sets.limit()
     }
     fn choices(&self) -> Option<Vec<f64>> {
-        Some((1..=self.sets.len()).map(|k| k as f64).collect())
+        Some(self.sets.choices())
     }
     fn damage(&self, m: f64, rows: &mut Rows, _world: &World) {
-        let Some(places) = (m as usize).checked_sub(1).and_then(|k| self.sets.get(k)) else {
-            return;
-        };
-        for k in places {
+        for k in self.sets.chosen(m) {
             if self.hold {
                 rows.hold(*k);
             } else {
@@ -136,7 +147,7 @@ impl Effect for Repeated {
 }
 
 pub(crate) fn repeated(draw: &mut Draw) -> Box<dyn Effect> {
-    let sets = sets(draw, 12);
+    let sets = Sets::draw(draw, 12);
     Box::new(Repeated {
         sets,
         hold: draw.wild,

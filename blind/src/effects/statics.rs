@@ -15,37 +15,36 @@ pub(crate) fn shares(draw: &mut Draw) -> [f64; 2] {
 
 /// y + k y²; wild: a cosh, as of a diode.
 pub(crate) fn even(draw: &mut Draw) -> Box<dyn Effect> {
-    let (shares, wild) = (shares(draw), draw.wild);
-    let bend = move |u: f64| {
+    let wild = draw.wild;
+    bent(draw, "even_nonlinearity", move |u| {
         if wild {
             2.0 * ((1.1 * u).cosh() - 1.0) / 1.21
         } else {
             u * u
         }
-    };
-    Law::new("even_nonlinearity", 0.2, move |m, _, u| {
-        [0, 1].map(|c| u[c] + m * shares[c] * bend(u[c]))
     })
-    .with(!wild, move |m| {
-        vec![
-            ("k_cos", m * shares[0], false),
-            ("k_sin", m * shares[1], false),
-        ]
-    })
-    .boxed()
 }
 
 /// y + k y³; wild: a hyperbolic tangent, as of a bipolar pair.
 pub(crate) fn odd(draw: &mut Draw) -> Box<dyn Effect> {
-    let (shares, wild) = (shares(draw), draw.wild);
-    let bend = move |u: f64| {
+    let wild = draw.wild;
+    bent(draw, "odd_nonlinearity", move |u| {
         if wild {
             3.0 * (u - (0.9 * u).tanh() / 0.9)
         } else {
             u.powi(3)
         }
-    };
-    Law::new("odd_nonlinearity", 0.2, move |m, _, u| {
+    })
+}
+
+/// Each channel bent by its share; only a textbook's bend has the library's parameters.
+fn bent(
+    draw: &mut Draw,
+    name: &'static str,
+    bend: impl Fn(f64) -> f64 + Send + Sync + 'static,
+) -> Box<dyn Effect> {
+    let (shares, wild) = (shares(draw), draw.wild);
+    Law::new(name, 0.2, move |m, _, u| {
         [0, 1].map(|c| u[c] + m * shares[c] * bend(u[c]))
     })
     .with(!wild, move |m| {

@@ -27,7 +27,7 @@ struct Named {
 }
 
 fn read(path: &Path) -> Recording {
-    Recording::read(path, &Overrides::default()).unwrap()
+    Recording::read(path, &Overrides::default()).expect("a recording")
 }
 
 /// Recordings with a reference; the sixteen encoders of one file as one group.
@@ -53,21 +53,27 @@ fn with_reference(folder: &Path) -> Vec<Named> {
 
 /// One recording for each value of the last column.
 fn units(path: &Path) -> Vec<Recording> {
-    let text = std::fs::read_to_string(path).unwrap();
-    let (header, rows) = text.split_once('\n').unwrap();
-    let unit = |row: &str| row.rsplit(',').next().unwrap().trim().to_owned();
+    let text = std::fs::read_to_string(path).expect("a kept file");
+    let (header, rows) = text.split_once('\n').expect("there is one");
+    let unit = |row: &str| {
+        row.rsplit(',')
+            .next()
+            .expect("there is one")
+            .trim()
+            .to_owned()
+    };
     let rows: Vec<&str> = rows.lines().collect();
     let parts = rows.chunk_by(|a, b| unit(a) == unit(b));
     let one = |part: &[&str]| {
         let text = format!("{header}\n{}\n", part.join("\n"));
-        Recording::read_from(text.as_bytes(), "unit", &Overrides::default()).unwrap()
+        Recording::read_from(text.as_bytes(), "unit", &Overrides::default()).expect("a recording")
     };
     parts.map(one).collect()
 }
 
 /// Rms of an angle against the reference in degrees; the best constant and the sense of the reference removed.
 pub(crate) fn angle_error(recording: &Recording, correct: &dyn Fn(f64, f64) -> (f64, f64)) -> f64 {
-    let reference = recording.reference_rad.as_ref().unwrap();
+    let reference = recording.reference_rad.as_ref().expect("there is one");
     let pairs = recording.cos.iter().zip(&recording.sin);
     let angles: Vec<f64> = pairs
         .map(|(y_c, y_s)| {
@@ -121,7 +127,7 @@ pub(crate) fn tables(folder: &Path) -> String {
         );
         for method in Method::ALL {
             let error = |r: &Recording| {
-                let found = calibrate(&r.cos, &r.sin, method, &options).unwrap();
+                let found = calibrate(&r.cos, &r.sin, method, &options).expect("a calibration");
                 angle_error(r, &|c, s| found.correct(c, s))
             };
             let _ = write!(
@@ -152,7 +158,7 @@ pub(crate) fn tables(folder: &Path) -> String {
             let residual = |r: &Recording| {
                 100.0
                     * calibrate(&r.cos, &r.sin, method, &options)
-                        .unwrap()
+                        .expect("there is one")
                         .residual_rms
             };
             let _ = write!(
@@ -182,9 +188,10 @@ pub(crate) fn tables(folder: &Path) -> String {
         let [recording] = &named.recordings[..] else {
             continue;
         };
-        let found = calibrate(&recording.cos, &recording.sin, Method::Unbiased, &options).unwrap();
+        let found = calibrate(&recording.cos, &recording.sin, Method::Unbiased, &options)
+            .expect("a calibration");
         let e = found.ellipse;
-        let noise = found.noise.unwrap();
+        let noise = found.noise.expect("there is one");
         let error = found
             .noise_ratio_error
             .map_or_else(String::new, |e| format!(" ± {e:.2}"));

@@ -135,7 +135,7 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
                 parameters: Rc::new(move |e| {
                     let most = e.x.iter().copied().fold(0.0, f64::max);
                     let error = e.error.iter().copied().fold(0.0, f64::max);
-                    vec![
+                    let mut all = vec![
                         Parameter::measured(
                             "threshold",
                             e.inner[0],
@@ -143,7 +143,22 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
                             "amplitude",
                         ),
                         Parameter::measured("compression", most, error, "1"),
-                    ]
+                    ];
+                    let one = |rail: &str, x: f64, error: f64| {
+                        Parameter::measured(&format!("compression_{rail}"), x, error, "1")
+                    };
+                    // Of single rails.
+                    match where_ {
+                        "the upper rail" => all.push(one("lower", 0.0, 0.0)),
+                        "the lower rail" => all.push(one("upper", 0.0, 0.0)),
+                        "both rails" => {}
+                        _ => {
+                            let names = ["cos_upper", "cos_lower", "sin_upper", "sin_lower"];
+                            let rails = names.iter().zip(e.x).zip(e.error);
+                            all.extend(rails.map(|((name, x), error)| one(name, *x, *error)));
+                        }
+                    }
+                    all
                 }),
                 evidence: Rc::new(move |p| {
                     format!("the signals are compressed at {where_}, from {:.3} of the amplitude on by {:.2} % of what is beyond", p[0].value, p[1].value * 100.0)

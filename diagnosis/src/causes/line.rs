@@ -131,16 +131,23 @@ pub(crate) fn candidates(
                 sign: Sign::Any,
                 chip: Chip::CannotCorrect,
                 parameters: Rc::new(move |e| {
-                    let (a_c, d_c, p_c, e_c) = polar(&e.x[..2], &e.error[..2]);
-                    let (a_s, d_s, p_s, e_s) = polar(&e.x[2..4], &e.error[2..4]);
+                    let (a_c, d_c, ..) = polar(&e.x[..2], &e.error[..2]);
+                    let (a_s, d_s, ..) = polar(&e.x[2..4], &e.error[2..4]);
                     let strongest = a_c.hypot(a_s) / d_c.hypot(d_s).max(f64::MIN_POSITIVE);
-                    vec![
-                        frequency(e, strongest, duration),
-                        Parameter::measured("amplitude_cos", a_c, d_c, "amplitude"),
-                        Parameter::measured("phase_cos", p_c, e_c, "rad"),
-                        Parameter::measured("amplitude_sin", a_s, d_s, "amplitude"),
-                        Parameter::measured("phase_sin", p_s, e_s, "rad"),
-                    ]
+                    let mut all = vec![frequency(e, strongest, duration)];
+                    let pairs = e.x.chunks(2).zip(e.error.chunks(2)).enumerate();
+                    for (i, (x, error)) in pairs {
+                        let (a, d, p, ep) = polar(x, error);
+                        let channel = ["cos", "sin"][i % 2];
+                        let harmonic = match i / 2 {
+                            0 => String::new(),
+                            more => format!("_{}", more + 1),
+                        };
+                        let name = |what: &str| format!("{what}_{channel}{harmonic}");
+                        all.push(Parameter::measured(&name("amplitude"), a, d, "amplitude"));
+                        all.push(Parameter::measured(&name("phase"), p, ep, "rad"));
+                    }
+                    all
                 }),
                 evidence: Rc::new(move |p| {
                     let with = if harmonics > 1 { " and its harmonics" } else { "" };

@@ -13,11 +13,11 @@ module optical_example (
     input  wire [11:0] adc_code_cos,
     input  wire [11:0] adc_code_sin,
     input  wire home,                          // makes this period number 0
-    output reg  [58:0] position_now,
+    output reg signed [58:0] position_now,
     output reg  fault
 );
 
-    wire [58:0] position;
+    wire signed [58:0] position;
     wire valid;
     wire signed [17:0] theta_1;
     wire signed [25:0] theta_2;

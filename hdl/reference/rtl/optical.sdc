@@ -1,4 +1,4 @@
-# Timing constraints of optical (design 7bb45a1e5939), for Vivado, Quartus and every tool that reads SDC.
+# Timing constraints of optical (design a31246b9e5bd), for Vivado, Quartus and every tool that reads SDC.
 #
 # 19 clocks per sample at 1000000 samples per second: the clock needs at least 19000000 Hz.
 # For nextpnr: --freq 19.000

@@ -5,14 +5,16 @@
 // radial residual rho shows what the correction still misses and moves its parameters theta.
 // After S. Balemi, "Automatic calibration of sinusoidal encoder signals", IFAC 2005; equation numbers are the paper's.
 //
-// Design 7bb45a1e5939: 16 products on 1 multiplier, 19 clocks per sample.
+// Design a31246b9e5bd: 16 products on 1 multiplier, 19 clocks per sample.
 //
 // Formats: sW.F is a two's complement number of W bits, F of them behind the point; uW.F has no sign and is kept here
-// with a zero in front, so that every number is signed. Angles are in turns of a scale period.
+// with a zero in front, so that every number is signed. Angles are in turns of a scale period. A signal that saturates
+// reads: the bits above the result all equal its sign ? the result : the end of its range on the side of the sign.
 //
 // A value x is computed in one step on the wire x, or on x_now where the register x keeps it for later steps and for
 // the testbench. All registers of the chip change together at the end of the last step: a sample is one transaction,
-// and samples never overlap. Outputs are those of the last sample from `valid` until the next `sample_valid`.
+// and samples never overlap. Outputs are those of the last sample from `valid` until the next `sample_valid`; before
+// the first `valid` those that are not registers of the chip are undefined.
 //
 // step | in the multiplier            | computed from it
 // -----+------------------------------+------------------------------------------------------------------------
@@ -23,11 +25,11 @@
 //    1 | loop_ab * error_previous     | sin_value sin_slope y_c y_s counting whole_period travel_clear
 //    2 | theta_1 * y_c                | cos_value cos_slope drift
 //    3 | cos_slope * cos_inside       | c_exact c
-//    4 | theta_3 * y_s                | cos_magnitude cos_hat
+//    4 | theta_3 * y_s                | cos_magnitude cos_hat c_weak
 //    5 | sin_slope * sin_inside       |
 //    6 | theta_5 * y_c                | sin_magnitude sin_hat
 //    7 | c * cos_hat                  | s_exact s
-//    8 | s * sin_hat                  |
+//    8 | s * sin_hat                  | s_weak
 //    9 | s * cos_hat                  | rho_exact rho flip rho_limited
 //   10 | c * sin_hat                  | alpha_hat_turned
 //   11 | cos_hat * rho_limited        | e_exact e_seen e
@@ -82,7 +84,7 @@ module optical (
     input  wire [11:0] adc_sin, // code of the sine channel, two's complement
     input  wire preset, // this sample's period becomes number 0; clears lock_lost
     input  wire calibrate, // this sample may move the parameters
-    output wire [58:0] position, // periods, s59.27: whole periods and alpha_hat for the next sample
+    output wire signed [58:0] position, // periods, s59.27: whole periods and alpha_hat for the next sample
     output reg signed [17:0] theta_1, // θ1 as multiplied. s18.16
     output reg signed [25:0] theta_2, // θ2. s26.27
     output reg signed [17:0] theta_3, // θ3 as multiplied. s18.16
@@ -135,11 +137,11 @@ module optical (
     reg signed [28:0] s_exact_sum;
     reg signed [17:0] c;
     reg signed [17:0] s;
-    reg signal_lost_next_condition_8;
-    reg signal_lost_next_condition_7;
-    reg signal_lost_next_condition_5;
-    reg signal_lost_next_condition_4;
-    reg signal_lost_next_condition_3;
+    reg c_below_weak_signal;
+    reg c_below_minus_weak_signal;
+    reg c_weak;
+    reg s_below_weak_signal;
+    reg s_below_minus_weak_signal;
     reg signal_lost_next;
     reg signed [34:0] rho_exact_difference;
     reg signed [17:0] rho;
@@ -151,7 +153,7 @@ module optical (
     reg flip_condition;
     reg signed [7:0] level_moved_sum;
     reg level_empty;
-    reg last_gear_condition;
+    reg loop_gear_below_loop_gear_last;
     reg last_gear;
     reg signed [2:0] loop_gear_next_bits;
     reg locked_next;
@@ -164,8 +166,8 @@ module optical (
     reg signed [28:0] alpha_hat_turned;
     reg signed [27:0] alpha_hat_next;
     reg signed [31:0] count_next;
-    reg direction_next_condition_2;
-    reg value_condition_4;
+    reg speed_below_minus_direction_rate;
+    reg speed_below_direction_rate;
     reg direction_next;
     reg counting;
     reg signed [7:0] sector;
@@ -192,7 +194,7 @@ module optical (
     reg residual_large_condition;
     reg residual_large;
     reg gamma_restart;
-    reg value_condition_2;
+    reg gamma_gear_below_gamma_gear_last;
     reg gamma_shift_condition_2;
     reg gamma_shift;
     reg signed [1:0] gear_periods_next_chosen_2;
@@ -315,12 +317,13 @@ module optical (
 
     // Loss of signal
     //   |c| and |s| both below the threshold
-    wire signal_lost_next_condition_8_now = $signed(c_now[17:14]) < 4'sd1; // step 3
-    wire signal_lost_next_condition_7_now = $signed(c_now[17:14]) < 4'shf; // step 3
-    wire signal_lost_next_condition_5_now = signal_lost_next_condition_8 & ~signal_lost_next_condition_7; // step 4
-    wire signal_lost_next_condition_4_now = $signed(s_now[17:14]) < 4'sd1; // step 7
-    wire signal_lost_next_condition_3_now = $signed(s_now[17:14]) < 4'shf; // step 7
-    wire signal_lost_next_now = signal_lost_next_condition_5 & (signal_lost_next_condition_4 & ~signal_lost_next_condition_3); // step 8
+    wire c_below_weak_signal_now = $signed(c_now[17:14]) < 4'sd1; // step 3
+    wire c_below_minus_weak_signal_now = $signed(c_now[17:14]) < 4'shf; // step 3
+    wire c_weak_now = c_below_weak_signal & ~c_below_minus_weak_signal; // step 4
+    wire s_below_weak_signal_now = $signed(s_now[17:14]) < 4'sd1; // step 7
+    wire s_below_minus_weak_signal_now = $signed(s_now[17:14]) < 4'shf; // step 7
+    wire s_weak = s_below_weak_signal & ~s_below_minus_weak_signal; // step 8
+    wire signal_lost_next_now = c_weak & s_weak; // step 8
 
     // Radial residual
     //   rho = c cos(alpha_hat) + s sin(alpha_hat) - 1, the half bit of rounding in the 1
@@ -357,9 +360,9 @@ module optical (
     wire signed [6:0] level_moved = level_moved_sum[7] ? 7'sd0 : (level_moved_sum[6] ? {1'b0, {6{1'b1}}} : {1'b0, level_moved_sum[5:0]}); // u6.0, step 13
     wire level_full = ~(level_moved < 7'sh3f); // step 13
     wire level_empty_now = level_moved < 7'sd1; // step 13
-    wire last_gear_condition_now = loop_gear < 3'sd3; // step 0
-    wire last_gear_now = ~last_gear_condition_now; // step 0
-    wire narrower = level_full & last_gear_condition; // step 13
+    wire loop_gear_below_loop_gear_last_now = loop_gear < 3'sd3; // step 0
+    wire last_gear_now = ~loop_gear_below_loop_gear_last_now; // step 0
+    wire narrower = level_full & loop_gear_below_loop_gear_last; // step 13
     wire signed [1:0] loop_gear_next_chosen_2 = narrower ? 2'sd1 : 2'sd0; // s2.0, step 13
     wire signed [3:0] loop_gear_next_sum = {loop_gear[2], loop_gear} + {{2{loop_gear_next_chosen_2[1]}}, loop_gear_next_chosen_2}; // s4.0, step 13
     wire signed [2:0] loop_gear_next_bits_now = {1'b0, loop_gear_next_sum[1:0]}; // u2.0, step 13
@@ -405,14 +408,14 @@ module optical (
 
     // Direction
     //   sign of the rate, with a dead band
-    wire direction_next_condition_2_now = $signed(speed_now[25:11]) < 15'sh7fff; // step 15
-    wire value_condition_4_now = $signed(speed_now[25:11]) < 15'sd1; // step 15
-    wire direction_next_now = direction_next_condition_2 | (direction & value_condition_4); // step 16
-    wire counting_now = locked & calibrate_held; // step 1
+    wire speed_below_minus_direction_rate_now = $signed(speed_now[25:11]) < 15'sh7fff; // step 15
+    wire speed_below_direction_rate_now = $signed(speed_now[25:11]) < 15'sd1; // step 15
+    wire direction_next_now = speed_below_minus_direction_rate | (direction & speed_below_direction_rate); // step 16
 
     // Travel
     //   a sector of the period is fresh until it was used once since the last whole period
     //   (paper section 5.5: static measurements may bias the estimates)
+    wire counting_now = locked & calibrate_held; // step 1
     wire signed [1:0] periods_modulo_4_bits = count[1:0]; // s2.32, step 0
     wire signed [1:0] periods_modulo_4 = periods_modulo_4_bits; // s2.0, step 0
     wire signed [6:0] sector_bits = alpha_hat[27:21]; // u6.6, step 0
@@ -447,7 +450,7 @@ module optical (
     wire signed [17:0] rho_s_now = {{2{rho_s_rounded[15]}}, rho_s_rounded}; // s18.16, step 13
 
     // Parameter update
-    //   theta -= gamma (2 y_c rho_c, rho_c, 2 y_s rho_s, rho_s, 4 y_c rho_s)
+    //   theta -= gamma (2 y_c rho_c, rho_c, 2 y_s rho_s, rho_s, 8 y_c rho_s), 2 and 8 times 1/amplitude^2 as a power of two
     //   (paper section 5.5.1, M of equation (7))
     wire signed [26:0] gradient_5 = product_0[26:0]; // s27.27, step 17
     wire signed [26:0] y_c_times_rho_c = product_0[26:0]; // s27.27, step 15
@@ -483,10 +486,10 @@ module optical (
     wire residual_large_now = residual_large_condition & fresh_now; // step 12
     wire period_tick = whole_period & fresh_now; // step 12
     wire gamma_restart_now = period_tick & disturbed; // step 12
-    wire value_condition_2_now = gamma_gear < 4'sd7; // step 0
+    wire gamma_gear_below_gamma_gear_last_now = gamma_gear < 4'sd7; // step 0
     wire gamma_shift_condition_2_now = ~($signed(gear_periods[2:1]) < 2'sd1); // step 0
     wire gamma_shift_condition = period_tick & gamma_shift_condition_2; // step 12
-    wire gamma_shift_now = gamma_shift_condition & value_condition_2; // step 12
+    wire gamma_shift_now = gamma_shift_condition & gamma_gear_below_gamma_gear_last; // step 12
     wire signed [1:0] gamma_gear_next_chosen_2 = gamma_shift ? 2'sd1 : 2'sd0; // s2.0, step 13
     wire signed [4:0] gamma_gear_next_sum = {gamma_gear[3], gamma_gear} + {{3{gamma_gear_next_chosen_2[1]}}, gamma_gear_next_chosen_2}; // s5.0, step 13
     wire signed [3:0] gamma_gear_next_bits = {1'b0, gamma_gear_next_sum[2:0]}; // u3.0, step 13
@@ -565,14 +568,14 @@ module optical (
             theta_1 <= theta_1_now;
             theta_3 <= theta_3_now;
             theta_5 <= theta_5_now;
-            last_gear_condition <= last_gear_condition_now;
+            loop_gear_below_loop_gear_last <= loop_gear_below_loop_gear_last_now;
             last_gear <= last_gear_now;
             sector <= sector_now;
             whole_period_condition <= whole_period_condition_now;
             fresh_condition_3 <= fresh_condition_3_now;
             travel_low_next_chosen <= travel_low_next_chosen_now;
             travel_high_next_chosen <= travel_high_next_chosen_now;
-            value_condition_2 <= value_condition_2_now;
+            gamma_gear_below_gamma_gear_last <= gamma_gear_below_gamma_gear_last_now;
             gamma_shift_condition_2 <= gamma_shift_condition_2_now;
             theta_2 <= theta_2_deviation;
             theta_4 <= theta_4_deviation;
@@ -592,13 +595,13 @@ module optical (
         end
         if (step == 5'd3) begin
             c <= c_now;
-            signal_lost_next_condition_8 <= signal_lost_next_condition_8_now;
-            signal_lost_next_condition_7 <= signal_lost_next_condition_7_now;
+            c_below_weak_signal <= c_below_weak_signal_now;
+            c_below_minus_weak_signal <= c_below_minus_weak_signal_now;
             speed_sum_2 <= speed_sum_2_now;
         end
         if (step == 5'd4) begin
             cos_hat <= cos_hat_now;
-            signal_lost_next_condition_5 <= signal_lost_next_condition_5_now;
+            c_weak <= c_weak_now;
         end
         if (step == 5'd5) begin
             s_exact_sum <= s_exact_sum_now;
@@ -608,8 +611,8 @@ module optical (
         end
         if (step == 5'd7) begin
             s <= s_now;
-            signal_lost_next_condition_4 <= signal_lost_next_condition_4_now;
-            signal_lost_next_condition_3 <= signal_lost_next_condition_3_now;
+            s_below_weak_signal <= s_below_weak_signal_now;
+            s_below_minus_weak_signal <= s_below_minus_weak_signal_now;
         end
         if (step == 5'd8) begin
             signal_lost_next <= signal_lost_next_now;
@@ -664,8 +667,8 @@ module optical (
         end
         if (step == 5'd15) begin
             speed <= speed_now;
-            direction_next_condition_2 <= direction_next_condition_2_now;
-            value_condition_4 <= value_condition_4_now;
+            speed_below_minus_direction_rate <= speed_below_minus_direction_rate_now;
+            speed_below_direction_rate <= speed_below_direction_rate_now;
             step_1 <= step_1_now;
             theta_4_deviation_next <= theta_4_deviation_next_now;
         end

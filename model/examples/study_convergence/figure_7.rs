@@ -11,7 +11,8 @@ use nonius_model::reference::{Parameters, Reference, from_spec, heydemann};
 use nonius_model::spec::Spec;
 use plotters::style::RGBColor;
 
-use crate::method::{Method, OnChip};
+use crate::method::Method;
+use crate::on_chip::OnChip;
 use crate::plot::{self, COLOURS, Line};
 use crate::scenario::{SPEED, Scenario, samples};
 
@@ -24,7 +25,7 @@ pub(crate) fn figure_7(spec: &Spec, folder: &Path) -> Result<(), Box<dyn std::er
     config.gamma = Gamma::constant(0.01);
     config.gate = Gate::EverySample;
     let mut paper = Method::Paper(set, Box::new(Reference::new(config)?));
-    let mut chip = Method::Chip(Box::new(OnChip::of(&Design::new(spec)?)));
+    let mut chip = Method::Chip(Box::new(OnChip::of(Design::new(spec)?)));
     let mut csv = String::from("periods");
     for source in ["paper", "chip", "heydemann"] {
         (1..=5).for_each(|i| _ = write!(csv, ",{source}_theta_{i}"));

@@ -1,9 +1,6 @@
 //! What is compared: each takes samples and says its angle and its Θ.
 
-use nonius_model::bits::Bits;
-use nonius_model::chip::Chip;
 use nonius_model::design::Design;
-use nonius_model::physical::{self, Converter};
 use nonius_model::reference::baseline::{Baseline, OpenLoop};
 use nonius_model::reference::completed::CompletedConfig;
 use nonius_model::reference::extremes::PeriodExtremes;
@@ -15,9 +12,9 @@ use nonius_model::reference::poles::Poles;
 use nonius_model::reference::recursive::StartConfig;
 use nonius_model::reference::start::Start;
 use nonius_model::reference::sum_of_squares::Smoothing;
-use nonius_model::reference::{Config, Parameters, Reference, Steps, Theta};
-use nonius_model::spec::{CalibrationMethod, Spec};
+use nonius_model::reference::{Config, Parameters, Reference, Sensor, Steps, Theta};
 
+use super::on_chip::{self, OnChip};
 use super::scenario::SPEED;
 
 /// Sample time, seconds.
@@ -30,28 +27,38 @@ pub(crate) enum Method {
     Chip(Box<OnChip>),
 }
 
-/// The bit-true chip of a design.
-pub(crate) struct OnChip {
-    chip: Chip<Bits>,
-    converter: Converter,
-    spec: Spec,
-}
-
-impl OnChip {
-    pub(crate) fn of(design: &Design) -> Self {
-        Self {
-            chip: Chip::bit_true(design),
-            converter: Converter::of(&design.spec),
-            spec: design.spec.clone(),
-        }
-    }
-}
-
 /// What a method says of a sample: α̂ in radians and Θ before it, for signals of amplitude 1.
 pub(crate) struct Said {
     pub(crate) alpha_hat: f64,
-    pub(crate) parameters: Parameters,
+    pub(crate) correction: Correction,
     pub(crate) theta: Theta,
+}
+
+/// What Θ means.
+#[derive(Clone, Copy)]
+pub(crate) enum Correction {
+    /// One of the paper's sets.
+    Paper(Parameters),
+    /// The chip's own with 8 or 9 parameters: gain and offset, bend, phase.
+    Bent,
+}
+
+impl Correction {
+    /// The corrected pair.
+    pub(crate) fn corrected(self, theta: &Theta, y: [f64; 2]) -> [f64; 2] {
+        match self {
+            Self::Paper(parameters) => parameters.corrected(theta, y),
+            Self::Bent => on_chip::bent(theta, y),
+        }
+    }
+
+    /// The Θ that corrects this sensor, where the set has one.
+    pub(crate) fn of(self, sensor: &Sensor) -> Option<Theta> {
+        match self {
+            Self::Paper(set) => (set.count() % 2 == 1).then(|| set.from_five(sensor.theta())),
+            Self::Bent => None,
+        }
+    }
 }
 
 impl Method {
@@ -128,23 +135,17 @@ impl Method {
                 list.push((name.into(), Self::Paper(five, Box::new(reference))));
             }
         }
-        list.push((
-            "chip, bit-true, five".to_owned(),
-            Self::Chip(Box::new(OnChip::of(design))),
-        ));
-        for (name, method) in [
-            ("exact", CalibrationMethod::Exact),
-            ("sum of squares", CalibrationMethod::SumOfSquares),
-            ("batch", CalibrationMethod::Batch),
-        ] {
-            let mut spec = design.spec.clone();
-            spec.calibration.method = method;
-            if let Ok(other) = Design::new(&spec) {
-                let chip = Self::Chip(Box::new(OnChip::of(&other)));
-                list.push((format!("chip, bit-true, {name}, five"), chip));
-            }
-        }
+        let chips = on_chip::all(&design.spec);
+        list.extend(chips.map(|(name, chip)| (name, Self::Chip(Box::new(chip)))));
         list
+    }
+
+    /// The design, where it is a chip.
+    pub(crate) fn design(&self) -> Option<&Design> {
+        match self {
+            Self::Chip(chip) => Some(&chip.design),
+            _ => None,
+        }
     }
 
     /// Takes one sample; the amplitude of y is 1.
@@ -154,7 +155,7 @@ impl Method {
                 let seen = open_loop.step(y[0], y[1]);
                 Said {
                     alpha_hat: seen.alpha_hat,
-                    parameters: Parameters::Four,
+                    correction: Correction::Paper(Parameters::Four),
                     theta: seen.theta,
                 }
             }
@@ -162,34 +163,12 @@ impl Method {
                 let seen = reference.step(y[0], y[1]);
                 Said {
                     alpha_hat: seen.alpha_hat,
-                    parameters: *parameters,
+                    correction: Correction::Paper(*parameters),
                     theta: seen.theta,
                 }
             }
             Self::Chip(on_chip) => on_chip.step(y),
         }
-    }
-}
-
-impl OnChip {
-    fn step(&mut self, y: [f64; 2]) -> Said {
-        let (middle, amplitude) = (self.spec.adc.middle, self.spec.sensor.amplitude);
-        let [one, two, three, four, five, ..] = physical::theta(&self.spec, self.chip.theta());
-        // For signals of amplitude 1 about 0, from those in volts.
-        let mut theta = Theta::zeros();
-        theta[0] = one * amplitude;
-        theta[1] = two + one * middle;
-        theta[2] = three * amplitude;
-        theta[3] = four + (three + five) * middle;
-        theta[4] = five * amplitude;
-        let said = Said {
-            alpha_hat: self.chip.position() * std::f64::consts::TAU,
-            parameters: Parameters::Five,
-            theta,
-        };
-        let [cos, sin] = y.map(|y| self.converter.code(middle + amplitude * y));
-        self.chip.step_codes(cos, sin, false, true);
-        said
     }
 }
 

@@ -4,18 +4,20 @@ use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
 use nonius_model::design::Design;
-use nonius_model::reference::{Parameters, Theta};
 
-use super::method::Method;
+use super::costs::Costs;
+use super::method::{Method, Said};
 use super::scenario::{SAMPLES, SENSOR, Scenario, samples};
 
 /// Miscalibration of Θ at sample k, radians: (rms, largest), the constant part removed.
-fn miscalibration(scenario: Scenario, k: u32, parameters: Parameters, theta: &Theta) -> (f64, f64) {
+fn miscalibration(scenario: Scenario, k: u32, said: &Said) -> (f64, f64) {
     const POINTS: u32 = 90;
     let errors: Vec<f64> = (0..POINTS)
         .map(|i| {
             let alpha = TAU * f64::from(i) / f64::from(POINTS);
-            let [c, s] = parameters.corrected(theta, scenario.signals(alpha, k));
+            let [c, s] = said
+                .correction
+                .corrected(&said.theta, scenario.signals(alpha, k));
             wrapped(s.atan2(c) - alpha)
         })
         .collect();
@@ -38,24 +40,29 @@ struct Outcome {
     /// Miscalibration at the end, radians.
     rms: f64,
     largest: f64,
-    /// Error of α̂ over the last tenth, radians rms.
+    /// Error of α̂ over the last tenth, radians rms, and the largest.
     alpha_hat: f64,
+    alpha_hat_largest: f64,
     /// Periods travelled until the miscalibration stays within 10 % of its final value.
     periods: f64,
 }
 
 fn run(scenario: Scenario, method: &mut Method) -> Outcome {
+    let calibrates_phase = method.design().is_none_or(|d| d.structure.has_phase());
+    let mut furthest = 0.0f64;
     let (mut square, mut counted) = (0.0, 0.0);
     let mut course: Vec<(f64, f64)> = Vec::new();
     let mut last = None;
     for (sample, k) in samples(scenario).zip(0..SAMPLES) {
         let said = method.step(sample.y);
         if k >= SAMPLES / 10 * 9 {
-            square += wrapped(said.alpha_hat - sample.alpha).powi(2);
+            let error = wrapped(said.alpha_hat - sample.alpha);
+            square += error.powi(2);
+            furthest = furthest.max(error.abs());
             counted += 1.0;
         }
         if k % 60 == 0 {
-            let rms = miscalibration(scenario, k, said.parameters, &said.theta).0;
+            let rms = miscalibration(scenario, k, &said).0;
             course.push((sample.alpha / TAU, rms));
         }
         last = Some(said);
@@ -73,23 +80,26 @@ fn run(scenario: Scenario, method: &mut Method) -> Outcome {
         (Some(i), Some(first)) if i < course.len() / 2 => i.max(first),
         (_, first) => first.unwrap_or(0),
     };
-    let (rms, largest) = miscalibration(scenario, SAMPLES, said.parameters, &said.theta);
-    let expressible = said.parameters.count() % 2 == 1 && scenario != Scenario::ThirdHarmonic;
-    let parameter = (expressible && scenario != Scenario::Drift)
-        .then(|| (said.theta - said.parameters.from_five(SENSOR.theta())).amax());
+    let (rms, largest) = miscalibration(scenario, SAMPLES, &said);
+    let reachable = !matches!(scenario, Scenario::ThirdHarmonic | Scenario::Drift);
+    let own = said.correction.of(&SENSOR).filter(|_| reachable);
+    let parameter = own
+        .filter(|_| calibrates_phase)
+        .map(|own| (said.theta - own).amax());
     Outcome {
         parameter,
         rms,
         largest,
         alpha_hat: f64::sqrt(square / counted),
+        alpha_hat_largest: furthest,
         periods: course[settled].0,
     }
 }
 
 /// Every method in these scenarios.
-pub(crate) fn methods(design: &Design, scenarios: &[Scenario]) -> String {
+pub(crate) fn methods(design: &Design, scenarios: &[Scenario], costs: &Costs) -> String {
     let mut csv = String::from(
-        "method,scenario,parameter_error,miscalibration_rms_mrad,miscalibration_largest_mrad,alpha_hat_rms_mrad,periods\n",
+        "method,scenario,parameter_error,miscalibration_rms_mrad,miscalibration_largest_mrad,alpha_hat_rms_mrad,alpha_hat_largest_mrad,periods,products,clocks,lut4\n",
     );
     for &scenario in scenarios {
         for (name, mut method) in Method::all(design) {
@@ -97,11 +107,19 @@ pub(crate) fn methods(design: &Design, scenarios: &[Scenario]) -> String {
             let parameter = found
                 .parameter
                 .map_or(String::new(), |p| format!("{p:.2e}"));
-            let [rms, largest, alpha_hat] =
-                [found.rms, found.largest, found.alpha_hat].map(|x| 1e3 * x);
+            let [rms, largest, alpha_hat, furthest] = [
+                found.rms,
+                found.largest,
+                found.alpha_hat,
+                found.alpha_hat_largest,
+            ]
+            .map(|x| 1e3 * x);
+            let chip = method.design();
+            let products = chip.map_or(String::new(), |d| d.graph.products().to_string());
+            let [clocks, luts] = chip.map(|d| costs.of(d)).unwrap_or_default();
             _ = writeln!(
                 csv,
-                "\"{name}\",{},{parameter},{rms:.4},{largest:.4},{alpha_hat:.4},{:.1}",
+                "\"{name}\",{},{parameter},{rms:.4},{largest:.4},{alpha_hat:.4},{furthest:.4},{:.1},{products},{clocks},{luts}",
                 scenario.name(),
                 found.periods
             );

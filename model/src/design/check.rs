@@ -1,7 +1,8 @@
 //! Every field of a design checked for sense, before anything is derived from it.
 
 use super::DesignError;
-use crate::spec::{CalibrationMethod, Multipliers, Spec};
+use super::keywords::KEYWORDS;
+use crate::spec::{CalibrationMethod, CalibrationStart, Multipliers, Spec};
 
 pub(super) fn refuse<T>(
     field: &'static str,
@@ -31,134 +32,6 @@ pub(super) fn between(
     refuse(field, value, format!("{low} … {high}"), reason)
 }
 
-/// Words of Verilog-2005 that no module may have for a name.
-const KEYWORDS: &[&str] = &[
-    "always",
-    "and",
-    "assign",
-    "automatic",
-    "begin",
-    "buf",
-    "bufif0",
-    "bufif1",
-    "case",
-    "casex",
-    "casez",
-    "cell",
-    "cmos",
-    "config",
-    "deassign",
-    "default",
-    "defparam",
-    "design",
-    "disable",
-    "edge",
-    "else",
-    "end",
-    "endcase",
-    "endconfig",
-    "endfunction",
-    "endgenerate",
-    "endmodule",
-    "endprimitive",
-    "endspecify",
-    "endtable",
-    "endtask",
-    "event",
-    "for",
-    "force",
-    "forever",
-    "fork",
-    "function",
-    "generate",
-    "genvar",
-    "highz0",
-    "highz1",
-    "if",
-    "ifnone",
-    "incdir",
-    "include",
-    "initial",
-    "inout",
-    "input",
-    "instance",
-    "integer",
-    "join",
-    "large",
-    "liblist",
-    "library",
-    "localparam",
-    "macromodule",
-    "medium",
-    "module",
-    "nand",
-    "negedge",
-    "nmos",
-    "nor",
-    "noshowcancelled",
-    "not",
-    "notif0",
-    "notif1",
-    "or",
-    "output",
-    "parameter",
-    "pmos",
-    "posedge",
-    "primitive",
-    "pull0",
-    "pull1",
-    "pulldown",
-    "pullup",
-    "pulsestyle_onevent",
-    "pulsestyle_ondetect",
-    "rcmos",
-    "real",
-    "realtime",
-    "reg",
-    "release",
-    "repeat",
-    "rnmos",
-    "rpmos",
-    "rtran",
-    "rtranif0",
-    "rtranif1",
-    "scalared",
-    "showcancelled",
-    "signed",
-    "small",
-    "specify",
-    "specparam",
-    "strong0",
-    "strong1",
-    "supply0",
-    "supply1",
-    "table",
-    "task",
-    "time",
-    "tran",
-    "tranif0",
-    "tranif1",
-    "tri",
-    "tri0",
-    "tri1",
-    "triand",
-    "trior",
-    "trireg",
-    "unsigned",
-    "use",
-    "uwire",
-    "vectored",
-    "wait",
-    "wand",
-    "weak0",
-    "weak1",
-    "while",
-    "wire",
-    "wor",
-    "xnor",
-    "xor",
-];
-
 /// Checks every field for sense.
 pub(super) fn check(spec: &Spec) -> Result<(), DesignError> {
     let word = |c: char| c.is_ascii_alphanumeric() || c == '_';
@@ -166,7 +39,7 @@ pub(super) fn check(spec: &Spec) -> Result<(), DesignError> {
     if !first.is_ascii_alphabetic() || !spec.name.chars().all(word) || spec.name.len() > 64 {
         return refuse(
             "name",
-            &spec.name,
+            format!("{:?}", spec.name),
             "letters, digits and _, a letter first",
             "it names Verilog modules",
         );
@@ -174,7 +47,7 @@ pub(super) fn check(spec: &Spec) -> Result<(), DesignError> {
     if KEYWORDS.contains(&spec.name.as_str()) || spec.name == "chip_tb" {
         return refuse(
             "name",
-            &spec.name,
+            format!("{:?}", spec.name),
             "no word of Verilog, and not chip_tb",
             "it names a Verilog module, and this is a keyword or the testbench",
         );
@@ -331,13 +204,13 @@ pub(super) fn check(spec: &Spec) -> Result<(), DesignError> {
         }
     }
     let top = spec.sensor.speed_max_periods_per_s / spec.adc.sample_rate_hz;
-    if !(top.is_finite() && top > 0.0 && top <= 0.2) {
-        let needed = spec.sensor.speed_max_periods_per_s * 5.0;
+    if !(top.is_finite() && top > 0.0 && top <= 0.25) {
+        let needed = spec.sensor.speed_max_periods_per_s * 4.0;
         return refuse(
             "adc.sample_rate_hz",
             spec.adc.sample_rate_hz,
             format!("at least {needed} Hz"),
-            "the loop needs five samples per period at top speed",
+            "the loop needs four samples per period at top speed",
         );
     }
     Ok(())
@@ -365,9 +238,24 @@ fn calibration(spec: &Spec) -> Result<(), DesignError> {
     if bends && c.method != CalibrationMethod::Final {
         return refuse(
             "calibration.method",
-            "sum of squares",
+            match c.method {
+                CalibrationMethod::Batch => "batch",
+                _ => "sum_of_squares",
+            },
             "\"final\", or 4 or 5 parameters",
             "the sum of squares sees the radius alone and cannot be completed: with bends it stands still beside the truth",
+        );
+    }
+    let squares = matches!(
+        c.method,
+        CalibrationMethod::SumOfSquares | CalibrationMethod::Batch
+    );
+    if squares && c.start == CalibrationStart::LeastSquares {
+        return refuse(
+            "calibration.start",
+            "least_squares",
+            "\"gears\", or the method \"final\" or \"exact\"",
+            "the start is a batch of the radial residual; the sum of squares gathers another one",
         );
     }
     if bends && c.completion && spec.sensor.periods_per_revolution == Some(1.0) {

@@ -4,9 +4,10 @@ use std::f64::consts::TAU;
 
 use super::{Acquisition, DesignError, Loop, Words, normalisation};
 use crate::format::{Format, Quantiser, exp2};
+use crate::kernel::start::PERIODS as START_PERIODS;
 use crate::kernel::{Coefficients, Constant, Formats, Method, Structure};
 use crate::rom::{Column, Rom};
-use crate::spec::{CalibrationMethod, Coding, Spec};
+use crate::spec::{CalibrationMethod, CalibrationStart, Coding, Spec};
 
 /// What the parameters can reach: the promise of the design, a quarter more, up to a power of two.
 struct Ranges {
@@ -90,6 +91,9 @@ pub(super) fn structure(
     };
     let gain = multiplied(r.nominal + exp2(r.deviation[0].into()));
     let fp = words.phase_bits;
+    let start =
+        spec.calibration.parameters > 0 && spec.calibration.start == CalibrationStart::LeastSquares;
+    let fast = spec.sensor.speed_max_periods_per_s > 0.2 * spec.adc.sample_rate_hz;
     let formats = Formats {
         adc: if offset_binary {
             Format::unsigned(adc_bits, adc_bits)
@@ -100,8 +104,9 @@ pub(super) fn structure(
         signal: Quantiser::saturating(Format::signed(width, f)),
         residual: Quantiser::saturating(Format::signed(f - 1, f)),
         alpha: Format::unsigned(fp, fp),
-        rate: Quantiser::saturating(Format::signed(fp - 1, fp)),
-        rate_high: Quantiser::grid(Format::signed(width, width + 1)),
+        // A quarter of a turn each way, and twice that where the design comes near it.
+        rate: Quantiser::saturating(Format::signed(if fast { fp } else { fp - 1 }, fp)),
+        rate_high: Quantiser::grid(Format::signed(width, if fast { width } else { width + 1 })),
         sine_phase: Quantiser::truncating(Format::unsigned(
             words.sine_phase_bits,
             words.sine_phase_bits,
@@ -112,11 +117,17 @@ pub(super) fn structure(
         theta_cubic: multiplied(exp2(i64::from(r.deviation[7]) + 3)),
         deviation: r.deviation.map(accumulator),
         alpha_gradient: Quantiser::saturating(Format::signed(fp + 2, fp)),
-        gathered: accumulator(if spec.calibration.method == CalibrationMethod::Batch {
-            7
+        gathered: if start {
+            // Sums of 64 residuals, each a quarter at most.
+            Quantiser::saturating(Format::signed(f + 5, f))
         } else {
-            1
-        }),
+            accumulator(if spec.calibration.method == CalibrationMethod::Batch {
+                7
+            } else {
+                1
+            })
+        },
+        start_periods: counting_to(START_PERIODS),
         travel_samples: counting_to(travel_samples(spec)),
         step: accumulator(r.deviation.into_iter().max().unwrap_or(0)),
         level: Quantiser::saturating(Format::unsigned(level_bits(tracking), 0)),
@@ -133,6 +144,7 @@ pub(super) fn structure(
         filter_type: spec.tracking.filter_type,
         parameters: spec.calibration.parameters,
         gradient: spec.calibration.method,
+        least_squares_start: start,
         forgetting: spec.calibration.forgetting,
         completion: (spec.calibration.parameters >= 8 && spec.calibration.completion)
             .then_some(spec.calibration.completion_gamma),
@@ -253,6 +265,8 @@ pub(super) fn constants(
         travel_samples_last: whole(travel_samples(spec).into()),
         gamma_gear_last: whole(structure.gamma_gears.into()),
         gear_periods_last: whole(i64::from(spec.calibration.gear_periods) - 1),
+        start_periods_last: whole(START_PERIODS.into()),
+        start_period: Constant::rounded(62.0 / 64.0, 6),
         unit_radius: corrected(1.0, exp2(-i64::from(f) - 1), f + 1),
         zero: whole(0),
         one: whole(1),

@@ -3,6 +3,7 @@
 mod budget;
 mod check;
 mod formats;
+mod keywords;
 mod poles;
 
 pub use budget::{Budget, Term, Words};

@@ -162,7 +162,8 @@ impl Loop {
 }
 
 impl Acquisition {
-    /// The widest loop that is still well damped. Type 1 loops are not widened: their damping would suffer.
+    /// The widest loop that is still well damped. With g above 1 its sensitivity rises above 2 for the errors of a sensor
+    /// that is not yet calibrated, at two cycles per period and top speed: it follows, but never looks like it. Type 1 loops are not widened: their damping would suffer.
     pub(super) fn new(spec: &Spec, tracking: &Loop) -> Self {
         if spec.tracking.filter_type == 1 {
             return Self {
@@ -183,7 +184,7 @@ impl Acquisition {
             } else {
                 linear.abs() / 2.0 + discriminant.sqrt()
             };
-            radius < 0.85 && g < 1.9
+            radius < 0.85 && g < 1.0
         };
         let most = (1..24).rev().find(|&shift| wide(shift)).unwrap_or(0) as u32;
         let gears = most.min(3);

@@ -5,12 +5,14 @@
 
 mod evaluate;
 mod interval;
+mod node;
 mod prune;
 mod recorder;
 
 pub use evaluate::{Evaluation, compute};
 pub use interval::RangeError;
-pub use recorder::{Flag, Node, Recorder, WideNode};
+pub use node::{Flag, Node, WideNode};
+pub use recorder::Recorder;
 
 use crate::format::{Format, Quantiser};
 use crate::signal::Formula;
@@ -86,20 +88,8 @@ impl Op {
     /// The nodes that this one reads.
     #[must_use]
     pub fn operands(&self) -> Vec<NodeId> {
-        match *self {
-            Op::Input | Op::Constant(_) => vec![],
-            Op::Neg(a) | Op::Scale(a, _) | Op::Quantise(a, _) | Op::Not(a) => vec![a],
-            Op::Lookup { address, .. } => vec![address],
-            Op::QuantiseGeared { value, gear, .. } => vec![value, gear],
-            Op::Add(a, b)
-            | Op::Sub(a, b)
-            | Op::Mul(a, b)
-            | Op::LessThan(a, b)
-            | Op::And(a, b)
-            | Op::Or(a, b)
-            | Op::Xor(a, b) => vec![a, b],
-            Op::Select(c, a, b) => vec![c, a, b],
-        }
+        let mut op = *self;
+        op.operands_mut().into_iter().map(|id| *id).collect()
     }
 
     /// The same, to be renumbered.

@@ -127,6 +127,10 @@ coefficients! {
     gamma_gear_last,
     /// Periods of travel per γ gear, less one.
     gear_periods_last,
+    /// Periods of travel that the start solves.
+    start_periods_last,
+    /// Travel that the start takes for a period.
+    start_period,
     /// The radius 1, less half a bit of the residual.
     unit_radius,
     /// 0.

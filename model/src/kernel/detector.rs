@@ -53,5 +53,6 @@ pub fn within<S: Signal>(x: S, limit: S) -> S::Bool {
 /// Both corrected signals are too small to tell an angle.
 pub fn weak<S: Signal>(c: S, s: S, k: &Coefficients<S>) -> S::Bool {
     c.begin(&WEAK);
-    within(c, k.weak_signal).and(within(s, k.weak_signal))
+    let (c, s) = (within(c, k.weak_signal), within(s, k.weak_signal));
+    c.named("c_weak").and(s.named("s_weak"))
 }

@@ -1,6 +1,7 @@
 //! The gradient of one sample, component by component.
 
 use super::sensitivity::{self, Sensitivity};
+use super::start::Polar;
 use super::{Coefficients, State, Structure};
 use crate::signal::{Formula, Signal, Wide};
 
@@ -41,30 +42,43 @@ pub struct Seen<S: Signal> {
     pub rho: S,
     /// n ρ.
     pub along: (S, S),
+    /// θ1 … θ5 as they were applied.
+    pub theta: [S; 5],
+    /// Where the design has a start by least squares: what that sees.
+    pub start: Option<Polar<S>>,
 }
 
-/// n ρ, or for the sum of squares (c, s) ε.
-pub fn along<S: Signal>(rho: S, (cos, sin): (S, S), structure: &Structure) -> (S, S) {
-    rho.begin(if structure.gathers() {
+/// ρ as it moves the parameters. More than a quarter of the radius is no measurement: the word holds it there, and every
+/// step after it is short.
+pub fn limited<S: Signal>(rho: S, structure: &Structure) -> S {
+    rho.begin(if structure.squares() {
         &ALONG
     } else {
         &DIRECTION
     });
-    // More than a quarter of the radius is no measurement: the word holds it there, and every step after it is short.
-    let rho = rho
-        .quantise(&structure.formats.residual)
-        .named("rho_limited");
+    rho.quantise(&structure.formats.residual)
+        .named("rho_limited")
+}
+
+/// n ρ, or for the sum of squares (c, s) ε.
+pub fn along<S: Signal>(rho: S, (cos, sin): (S, S), structure: &Structure) -> (S, S) {
     let signal = &structure.formats.signal;
     ((cos * rho).quantise(signal), (sin * rho).quantise(signal))
 }
 
-/// By θ1 … θ5 in the final form: Mᵀ n ρ. The last is 0 without phase.
+/// By θ1 … θ5 in the final form: Mᵀ n ρ. The last is 0 without phase. While the start runs, by δ1 … δ5 of a pair of
+/// amplitude 1.
 pub fn linear<S: Signal>(
     seen: &Seen<S>,
     k: &Coefficients<S>,
     structure: &Structure,
 ) -> [S::Wide; 5] {
-    let ((y_c, y_s), (rho_c, rho_s)) = (seen.y, seen.along);
+    let ((mut y_c, mut y_s), (rho_c, rho_s)) = (seen.y, seen.along);
+    if let Some(start) = &seen.start {
+        let (cos, sin) = start.direction;
+        y_c = S::select(start.running, cos, y_c).named("m_c");
+        y_s = S::select(start.running, sin, y_s).named("m_s");
+    }
     let fifth = if structure.has_phase() {
         y_c * rho_s
     } else {

@@ -9,6 +9,8 @@ pub mod coefficients;
 pub mod completion;
 pub mod correction;
 pub mod detector;
+pub mod gather;
+pub mod gears;
 pub mod gradient;
 pub mod lock;
 pub mod loop_filter;
@@ -16,6 +18,7 @@ pub mod position;
 pub mod sample;
 pub mod sensitivity;
 pub mod sine;
+pub mod start;
 pub mod state;
 pub mod sum_of_squares;
 pub mod travel;
@@ -50,6 +53,8 @@ pub struct Structure {
     pub parameters: u32,
     /// Which gradient moves them.
     pub gradient: CalibrationMethod,
+    /// The first periods of travel are solved by least squares.
+    pub least_squares_start: bool,
     /// λ = 1 − 2^-`forgetting` of the sum of squares.
     pub forgetting: u32,
     /// γ = 2^-that of the direction that no radius shows; `None`: it is not learnt.
@@ -79,15 +84,21 @@ impl Structure {
         matches!(self.parameters, 5 | 9)
     }
 
-    /// Neither bends nor another gradient than the final form.
+    /// Neither bends, nor another gradient than the final form, nor another start than its gears.
     #[must_use]
     pub fn is_plain(&self) -> bool {
-        !self.has_bend() && self.gradient == CalibrationMethod::Final
+        !self.has_bend() && self.gradient == CalibrationMethod::Final && !self.least_squares_start
     }
 
-    /// The sum of squares, gathered over samples, moves the parameters.
+    /// Gradients are gathered over samples: by the search or by its start.
     #[must_use]
     pub fn gathers(&self) -> bool {
+        self.squares() || self.least_squares_start
+    }
+
+    /// The sum of squares moves the parameters.
+    #[must_use]
+    pub fn squares(&self) -> bool {
         self.parameters > 0
             && matches!(
                 self.gradient,
@@ -133,10 +144,12 @@ pub struct Formats {
     pub deviation: [Quantiser; 9],
     /// ∇α̂ of recursion (11) and its increment, radians.
     pub alpha_gradient: Quantiser,
-    /// Gathered gradient of the sum of squares.
+    /// Gathered gradient of the sum of squares, or of the start.
     pub gathered: Quantiser,
     /// Samples in a period of travel.
     pub travel_samples: Format,
+    /// Periods solved by least squares.
+    pub start_periods: Format,
     /// One step of any parameter: one format, so that one shifter serves all.
     pub step: Quantiser,
     /// Lock level.

@@ -2,8 +2,8 @@
 
 use super::{Coefficients, Input, Method, Probes, State, Structure};
 use super::{
-    bend, calibration, completion, correction, detector, gradient, lock, loop_filter, position,
-    sine, sum_of_squares, travel,
+    bend, calibration, completion, correction, detector, gears, gradient, lock, loop_filter,
+    position, sine, start, sum_of_squares, travel,
 };
 use crate::format::Quantiser;
 use crate::signal::{Formula, Logic, Signal};
@@ -77,24 +77,41 @@ fn advance_of<S: Signal, const PLAIN: bool>(
     let position = position::advance(rate, flip, input.preset, state, k, structure);
     let direction = position::direction(rate, state.direction, k);
 
-    let counting = state.locked.and(input.calibrate).named("counting");
-    let travel = travel::travel(counting, state, k, structure);
+    let counting = travel::counting(input, state);
+    let starting = (!PLAIN && structure.least_squares_start).then(|| start::running(state, k));
+    let measure = starting.map(|running| start::measure(e, running, k));
+    let travel = travel::travel(counting, measure, state, k, structure);
     let fresh = counting.and(in_window).and(travel.new_sector);
-    let (rho_c, rho_s) = if !PLAIN && structure.gathers() {
+    let estimate = (cos_hat, sin_hat);
+    let mut polar = None;
+    let (rho_c, rho_s) = if !PLAIN && structure.squares() {
         let epsilon = sum_of_squares::half_square(c, s, k.half, structure);
-        gradient::along(epsilon, (c, s), structure)
+        gradient::along(gradient::limited(epsilon, structure), (c, s), structure)
     } else {
-        gradient::along(rho, (cos_hat, sin_hat), structure)
+        let limited = gradient::limited(rho, structure);
+        polar = starting
+            .map(|running| start::polar((rho, limited, e), estimate, running, &travel, structure));
+        let (rho, along) = match &polar {
+            Some(polar) => (polar.residual, polar.direction),
+            None => (limited, estimate),
+        };
+        gradient::along(rho, along, structure)
     };
     let seen = gradient::Seen {
         y: (y_c, y_s),
-        estimate: (cos_hat, sin_hat),
+        estimate,
         e,
         rho,
         along: (rho_c, rho_s),
+        theta,
+        start: polar,
     };
-    let whole = travel.whole_period;
-    let mut updated = calibration::update::<S, PLAIN>(&seen, fresh, whole, state, k, structure);
+    let gate = calibration::Gate {
+        fresh,
+        whole_period: travel.whole_period,
+        clear: travel.clear,
+    };
+    let mut updated = calibration::update::<S, PLAIN>(&seen, gate, state, k, structure);
     let completion = if PLAIN { None } else { structure.completion };
     let completed = completion.map(|_| {
         // What fades or is not yet calibrated along the radius teaches nothing across it.
@@ -106,7 +123,7 @@ fn advance_of<S: Signal, const PLAIN: bool>(
         updated.theta[8] =
             (state.theta_9_deviation - completed.step).quantise(&structure.formats.deviation[8]);
     }
-    let gears = calibration::gears(rho, fresh, travel.whole_period, state, k, structure);
+    let gears = gears::gears(rho, gate, starting, state, k, structure);
 
     rate.begin(&FLAGS);
     let lost = state
@@ -153,6 +170,7 @@ fn advance_of<S: Signal, const PLAIN: bool>(
     registers.disturbed = gears.disturbed;
     if !PLAIN {
         remember(registers, &updated, completed.as_ref());
+        registers.start_periods = updated.start_periods;
     }
     let [theta_1, theta_2, theta_3, theta_4, theta_5] = theta;
     let whole_period = travel.whole_period;

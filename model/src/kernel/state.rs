@@ -95,6 +95,8 @@ bundle! {
         gathered_5,
         /// Samples since the last whole period of travel.
         travel_samples,
+        /// Periods of travel that the start has solved.
+        start_periods,
     } {
         /// The loop follows.
         locked,

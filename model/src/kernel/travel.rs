@@ -6,7 +6,7 @@
 //! arc adds nothing, standstill adds nothing, and a whole period of travel adds every sector exactly once, so the
 //! parameters are pulled equally from all sides.
 
-use super::{Coefficients, State, Structure};
+use super::{Coefficients, Input, State, Structure};
 use crate::format::{Format, Quantiser};
 use crate::signal::{Formula, Logic, Signal};
 
@@ -21,12 +21,31 @@ static TRAVEL: Formula = Formula {
     source: "paper section 5.5: static measurements may bias the estimates",
 };
 
+/// How the start measures travel.
+#[derive(Clone, Copy, Debug)]
+pub struct Measure<S> {
+    /// What the angle that crosses sectors is ahead of α̂, turns.
+    pub ahead: S,
+    /// Travel that is taken for a whole period.
+    pub period: S,
+}
+
+/// Calibration is allowed, from outside and by the lock.
+pub fn counting<S: Signal>(input: &Input<S>, state: &State<S>) -> S::Bool {
+    state.alpha_hat.begin(&TRAVEL);
+    state.locked.and(input.calibrate).named("counting")
+}
+
 /// What the travel gate decides and remembers.
 pub struct Travel<S: Signal> {
     /// This sample is in a sector not used yet.
     pub new_sector: S::Bool,
     /// The position is a whole period from the origin.
     pub whole_period: S::Bool,
+    /// The map is cleared: a whole period is done, or nothing counts.
+    pub clear: S::Bool,
+    /// How far this sample is outside the sectors used; where it ends a period, how much of the period was not used.
+    pub advance: S,
     /// Where the map was cleared.
     pub origin: S,
     /// Lowest sector used, relative to the origin.
@@ -35,9 +54,11 @@ pub struct Travel<S: Signal> {
     pub high: S,
 }
 
-/// Whether this sample's sector is fresh, and the map after it. Not counting (`counting` false) clears the map.
+/// Whether this sample's sector is fresh, and the map after it. Not counting (`counting` false) clears the map. `measure`: where
+/// travel is measured otherwise than in whole periods of α̂.
 pub fn travel<S: Signal>(
     counting: S::Bool,
+    measure: Option<Measure<S>>,
     state: &State<S>,
     k: &Coefficients<S>,
     structure: &Structure,
@@ -50,13 +71,20 @@ pub fn travel<S: Signal>(
         .quantise(&low_bits)
         .scale(count.fraction as i32)
         .named("periods_modulo_4");
-    let sector_grid = Quantiser::grid(Format::unsigned(SECTOR_BITS, SECTOR_BITS));
-    let sector = (periods + state.alpha_hat.quantise(&sector_grid)).named("sector");
+    let sector = match measure {
+        None => {
+            let sector_grid = Quantiser::grid(Format::unsigned(SECTOR_BITS, SECTOR_BITS));
+            periods + state.alpha_hat.quantise(&sector_grid)
+        }
+        Some(of) => (periods + state.alpha_hat + of.ahead).quantise(&Quantiser::grid(SECTOR)),
+    }
+    .named("sector");
     let relative = (sector - state.travel_origin)
         .quantise(&Quantiser::wrapping(SECTOR))
         .named("sector_relative");
-    let period_ahead = relative.less_than(k.one).not();
-    let period_behind = (-k.one).less_than(relative).not();
+    let period = measure.map_or(k.one, |of| of.period);
+    let period_ahead = relative.less_than(period).not();
+    let period_behind = (-period).less_than(relative).not();
     let whole_period = period_ahead.or(period_behind).and(counting);
     let ahead = state
         .travel_high
@@ -72,6 +100,16 @@ pub fn travel<S: Signal>(
     Travel {
         new_sector: ahead.or(behind).or(clear),
         whole_period,
+        clear,
+        advance: S::select(
+            whole_period,
+            k.one - state.travel_high + state.travel_low,
+            S::select(
+                state.travel_high.less_than(relative),
+                relative - state.travel_high,
+                state.travel_low - relative,
+            ),
+        ),
         origin: keep(S::select(clear, sector, state.travel_origin)),
         low: keep(S::select(
             clear,

@@ -125,6 +125,9 @@ pub struct Calibration {
     /// Which gradient moves them.
     #[serde(default)]
     pub method: CalibrationMethod,
+    /// How the search begins after lock.
+    #[serde(default)]
+    pub start: CalibrationStart,
     /// The mean gradient of `sum_of_squares` forgets 2^-`forgetting` of itself with each sample: λ = 1 − 2^-`forgetting`.
     #[serde(default = "forgetting")]
     pub forgetting: u32,
@@ -202,11 +205,23 @@ pub enum CalibrationMethod {
     Batch,
 }
 
+/// How the calibration begins after lock, and again where the residual shows that the signal has changed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum CalibrationStart {
+    /// With the largest γ.
+    #[default]
+    Gears,
+    /// Θ by linearised least squares over each of the first two periods of travel, then the gears.
+    LeastSquares,
+}
+
 impl Default for Calibration {
     fn default() -> Self {
         Self {
             parameters: five(),
             method: CalibrationMethod::default(),
+            start: CalibrationStart::default(),
             forgetting: forgetting(),
             completion: yes(),
             completion_gamma: completion_gamma(),
@@ -262,7 +277,10 @@ impl Default for Chip {
 
 /// How many multipliers the chip may use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(untagged)]
+#[serde(
+    untagged,
+    expecting = "multipliers are a whole number from 1, or \"all\""
+)]
 pub enum Multipliers {
     /// So many.
     Count(u32),

@@ -60,6 +60,7 @@ fn known(section: &str) -> Option<&'static [&'static str]> {
         "calibration" => &[
             "parameters",
             "method",
+            "start",
             "forgetting",
             "completion",
             "completion_gamma",

@@ -36,8 +36,8 @@ impl Reading for Chip<Bits> {
     fn registers(&self) -> State<f64> {
         let s = &self.state;
         State::build(
-            |name| s.value(name).unwrap().to_f64(),
-            |name| s.flag(name).unwrap(),
+            |name| s.value(name).expect("there is one").to_f64(),
+            |name| s.flag(name).expect("there is one"),
         )
     }
 }
@@ -78,7 +78,7 @@ fn theta(design: &Design, registers: &State<f64>) -> Theta {
 /// The reference in the state that the chip is in.
 fn reference(design: &Design, registers: &State<f64>, position: f64) -> Reference {
     let spec = &design.spec;
-    let tracking = from_spec::tracking(spec).unwrap();
+    let tracking = from_spec::tracking(spec).expect("a design that the paper knows");
     let rate = match design.structure.method {
         Method::One => wrapped(registers.alpha_hat - registers.alpha_hat_previous),
         Method::Two | Method::Three => registers.rate,
@@ -102,7 +102,7 @@ fn reference(design: &Design, registers: &State<f64>, position: f64) -> Referenc
         },
         ..Config::paper(parameters, tracking, 0.0)
     })
-    .unwrap()
+    .expect("there is one")
 }
 
 /// Largest differences between chip and reference; in turns for the angle.

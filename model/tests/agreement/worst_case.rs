@@ -66,7 +66,8 @@ impl WorstCase {
 
 /// Σ |h| of the closed loop from e to α̂: the most that a bounded disturbance of e can do.
 fn amplification(design: &Design) -> f64 {
-    let mut tracking = Loop::new(from_spec::tracking(&design.spec).unwrap());
+    let mut tracking =
+        Loop::new(from_spec::tracking(&design.spec).expect("a design that the paper knows"));
     (0..(60.0 / design.tracking.omega) as u32)
         .map(|k| {
             let disturbance = if k == 0 { 1.0 } else { 0.0 };

@@ -125,3 +125,51 @@ pub(crate) fn rms(error: &[f64]) -> f64 {
 pub(crate) fn largest(error: &[f64]) -> f64 {
     error.iter().fold(0.0, |m, e| m.max(e.abs()))
 }
+
+/// Offsets 10 %, gain ratio 1.2, β = 5°, with these signs.
+pub(crate) fn sensor(signs: u32) -> impl Fn(f64) -> (f64, f64) {
+    let sign = move |bit: u32| if signs >> bit & 1 == 0 { 1.0 } else { -1.0 };
+    let ratio = 1.2f64.powf(0.5 * sign(0));
+    let beta = 5f64.to_radians() * sign(3);
+    move |alpha: f64| {
+        (
+            ratio * alpha.cos() + 0.1 * sign(1),
+            (alpha - beta).sin() / ratio + 0.1 * sign(2),
+        )
+    }
+}
+
+/// Largest share of the first miscalibration that is left after 1, 2, … `periods` periods of travel in lock, over all
+/// signs, at 64 samples a period; percent.
+pub(crate) fn course(spec: &Spec, periods: usize) -> Vec<f64> {
+    let mut worst = vec![0.0f64; periods];
+    for signs in 0..16 {
+        let signals = sensor(signs);
+        let mut bench = Bench::new(spec, u64::from(signs));
+        let before = rms(&bench.miscalibration(&signals));
+        let (mut locked, mut k) = (0, 0);
+        while locked < periods * 64 {
+            // A little off 64 a period, so that the sectors are not always met at the same places.
+            bench.step(signals(TAU / 64.37 * f64::from(k)));
+            k += 1;
+            assert!(k < 20_000, "never locked");
+            if bench.chip.state.locked {
+                locked += 1;
+                if locked % 64 == 0 {
+                    let left = rms(&bench.miscalibration(&signals)) / before;
+                    let worst = &mut worst[locked / 64 - 1];
+                    *worst = worst.max(100.0 * left);
+                }
+            }
+        }
+    }
+    worst
+}
+
+/// The optical design at 64 samples a period: 12 bits, 0.1 % noise, a loop that follows.
+pub(crate) fn fast() -> Spec {
+    let mut spec = optical();
+    spec.tracking.bandwidth_hz = 20e3;
+    spec.accuracy.rms_periods = 200e-6;
+    spec
+}

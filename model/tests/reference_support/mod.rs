@@ -14,8 +14,9 @@ pub(crate) const TS: f64 = 1e-5;
 
 /// A loop of this ω0 ts with damping 1/√2.
 pub(crate) fn type_2(omega_ts: f64) -> LoopConfig {
-    let poles = Poles::new(omega_ts / TS, std::f64::consts::FRAC_1_SQRT_2, TS).unwrap();
-    LoopConfig::new(Method::Three(FilterType::Two), &poles, TS).unwrap()
+    let poles = Poles::new(omega_ts / TS, std::f64::consts::FRAC_1_SQRT_2, TS)
+        .expect("poles inside the unit circle");
+    LoopConfig::new(Method::Three(FilterType::Two), &poles, TS).expect("the paper builds it")
 }
 
 /// Miscalibrated by everything that equation (4) knows: offsets 10 %, gain ratio 1.2, β 5°.

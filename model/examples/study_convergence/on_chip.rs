@@ -1,0 +1,113 @@
+//! The bit-true chips of the comparison.
+
+use std::f64::consts::TAU;
+
+use nonius_model::bits::Bits;
+use nonius_model::chip::Chip;
+use nonius_model::design::Design;
+use nonius_model::physical::{self, Converter};
+use nonius_model::reference::{Parameters, Theta};
+use nonius_model::spec::CalibrationMethod::{self, Batch, Exact, Final, SumOfSquares};
+use nonius_model::spec::CalibrationStart::{self, Gears, LeastSquares};
+use nonius_model::spec::Spec;
+
+use super::method::{Correction, Said};
+
+/// The bit-true chip of a design.
+pub(crate) struct OnChip {
+    pub(crate) design: Design,
+    chip: Chip<Bits>,
+    converter: Converter,
+}
+
+/// Name, method, start, completion, parameters.
+const CHIPS: [(&str, CalibrationMethod, CalibrationStart, bool, &[u32]); 8] = [
+    ("final form", Final, Gears, false, &[4, 5]),
+    ("sum of squares", SumOfSquares, Gears, false, &[4, 5]),
+    ("batch", Batch, Gears, false, &[4, 5]),
+    ("exact", Exact, Gears, false, &[4, 5]),
+    ("started", Final, LeastSquares, false, &[4, 5]),
+    ("radius alone", Final, Gears, false, &[8, 9]),
+    ("completed", Final, Gears, true, &[8, 9]),
+    ("completed, started", Final, LeastSquares, true, &[9]),
+];
+
+/// Every calibration that the design can be built with.
+pub(crate) fn all(base: &Spec) -> impl Iterator<Item = (String, OnChip)> {
+    CHIPS
+        .iter()
+        .flat_map(move |(name, method, start, completion, sets)| {
+            sets.iter().filter_map(move |&parameters| {
+                let mut spec = base.clone();
+                spec.calibration.method = *method;
+                spec.calibration.start = *start;
+                spec.calibration.completion = *completion;
+                spec.calibration.parameters = parameters;
+                let set = match parameters {
+                    4 => "four",
+                    5 => "five",
+                    8 => "eight",
+                    _ => "nine",
+                };
+                let design = Design::new(&spec).ok()?;
+                Some((format!("chip, {name}, {set}"), OnChip::of(design)))
+            })
+        })
+}
+
+impl OnChip {
+    pub(crate) fn of(design: Design) -> Self {
+        Self {
+            chip: Chip::bit_true(&design),
+            converter: Converter::of(&design.spec),
+            design,
+        }
+    }
+
+    /// Takes one sample; the amplitude of y is 1.
+    pub(crate) fn step(&mut self, y: [f64; 2]) -> Said {
+        let spec = &self.design.spec;
+        let (middle, amplitude) = (spec.adc.middle, spec.sensor.amplitude);
+        let bent = spec.calibration.parameters >= 8;
+        // For signals of amplitude 1 about 0, from those in volts.
+        let [one, two, three, four, five, bends @ ..] = physical::theta(spec, self.chip.theta());
+        let (cross, shift) = if bent {
+            (five, three)
+        } else {
+            (five * amplitude, three + five)
+        };
+        let linear = [
+            one * amplitude,
+            two + one * middle,
+            three * amplitude,
+            four + shift * middle,
+            cross,
+        ];
+        let mut theta = Theta::zeros();
+        for (to, from) in theta.iter_mut().zip(linear.into_iter().chain(bends)) {
+            *to = from;
+        }
+        let said = Said {
+            alpha_hat: self.chip.position() * TAU,
+            correction: if bent {
+                Correction::Bent
+            } else {
+                Correction::Paper(Parameters::Five)
+            },
+            theta,
+        };
+        let [cos, sin] = y.map(|y| self.converter.code(middle + amplitude * y));
+        self.chip.step_codes(cos, sin, false, true);
+        said
+    }
+}
+
+/// The chip's correction with bends, in plain `f64` (see docs/on-line-calibration.md).
+pub(crate) fn bent(theta: &Theta, [y_c, y_s]: [f64; 2]) -> [f64; 2] {
+    let (u, v) = (theta[0] * y_c + theta[1], theta[2] * y_s + theta[3]);
+    let second = |u: f64| 2.0 * u * u - 1.0;
+    let third = |u: f64| 4.0 * u * u * u - 3.0 * u;
+    let c = u + theta[5] * second(u) + theta[7] * third(u) + theta[8] * (third(u) - u);
+    let s = v + theta[6] * second(v) + theta[7] * third(v) - theta[8] * (third(v) - v);
+    [c, s + theta[4] * c]
+}

@@ -1,0 +1,91 @@
+//! Lock and calibration at speeds commensurate with the sample rate, down to four samples a period.
+
+mod chip_support;
+
+use std::f64::consts::TAU;
+
+use chip_support::{Bench, fast, rms, sensor};
+use nonius_model::spec::Spec;
+
+/// Speeds of exactly 5, 8 and 64 samples a period neither stall nor bias the calibration.
+#[test]
+fn commensurate_speeds_calibrate() {
+    for per_period in [5, 8, 64] {
+        for signs in [3, 9] {
+            let signals = sensor(signs);
+            let mut bench = Bench::new(&up_to(5.0, 20e3), 3);
+            for k in 0..6000 * per_period {
+                bench.step(signals(
+                    TAU * (f64::from(k) / f64::from(per_period) + 0.013),
+                ));
+            }
+            let left = rms(&bench.miscalibration(&signals));
+            println!(
+                "{per_period} samples a period, signs {signs}: {left:.2e} rad rms left, locked {}",
+                bench.chip.state.locked
+            );
+            assert!(bench.chip.state.locked && left < 1e-3, "{left}");
+        }
+    }
+}
+
+/// A design for so many samples a period at top speed.
+fn up_to(per_period: f64, bandwidth: f64) -> Spec {
+    let mut spec = fast();
+    spec.accuracy.rms_periods = 1e-3;
+    spec.tracking.bandwidth_hz = bandwidth;
+    spec.sensor.speed_max_periods_per_s = spec.adc.sample_rate_hz / per_period;
+    spec
+}
+
+/// From rest, not yet calibrated, into any speed that the design promises: the loop locks.
+#[test]
+fn locks_from_rest_at_any_promised_speed() {
+    for bandwidth in [5e3, 10e3, 20e3, 40e3, 60e3, 100e3] {
+        let spec = up_to(4.0, bandwidth);
+        let mut latest = 0;
+        for per_period in [4.0, 4.1, 5.0, 5.5, 6.0, 6.1, 7.0, 8.0, 20.0] {
+            for (signs, place) in (0..16).flat_map(|s| (0..4).map(move |p| (s, f64::from(p) / 4.0)))
+            {
+                let signals = sensor(signs);
+                let mut bench = Bench::new(&spec, u64::from(signs));
+                let locked = (0..2000).find(|&k| {
+                    bench.step(signals(TAU * (f64::from(k) / per_period + place)));
+                    bench.chip.state.locked
+                });
+                latest = latest.max(locked.unwrap_or_else(|| {
+                    panic!("{per_period} samples a period, loop {bandwidth} Hz, signs {signs}, from {place}: no lock")
+                }));
+            }
+        }
+        println!("loop {bandwidth} Hz: locked after at most {latest} samples");
+    }
+}
+
+/// Four samples a period show four places of the period, which cannot tell all five parameters: what they tell stays, and
+/// nothing drives the rest. A quarter of a million periods after calibration.
+#[test]
+fn four_samples_a_period_leave_the_parameters() {
+    for signs in [3, 9] {
+        for place in [0.0, 0.07, 0.125] {
+            let signals = sensor(signs);
+            let mut bench = Bench::new(&up_to(4.0, 20e3), 3);
+            let mut turns = place;
+            for k in 0..40_000 {
+                turns += (f64::from(k) / 20_000.0).min(1.0) / 8.0;
+                bench.step(signals(TAU * turns));
+            }
+            let before = rms(&bench.miscalibration(&signals));
+            for k in 0..1_000_000 {
+                turns += 0.125 + (f64::from(k) / 20_000.0).min(1.0) / 8.0;
+                turns -= turns.floor();
+                bench.step(signals(TAU * turns));
+            }
+            let after = rms(&bench.miscalibration(&signals));
+            println!(
+                "4 samples a period, signs {signs}, place {place}: {before:.1e} -> {after:.1e} rad rms"
+            );
+            assert!(bench.chip.state.locked && after < 1e-3, "{after}");
+        }
+    }
+}

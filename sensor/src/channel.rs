@@ -1,0 +1,148 @@
+//! What causes do to a channel at a moment.
+
+use std::f64::consts::TAU;
+
+use crate::cause::Cause;
+use crate::sensor::Sensor;
+
+/// A moment of the recording.
+pub(crate) struct Moment {
+    pub(crate) alpha: f64,
+    pub(crate) time: f64,
+    pub(crate) whole: f64,
+    pub(crate) speed: f64,
+}
+
+/// Part of the amplitude of both channels.
+pub(crate) fn of_both(cause: &Cause, time: f64, phi: f64) -> f64 {
+    match *cause {
+        Cause::AmplitudeRipple {
+            frequency_hz,
+            depth,
+            phase,
+        } => depth * (TAU * frequency_hz * time + phase).cos(),
+        Cause::Runout {
+            order,
+            depth,
+            phase,
+        } => depth * (order * phi + phase).cos(),
+        Cause::Contamination {
+            depth,
+            place,
+            width,
+        } => {
+            let off = (phi - place + TAU / 2.0).rem_euclid(TAU) - TAU / 2.0;
+            -depth * (-0.5 * (off / width).powi(2)).exp()
+        }
+        _ => 0.0,
+    }
+}
+
+/// What is added to a channel y, in its amplitudes.
+pub(crate) fn of_one(cause: &Cause, which: usize, y: f64, at: &Moment) -> f64 {
+    let of = |cos: f64, sin: f64| if which == 0 { cos } else { sin };
+    match *cause {
+        Cause::EvenNonlinearity { k_cos, k_sin } => of(k_cos, k_sin) * y * y,
+        Cause::OddNonlinearity { k_cos, k_sin } => of(k_cos, k_sin) * y * y * y,
+        Cause::SpatialHarmonic {
+            order,
+            amplitude_cos,
+            phase_cos,
+            amplitude_sin,
+            phase_sin,
+        } => of(amplitude_cos, amplitude_sin) * (order * at.alpha + of(phase_cos, phase_sin)).cos(),
+        Cause::Saturation {
+            threshold,
+            compression,
+            compression_upper,
+            compression_lower,
+            compression_cos_upper,
+            compression_cos_lower,
+            compression_sin_upper,
+            compression_sin_lower,
+        } => {
+            let (of_rail, of_both) = if y > 0.0 {
+                (
+                    [compression_cos_upper, compression_sin_upper],
+                    compression_upper,
+                )
+            } else {
+                (
+                    [compression_cos_lower, compression_sin_lower],
+                    compression_lower,
+                )
+            };
+            let compression = of_rail[which].or(of_both).unwrap_or(compression);
+            -compression * (y.abs() - threshold).max(0.0) * y.signum()
+        }
+        Cause::Hysteresis {
+            offset_cos,
+            offset_sin,
+        } => of(offset_cos, offset_sin) * at.speed.signum(),
+        Cause::Interference {
+            frequency_hz,
+            amplitude_cos,
+            phase_cos,
+            amplitude_sin,
+            phase_sin,
+            amplitude_cos_2,
+            phase_cos_2,
+            amplitude_sin_2,
+            phase_sin_2,
+            amplitude_cos_3,
+            phase_cos_3,
+            amplitude_sin_3,
+            phase_sin_3,
+        } => [
+            (of(amplitude_cos, amplitude_sin), of(phase_cos, phase_sin)),
+            (
+                of(amplitude_cos_2, amplitude_sin_2),
+                of(phase_cos_2, phase_sin_2),
+            ),
+            (
+                of(amplitude_cos_3, amplitude_sin_3),
+                of(phase_cos_3, phase_sin_3),
+            ),
+        ]
+        .iter()
+        .zip(1..)
+        .map(|((amplitude, phase), harmonic)| {
+            let turns = f64::from(harmonic) * frequency_hz * at.time;
+            amplitude * (TAU * turns + phase).cos()
+        })
+        .sum(),
+        Cause::OffsetDrift {
+            change_cos,
+            change_sin,
+        } => of(change_cos, change_sin) * (at.time / at.whole - 0.5),
+        Cause::GainDrift {
+            change_cos,
+            change_sin,
+        } => y * of(change_cos, change_sin) * (at.time / at.whole - 0.5),
+        _ => 0.0,
+    }
+}
+
+impl Sensor {
+    /// What a channel has of the other, in amplitudes.
+    pub(crate) fn of_other(&self, cause: &Cause, which: usize, at: &Moment) -> f64 {
+        let Cause::DelayedCrosstalk {
+            product_into_cos_s,
+            product_into_sin_s,
+            delay_s,
+        } = *cause
+        else {
+            return 0.0;
+        };
+        let product = [product_into_cos_s, product_into_sin_s][which];
+        let beta = self.signals.beta;
+        let other = |alpha: f64| [(alpha - beta).sin(), alpha.cos()][which];
+        let slope = [(at.alpha - beta).cos(), -at.alpha.sin()][which];
+        if delay_s == 0.0 {
+            -product * at.speed * slope
+        } else {
+            // The part that is not delayed stands in gain and phase.
+            product * (other(at.alpha - at.speed * delay_s) - other(at.alpha)) / delay_s
+        }
+    }
+}
