@@ -71,13 +71,15 @@ impl Dependence<'_> {
         let context = self.context;
         let when = k as f64 / context.samples() as f64;
         let fast = context.speed[k].abs() / self.top;
-        for i in 0..KNOTS[0] {
-            out[i] = hat(KNOTS[0], i, when);
+        let (in_time, rest) = out.split_at_mut(KNOTS[0]);
+        let (over_speeds, waves) = rest.split_at_mut(KNOTS[1]);
+        for (i, o) in in_time.iter_mut().enumerate() {
+            *o = hat(KNOTS[0], i, when);
         }
-        for i in 0..KNOTS[1] {
-            out[KNOTS[0] + i] = hat(KNOTS[1], i, fast);
+        for (i, o) in over_speeds.iter_mut().enumerate() {
+            *o = hat(KNOTS[1], i, fast);
         }
-        let waves = out[KNOTS[0] + KNOTS[1]..].chunks_mut(2);
+        let waves = waves.chunks_mut(2);
         for (pair, order) in waves.zip(ORDERS) {
             let (sin, cos) = (order * context.alpha[k]).sin_cos();
             pair.copy_from_slice(&[cos, sin]);

@@ -25,12 +25,12 @@ pub(crate) fn repair(recording: &Recording, checked: &Checked) -> Repaired {
     let (mut places, mut sources) = (Vec::with_capacity(n), vec![]);
     let mut next = checked.gaps.iter().peekable();
     let mut last = 0;
-    for k in 0..n {
+    for (k, kept) in kept.iter().enumerate() {
         if let Some((_, missing)) = next.next_if(|g| g.0 == k) {
             let share = |i: usize| i as f64 / (*missing + 1) as f64;
             sources.extend((1..=*missing).map(|i| (last, k, share(i))));
         }
-        if kept[k] {
+        if *kept {
             sources.push((k, k, 0.0));
             last = k;
         }

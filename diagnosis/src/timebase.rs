@@ -167,13 +167,13 @@ fn step_weights(side: usize, order: i32) -> Vec<f64> {
 /// Lays straight lines over samples that do not count.
 fn bridge(values: &mut [f64], weight: &[f64]) {
     let mut last = 0;
-    for k in 1..values.len() {
-        if weight[k] == 0.0 {
+    for (k, weight) in weight.iter().enumerate().skip(1) {
+        if *weight == 0.0 {
             continue;
         }
         let (from, by) = (values[last], values[k] - values[last]);
-        for j in last + 1..k {
-            values[j] = from + by * (j - last) as f64 / (k - last) as f64;
+        for (i, value) in values[last + 1..k].iter_mut().enumerate() {
+            *value = from + by * (i + 1) as f64 / (k - last) as f64;
         }
         last = k;
     }
