@@ -12,7 +12,7 @@ use crate::selection::{Accepted, Unnamed};
 use crate::statistics::{after_trials, log_tail};
 
 /// A cause must hold this share of what a generic basis of its domain explains.
-const HOLDS: f64 = 0.75;
+pub(crate) const HOLDS: f64 = 0.75;
 /// A drift must hold more: steps and bursts are mostly slow, too.
 const SLOWLY: f64 = 0.9;
 /// Gain in log-likelihood (an SNR of 300) from which on a choice between causes is made where tangents are exact.

@@ -167,7 +167,7 @@ fn conclude(
     let all = [selection.base.shapes.as_slice(), &extended.fit.shapes].concat();
     let halves = system.halves(&all);
     let mut findings = checked.findings.clone();
-    let named = selection.findings(&extended, system, &halves);
+    let named = extended.findings(system, &halves);
     let left = system.residual(&selection.fit);
     // Only what is noise can be noise of a kind.
     let (mut noisy, strange) = if selection.unnamed.is_empty() {

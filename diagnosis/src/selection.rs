@@ -1,6 +1,7 @@
 //! The end of the search: what was accepted, as findings.
 
 use crate::cause::{Candidate, Estimate};
+use crate::contender::HOLDS;
 use crate::exact::Start;
 use crate::finding::{Finding, Gain};
 use crate::model::{Fit, Halves, System, amounts};
@@ -17,6 +18,17 @@ pub(crate) struct Accepted {
     pub(crate) x: Vec<f64>,
     /// Standard errors of inner numbers, where they were fitted.
     pub(crate) inner_error: Option<Vec<f64>>,
+    /// What is left of it beside the others and what has no name, in the end.
+    pub(crate) own: Own,
+}
+
+/// What a cause explains that nothing else explains.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Own {
+    /// Gain in log-likelihood.
+    gain: f64,
+    /// Log of the probability of that by chance, after all trials.
+    log_p: f64,
 }
 
 impl Accepted {
@@ -27,6 +39,7 @@ impl Accepted {
             confounded: vec![],
             x: vec![0.0; candidate.shapes.len()],
             inner_error: None,
+            own: Own::default(),
             candidate,
         }
     }
@@ -40,6 +53,13 @@ impl Accepted {
     pub(crate) fn range(&self) -> std::ops::Range<usize> {
         self.first..self.first + self.candidate.shapes.len()
     }
+}
+
+/// The fit anew without the shapes of a range.
+fn without(fit: &Fit, range: &std::ops::Range<usize>, system: &System) -> Fit {
+    let shapes = fit.shapes.iter().enumerate();
+    let others = shapes.filter(|(k, _)| !range.contains(k));
+    system.fit(others.map(|(_, s)| s.clone()).collect())
 }
 
 /// What cannot be named.
@@ -62,9 +82,38 @@ pub(crate) struct Selection {
 }
 
 impl Selection {
-    /// The model that can be simulated: the five parameters and the causes that have a name, without the shapes that stand
-    /// in for what has none. Those would make anything look explained.
+    /// The model that can be simulated: the five parameters and the causes that are findings, without the shapes that stand
+    /// in for what has no name. Those would make anything look explained.
     pub(crate) fn named(&self, system: &System) -> Self {
+        let names = self.with_names_alone(system);
+        let mut shapes = self.base.shapes.clone();
+        let mut accepted = vec![];
+        for (one, alone) in self.accepted.iter().zip(&names.accepted) {
+            let Some(own) = self
+                .own(one, system)
+                .or_else(|| self.held(&names, alone, system))
+            else {
+                continue;
+            };
+            let first = shapes.len();
+            shapes.extend(one.candidate.shapes.iter().cloned());
+            accepted.push(Accepted {
+                first,
+                own,
+                ..one.clone()
+            });
+        }
+        Self {
+            fit: system.fit(shapes),
+            base: self.base.clone(),
+            accepted,
+            unnamed: vec![],
+            again: vec![],
+        }
+    }
+
+    /// Everything that was accepted, without the shapes that stand in for what has no name.
+    fn with_names_alone(&self, system: &System) -> Self {
         let mut shapes = self.base.shapes.clone();
         let mut accepted = self.accepted.clone();
         for one in &mut accepted {
@@ -80,16 +129,30 @@ impl Selection {
         }
     }
 
-    /// The findings, the one that explains most first; their numbers are those of the model that can be simulated.
-    pub(crate) fn findings(&self, named: &Self, system: &System, halves: &Halves) -> Vec<Finding> {
+    /// The same where what has no name spans the cause too, as every harmonic of the period does: the cause is a finding if
+    /// it holds its share of what it and all that has no name explain together.
+    fn held(&self, names: &Self, accepted: &Accepted, system: &System) -> Option<Own> {
+        let own = names.own(accepted, system)?;
+        let more = self.fit.solution.gain() - names.fit.solution.gain();
+        (own.gain >= HOLDS * (own.gain + more)).then_some(own)
+    }
+
+    /// What a cause explains; nothing where the others and what has no name explain it as well in the end: it is no finding.
+    fn own(&self, accepted: &Accepted, system: &System) -> Option<Own> {
+        let others = without(&self.fit, &accepted.range(), system);
+        let gain = self.fit.solution.gain() - others.solution.gain();
+        let freedom = self.fit.solution.rank.saturating_sub(others.solution.rank);
+        let trials = accepted.candidate.trials * KINDS;
+        let log_p = after_trials(log_tail(2.0 * gain, freedom), trials);
+        (freedom > 0 && log_p <= SHOWN.ln()).then_some(Own { gain, log_p })
+    }
+
+    /// The findings of what [`Self::named`] keeps, the one that explains most first; their numbers are those of the model
+    /// that can be simulated.
+    pub(crate) fn findings(&self, system: &System, halves: &Halves) -> Vec<Finding> {
         let mut list = vec![];
-        let fit = &named.fit;
-        let less = |fit: &Fit, range: &std::ops::Range<usize>| {
-            let shapes = fit.shapes.iter().enumerate();
-            let others = shapes.filter(|(k, _)| !range.contains(k));
-            system.fit(others.map(|(_, s)| s.clone()).collect())
-        };
-        for (i, accepted) in named.accepted.iter().enumerate() {
+        let fit = &self.fit;
+        for (i, accepted) in self.accepted.iter().enumerate() {
             let range = accepted.range();
             let error: Vec<f64> = range
                 .clone()
@@ -101,17 +164,9 @@ impl Selection {
                 inner: accepted.candidate.exact.as_ref().map_or(&[], |e| &e.inner),
                 inner_error: accepted.inner_error.as_deref(),
             });
-            // What the others and what has no name explain as well in the end is no finding of its own.
-            let others = less(&self.fit, &self.accepted[i].range());
-            let gain = self.fit.solution.gain() - others.solution.gain();
-            let freedom = self.fit.solution.rank.saturating_sub(others.solution.rank);
-            let trials = accepted.candidate.trials * KINDS;
-            let log_p = after_trials(log_tail(2.0 * gain, freedom), trials);
-            if freedom == 0 || log_p > SHOWN.ln() {
-                continue;
-            }
+            let Own { gain, log_p } = accepted.own;
             let p_value = log_p.exp();
-            let without = less(fit, &range);
+            let without = without(fit, &range, system);
             let seen = (accepted.candidate.evidence)(&parameters);
             list.push(Finding {
                 cause: accepted.candidate.name.into(),
