@@ -18,6 +18,8 @@ struct Page<'a> {
     style: &'static str,
     script: &'static str,
     bars: Vec<Bar>,
+    /// The save file of the waves that were written.
+    waves: &'a str,
     files: Vec<(String, String)>,
 }
 
@@ -264,6 +266,10 @@ pub(crate) fn page(
         style: nonius_plot::STYLE,
         script: nonius_plot::SCRIPT,
         bars: bars(j),
+        waves: written
+            .iter()
+            .find(|(path, _)| path.ends_with(".gtkw"))
+            .map_or("", |(path, _)| path),
         files: files(written),
     }
     .render()
