@@ -88,7 +88,10 @@ module chip_tb;
                     waited = 1;
                     // The watchdog: a chip that hangs is late.
                     while (!valid && waited <= ${ clocks }$) begin
+                        // A strobe that comes too early must not matter either.
+                        sample_valid = sample[2:0] == 3'd5 && waited == 1;
                         @(negedge clk);
+                        sample_valid = 1'b0;
                         waited = waited + 1;
                     end
                     if (waited != ${ clocks }$) check_failed("latency", ${ clocks }$, {96'd0, waited});
@@ -98,6 +101,15 @@ module chip_tb;
 //%- endfor %//
                     if (position !== {expect_count, expect_alpha_hat[${ alpha_bits - 1 }$:0]})
                         check_failed("position", {${ 128 - count_bits - alpha_bits }$'d0, expect_count, expect_alpha_hat[${ alpha_bits - 1 }$:0]}, {${ 128 - count_bits - alpha_bits }$'d0, position});
+                    // Some samples come later than they might: until then nothing moves, and valid is one clock long.
+                    if (sample[1:0] == 2'd2) begin
+                        repeat (${ clocks }$ + 2) begin
+                            @(negedge clk);
+                            if (valid) check_failed("valid", 128'd0, 128'd1);
+                        end
+                        if (position !== {expect_count, expect_alpha_hat[${ alpha_bits - 1 }$:0]})
+                            check_failed("position", {${ 128 - count_bits - alpha_bits }$'d0, expect_count, expect_alpha_hat[${ alpha_bits - 1 }$:0]}, {${ 128 - count_bits - alpha_bits }$'d0, position});
+                    end
                     played = played + 1;
                 end
             end

@@ -136,6 +136,33 @@ fn faults() -> Vec<Fault> {
         fault("latency: a register committed one step early", |v| {
             another_last_step(v, -1)
         }),
+        fault("a chip that does not wait for samples", |v| {
+            replaced(v, &["wire start ="], " & sample_valid", "")
+        }),
+        fault("a sample that an early strobe begins anew", |v| {
+            replaced(
+                v,
+                &["wire start ="],
+                "(step == 5'd0) & sample_valid",
+                "sample_valid",
+            )
+        }),
+        fault("valid longer than a clock", |v| {
+            replaced(
+                v,
+                &["valid <= last"],
+                "last",
+                "last | (valid & (step == 5'd0) & ~sample_valid)",
+            )
+        }),
+        fault("a step counter that runs by itself", |v| {
+            replaced(
+                v,
+                &["else if (start |"],
+                "else if (start | (step != 5'd0))",
+                "else",
+            )
+        }),
         fault("last bit of the coefficient a", |v| {
             replaced(v, &["operand_", "sh1cf1c"], "sh1cf1c", "sh1cf1d")
         }),

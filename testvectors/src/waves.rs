@@ -1,4 +1,4 @@
-//! Waves of the bit-true model (VCD): the signals of the Verilog under their names, at the times of its testbench.
+//! Waves of the bit-true model (VCD): the signals of the Verilog under their names, samples as close as the chip allows.
 //!
 //! The strobes are there, the clock is not: the model has none, and its edges would be most of the file.
 //!

@@ -139,7 +139,10 @@ module chip_tb;
                     waited = 1;
                     // The watchdog: a chip that hangs is late.
                     while (!valid && waited <= 19) begin
+                        // A strobe that comes too early must not matter either.
+                        sample_valid = sample[2:0] == 3'd5 && waited == 1;
                         @(negedge clk);
+                        sample_valid = 1'b0;
                         waited = waited + 1;
                     end
                     if (waited != 19) check_failed("latency", 19, {96'd0, waited});
@@ -186,6 +189,15 @@ module chip_tb;
                     if (lock_lost !== expect_lock_lost) check_failed("lock_lost", {127'd0, expect_lock_lost}, {127'd0, lock_lost});
                     if (position !== {expect_count, expect_alpha_hat[26:0]})
                         check_failed("position", {69'd0, expect_count, expect_alpha_hat[26:0]}, {69'd0, position});
+                    // Some samples come later than they might: until then nothing moves, and valid is one clock long.
+                    if (sample[1:0] == 2'd2) begin
+                        repeat (19 + 2) begin
+                            @(negedge clk);
+                            if (valid) check_failed("valid", 128'd0, 128'd1);
+                        end
+                        if (position !== {expect_count, expect_alpha_hat[26:0]})
+                            check_failed("position", {69'd0, expect_count, expect_alpha_hat[26:0]}, {69'd0, position});
+                    end
                     played = played + 1;
                 end
             end
