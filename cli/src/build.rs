@@ -99,6 +99,13 @@ fn summary(j: &DesignJson, output: &Path, shown: &str) {
         j.tracking.speed_max_periods_per_s
     );
     say!("  position    {}", position(j));
+    let s = &j.spec.sensor;
+    let peak = s.amplitude * (1.0 + s.amplitude_tolerance + s.offset_max) / j.spec.adc.full_scale;
+    if peak > 1.0 {
+        say!(
+            "  note        the sensor that the design promises reaches {peak:.3} of the ADC's range at its worst: it clips"
+        );
+    }
     if j.budget.arithmetic > j.budget.arithmetic_allowed {
         say!(
             "  note        the words of [formats] add {:.2e} periods rms where the budget allows {:.2e}",

@@ -1,7 +1,8 @@
 //! Every field of a design checked for sense, before anything is derived from it.
 
 use super::DesignError;
-use super::keywords::KEYWORDS;
+use super::keywords::{KEYWORDS, SYSTEM_KEYWORDS};
+use crate::graph::Graph;
 use crate::spec::{CalibrationMethod, CalibrationStart, Multipliers, Spec};
 
 pub(super) fn refuse<T>(
@@ -44,7 +45,8 @@ pub(super) fn check(spec: &Spec) -> Result<(), DesignError> {
             "it names Verilog modules",
         );
     }
-    if KEYWORDS.contains(&spec.name.as_str()) || spec.name == "chip_tb" {
+    let name = spec.name.as_str();
+    if KEYWORDS.contains(&name) || SYSTEM_KEYWORDS.contains(&name) || name == "chip_tb" {
         return refuse(
             "name",
             format!("{:?}", spec.name),
@@ -280,4 +282,38 @@ fn calibration(spec: &Spec) -> Result<(), DesignError> {
         18.0,
         "a gamma of 2^-0 does not converge, and 2^-18 takes a million samples",
     )
+}
+
+/// Signals of the module that are no nodes of the graph.
+const PINS: [&str; 8] = [
+    "clk",
+    "rst_n",
+    "sample_valid",
+    "valid",
+    "position",
+    "step",
+    "start",
+    "last",
+];
+
+/// The module is called like none of its signals: linters would say that one hides the other.
+pub(super) fn apart(name: &str, graph: &Graph) -> Result<(), DesignError> {
+    let nodes = graph.nodes.iter().filter_map(|n| n.name.as_deref());
+    let tables = graph.roms.iter().map(|rom| rom.name);
+    let hides = |signal: &str| {
+        let rest = name.strip_prefix(signal);
+        matches!(
+            rest,
+            Some("" | "_now" | "_held" | "_next" | "_address" | "_row")
+        )
+    };
+    if nodes.chain(tables).chain(PINS).any(hides) {
+        return refuse(
+            "name",
+            format!("{name:?}"),
+            "no signal of the chip",
+            "it names the Verilog module, and a signal in it has this name",
+        );
+    }
+    Ok(())
 }

@@ -70,6 +70,7 @@ impl Design {
         let structure = formats::structure(spec, &tracking, &acquisition, &words)?;
         let constants = formats::constants(spec, &tracking, &acquisition, &words, &structure);
         let graph = record(&structure, &constants, chip_kernel)?;
+        check::apart(&spec.name, &graph)?;
         Ok(Self {
             spec: spec.clone(),
             tracking,
