@@ -288,6 +288,13 @@ fn nothing_of_the_users_is_written_over() {
 }
 
 #[test]
+fn a_design_without_end_is_refused() {
+    let dir = tempfile::tempdir().expect("scratch");
+    let output = nonius(dir.path(), &["build", "/dev/zero", "-o", "out"]);
+    refused(&output, &["/dev/zero", "it is no design"]);
+}
+
+#[test]
 fn designs_that_no_chip_can_have_are_refused() {
     let dir = tempfile::tempdir().expect("scratch folder");
     let text = fs::read_to_string(design()).expect("a design");
