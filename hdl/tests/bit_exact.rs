@@ -125,7 +125,7 @@ fn started() -> Vec<Spec> {
 /// Nobody's linter has anything to say, without waivers: Verilator -Wall, Icarus -Wall, Yosys check.
 #[test]
 fn every_variant_is_clean() {
-    let others = ["magnetic", "interferometer"].map(shipped);
+    let others = ["magnetic", "interferometer"].map(shipped::spec);
     for spec in variants().into_iter().chain(started()).chain(others) {
         let dir = tempfile::tempdir().expect("scratch folder");
         write(&spec, 2, dir.path());
@@ -159,6 +159,6 @@ fn starts_in_icarus_and_verilator() {
 #[test]
 fn shipped_designs_in_icarus_and_verilator() {
     for name in ["optical", "magnetic", "interferometer"] {
-        agrees(&shipped(name), 2000, &Options::default());
+        agrees(&shipped::spec(name), 2000, &Options::default());
     }
 }

@@ -2,13 +2,14 @@
 //!
 //! The table is kept in docs/sine.md; UPDATE_EXPECT=1 writes it anew.
 
+#[path = "../../designs/shipped.rs"]
+mod shipped;
+
 use std::f64::consts::TAU;
 use std::fmt::Write;
-use std::path::Path;
 
 use expect_test::expect_file;
 use nonius_model::design::Design;
-use nonius_model::spec::Spec;
 use nonius_package::sine_error;
 
 /// What the roundings and the straight line can do together, as fractions of the amplitude.
@@ -32,11 +33,8 @@ fn no_phase_is_beyond_the_bound() {
          | design | rows | phases tried | sine and cosine, largest error | bound | angle, largest error, turns |\n\
          |---|---|---|---|---|---|\n",
     );
-    for name in ["optical", "magnetic", "interferometer"] {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../designs/{name}.toml"));
-        let text = std::fs::read_to_string(path).expect("a shipped design");
-        let spec = Spec::from_toml(&text, name).expect("a shipped design");
-        let design = Design::new(&spec).expect("a shipped design");
+    for name in shipped::NAMES {
+        let design = shipped::design(name);
         let (found, bound) = (sine_error(&design), bound(&design));
         writeln!(
             page,
