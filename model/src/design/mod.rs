@@ -71,6 +71,7 @@ impl Design {
         let constants = formats::constants(spec, &tracking, &acquisition, &words, &structure);
         let graph = record(&structure, &constants, chip_kernel)?;
         check::apart(&spec.name, &graph)?;
+        check::used(spec.chip.multipliers, &graph)?;
         Ok(Self {
             spec: spec.clone(),
             tracking,
