@@ -1,25 +1,27 @@
 //! What fixed-point arithmetic adds to the angle error, beside what the ADC does.
 //!
-//! The table is kept in docs/accuracy.md; UPDATE_EXPECT=1 writes it anew.
+//! The table is kept in docs/accuracy.md; NONIUS_BLESS=1 writes it anew.
 
 mod support;
 
 use std::fmt::Write;
+use std::path::Path;
 
-use expect_test::expect_file;
 use nonius_model::chip::Chip;
 use nonius_model::design::Design;
 use nonius_model::kernel::Input;
 use nonius_model::spec::{Coding, Spec};
 use support::{Encoder, shipped, wrapped};
 
+const HOW: &str = "NONIUS_BLESS=1 cargo test -p nonius-model --test accuracy";
+
 /// After convergence, on a slow sweep with the same codes, the bit-true chip differs from the unrounded one by at
 /// most a tenth of what quantising the input changes in the unrounded one.
 #[test]
 fn arithmetic_adds_at_most_a_tenth_of_the_adc() {
-    let mut page = String::from(
+    let mut page = format!(
         "# What the arithmetic adds\n\n\
-         Written by `UPDATE_EXPECT=1 cargo test -p nonius-model --test accuracy`; do not edit. A whole period, slowly, at constant\n\
+         Written by `{HOW}`; do not edit. A whole period, slowly, at constant\n\
          speed, after convergence of a miscalibrated encoder; the same codes and coefficients, and the same parameters at first,\n\
          which stand still or calibrate on. ADC: the unrounded chip with and without quantised input. Arithmetic: the bit-true chip against the unrounded one. Periods.\n\n\
          | design | parameters | ADC, rms | arithmetic, rms | share | arithmetic, largest |\n|---|---|---|---|---|---|\n",
@@ -50,7 +52,8 @@ fn arithmetic_adds_at_most_a_tenth_of_the_adc() {
             "{name}: arithmetic {arithmetic:e}, ADC {adc:e} periods rms"
         );
     }
-    expect_file!["../../docs/accuracy.md"].assert_eq(&page);
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/accuracy.md");
+    nonius_kept::same(Path::new(file), &page, HOW);
 }
 
 /// Periods: rms of what arithmetic adds, the largest of it, rms of what the ADC does.
