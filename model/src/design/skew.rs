@@ -9,7 +9,7 @@ use crate::kernel::{Coefficients, Constant, Structure};
 use crate::spec::Spec;
 
 /// Largest phase that the skew may make at the design's largest speed, radians. There the second order leaves an error of
-/// the sine of κ³/12, 1.3e-3, which is 1.5e-4 of a period: more than that is no correction. And the error before lock,
+/// the sine of some κ³/12, 1.5e-3, which is 2.4e-4 of a period at most: more than that is no correction. And the error before lock,
 /// where nothing is corrected yet, stays at a third of the lock window.
 pub const PHASE_MAX: f64 = 0.25;
 
