@@ -197,10 +197,6 @@ fn skew_faults() -> Vec<Fault> {
         fault("phase of the sensor with the wrong sign", |v| {
             replaced(v, &["wire", " skew_slope_difference_now ="], " - ", " + ")
         }),
-        fault("half of the skew's last bit rounds down", |v| {
-            half_down(v, "skew_moving")
-        }),
-        fault("half of s's last bit rounds down", |v| half_down(v, "s")),
     ]
 }
 

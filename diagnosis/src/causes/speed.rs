@@ -237,7 +237,7 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
             times(1, &slope[1]),
             &["delay_s"],
             "s",
-            Chip::CannotCorrect,
+            Chip::Corrects,
             Sign::Any,
             |d| {
                 format!(
