@@ -5,8 +5,6 @@
 //! is known before the verdict. Nothing that simulates shares code or formulas with sensor model, calibration or
 //! diagnosis; the diagnosis is called in one place, `verdict`, and sees nothing but the file.
 
-#![cfg_attr(test, allow(clippy::unwrap_used))]
-
 mod baseline;
 mod case;
 mod effect;

@@ -1,5 +1,4 @@
 //! The generator: what is asked for is what is in the recording.
-#![allow(clippy::unwrap_used)]
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -52,35 +51,41 @@ fn every_name_has_the_snr_asked_for() {
 #[test]
 fn a_seed_is_a_recording() {
     for seed in [1, 4, 8] {
-        let [a, b] = [(); 2].map(|()| Case::draw(seed, SAMPLES).unwrap());
+        let [a, b] = [(); 2].map(|()| Case::draw(seed, SAMPLES).expect("a case can be drawn"));
         assert_eq!(a.csv(), b.csv());
         assert_eq!(a.truth, b.truth);
     }
-    let [a, b] = [0, 3].map(|seed| Case::draw(seed, SAMPLES).unwrap());
+    let [a, b] = [0, 3].map(|seed| Case::draw(seed, SAMPLES).expect("a case can be drawn"));
     assert_eq!(a.truth.kind, Kind::Nothing);
     assert_ne!(a.csv(), b.csv());
 }
 
 #[test]
 fn a_broken_seal_is_seen() {
-    let folder = tempfile::tempdir().unwrap();
-    let case = Case::draw(1, SAMPLES).unwrap();
-    let sealed = seal(&case.truth, folder.path()).unwrap();
-    assert_eq!(sealed.open().unwrap(), case.truth);
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let case = Case::draw(1, SAMPLES).expect("a case can be drawn");
+    let sealed = seal(&case.truth, folder.path()).expect("a truth can be sealed");
+    assert_eq!(sealed.open().expect("an untouched truth"), case.truth);
     let file = std::fs::read_dir(folder.path())
-        .unwrap()
+        .expect("the folder")
         .next()
-        .unwrap()
-        .unwrap();
-    std::fs::write(file.path(), "{}").unwrap();
-    assert!(sealed.open().unwrap_err().to_string().contains("changed"));
+        .expect("one truth")
+        .expect("its entry");
+    std::fs::write(file.path(), "{}").expect("the file can be written");
+    assert!(
+        sealed
+            .open()
+            .expect_err("a broken seal")
+            .to_string()
+            .contains("changed")
+    );
 }
 
 /// What is left of a recording without its channels' shape is the noise that was drawn.
 #[test]
 fn the_noise_is_the_one_drawn() {
     for seed in [0, 3, 6] {
-        let case = Case::draw(seed, SAMPLES).unwrap();
+        let case = Case::draw(seed, SAMPLES).expect("a case can be drawn");
         let world = &case.world;
         for channel in [0, 1] {
             let off = (0..SAMPLES).map(|k| {
@@ -102,7 +107,7 @@ fn the_noise_is_the_one_drawn() {
 fn the_reference_shows_the_axis() {
     let mut shown = BTreeSet::new();
     for seed in 0..60 {
-        let case = Case::draw(seed, 1000).unwrap();
+        let case = Case::draw(seed, 1000).expect("a case can be drawn");
         let (Some(r), Some(column)) = (case.world.reference, &case.rows.reference) else {
             continue;
         };

@@ -1,7 +1,6 @@
 //! The campaign in short, on fixed seeds: what must hold whatever else does not hold yet.
 //!
 //! The long one, with its table: `cargo run --release -p nonius-blind --example campaign -- --help`.
-#![allow(clippy::unwrap_used)]
 
 use nonius_blind::{Case, Kind, Score, Summary, page, seal, verdict};
 use rayon::prelude::*;
@@ -11,15 +10,15 @@ const SAMPLES: usize = 10_000;
 
 #[test]
 fn short_campaign() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = tempfile::tempdir().expect("a temporary folder");
     let scores: Vec<Score> = SEEDS
         .into_par_iter()
         .map(|seed| {
-            let case = Case::draw(seed, SAMPLES).unwrap();
-            let sealed = seal(&case.truth, folder.path()).unwrap();
+            let case = Case::draw(seed, SAMPLES).expect("a case can be drawn");
+            let sealed = seal(&case.truth, folder.path()).expect("a truth can be sealed");
             println!("{seed} sealed: {}", sealed.hash);
             let verdict = verdict(&case.csv()).unwrap_or_else(|why| panic!("{seed}: {why}"));
-            Score::of(sealed.open().unwrap(), &case, &verdict)
+            Score::of(sealed.open().expect("an untouched truth"), &case, &verdict)
         })
         .collect();
     println!("{}", page(&scores));
@@ -46,9 +45,15 @@ fn short_campaign() {
 #[test]
 fn silence_a_wrong_name_and_a_group_are_scored_as_such() {
     let seed = (0..)
-        .find(|s| Case::draw(*s, 3000).unwrap().truth.kind == Kind::One)
-        .unwrap();
-    let case = Case::draw(seed, 3000).unwrap();
+        .find(|s| {
+            Case::draw(*s, 3000)
+                .expect("a case can be drawn")
+                .truth
+                .kind
+                == Kind::One
+        })
+        .expect("one cause in some seed");
+    let case = Case::draw(seed, 3000).expect("a case can be drawn");
     let silent = nonius_blind::Verdict {
         named: vec![],
         unexplained: false,

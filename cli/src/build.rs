@@ -74,11 +74,14 @@ fn summary(j: &DesignJson, output: &Path, shown: &str) {
         j.simulated.rms_periods,
         j.budget.asked
     );
-    if let Some(metres) = j.position.metres_per_period {
-        say!(
-            "              {:.2e} m rms simulated",
-            j.simulated.rms_periods * metres
-        );
+    for (unit, per_period) in [
+        ("m", j.position.metres_per_period),
+        ("rad of the revolution", j.position.radians_per_period),
+    ] {
+        if let Some(per_period) = per_period {
+            let rms = j.simulated.rms_periods * per_period;
+            say!("              {rms:.2e} {unit}, rms simulated");
+        }
     }
     say!(
         "  speed       {:.4} MS/s need a clock of {:.4} MHz: {} clocks per sample",

@@ -224,12 +224,9 @@ fn what_is_found_is_corrected_by_the_chip() {
         );
         assert!(after < 0.1 * before, "{before} -> {after} mrad");
     }
-    if std::env::var_os("NONIUS_BLESS").is_some() {
-        fs::write(KEPT, &table).expect("docs");
-    }
-    let kept = fs::read_to_string(KEPT).unwrap_or_default();
-    assert_eq!(
-        kept, table,
-        "stale: NONIUS_BLESS=1 cargo test -p nonius --test closing_the_loop"
+    nonius_kept::same(
+        Path::new(KEPT),
+        &table,
+        "NONIUS_BLESS=1 cargo test -p nonius --test closing_the_loop",
     );
 }

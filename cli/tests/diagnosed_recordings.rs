@@ -2,8 +2,6 @@
 //!
 //! They are kept in docs/diagnosed-recordings.md and the folder of that name; NONIUS_BLESS=1 writes them anew.
 
-mod fresh;
-
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
@@ -154,23 +152,18 @@ fn measured_recordings_are_diagnosed() {
         }
     }
     let folder = docs().join(PAGE);
-    if fresh::blessed() {
+    if nonius_kept::blessed() {
         let _ = std::fs::remove_dir_all(&folder);
-        std::fs::create_dir_all(&folder).expect("folder of the plots");
-        for (name, svg) in &files {
-            std::fs::write(folder.join(name), svg).expect("a plot");
-        }
-        std::fs::write(docs().join(format!("{PAGE}.md")), &page).expect("docs");
     }
     // Another machine's sine moves an estimate by a part of its error.
-    fresh::check(
+    nonius_kept::near(
         &docs().join(format!("{PAGE}.md")),
         &page,
         |x| 0.01 * x.abs().max(0.01),
         HOW,
     );
     for (name, svg) in &files {
-        fresh::check(&folder.join(name), svg, |_| 2.0, HOW);
+        nonius_kept::near(&folder.join(name), svg, |_| 2.0, HOW);
     }
     for (name, found) in &of_rm44 {
         known(name, found);

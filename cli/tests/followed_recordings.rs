@@ -169,12 +169,9 @@ fn designs_from_recordings_follow_them() {
     if !complete {
         return;
     }
-    if std::env::var_os("NONIUS_BLESS").is_some() {
-        std::fs::write(KEPT, &table).expect("docs");
-    }
-    let kept = std::fs::read_to_string(KEPT).unwrap_or_default();
-    assert_eq!(
-        kept, table,
-        "stale: NONIUS_BLESS=1 cargo test -p nonius --test followed_recordings"
+    nonius_kept::same(
+        Path::new(KEPT),
+        &table,
+        "NONIUS_BLESS=1 cargo test -p nonius --test followed_recordings",
     );
 }

@@ -1,5 +1,8 @@
 //! The Verilog is the kernels': a formula that changes there changes the chip, with no other edit.
 
+#[path = "../../designs/shipped.rs"]
+mod shipped;
+
 use nonius_codegen::evaluate::evaluate;
 use nonius_codegen::generate;
 use nonius_codegen::schedule::schedule;
@@ -8,15 +11,7 @@ use nonius_model::design::Design;
 use nonius_model::graph::{Evaluation, Node};
 use nonius_model::kernel::{Coefficients, Input, Probes, State, Structure, sample};
 use nonius_model::signal::{Signal, Wide};
-use nonius_model::spec::Spec;
 use rand::{Rng, SeedableRng, rngs::StdRng};
-
-fn optical() -> Design {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../designs/optical.toml");
-    let text = std::fs::read_to_string(path).expect("designs/optical.toml");
-    let spec = Spec::from_toml(&text, "optical.toml").expect("a shipped design");
-    Design::new(&spec).expect("a shipped design")
-}
 
 /// The chip, but with a phase error that leaves a quarter of the radial residual in.
 fn altered<'g>(
@@ -40,7 +35,7 @@ fn chip(design: &Design) -> String {
 
 #[test]
 fn a_changed_formula_changes_the_verilog() {
-    let design = optical();
+    let design = shipped::design("optical");
     let mut other = design.clone();
     other.graph = record(&design.structure, &design.constants, altered).expect("formats hold it");
     let (before, after) = (chip(&design), chip(&other));

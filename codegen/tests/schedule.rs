@@ -1,29 +1,25 @@
 //! A schedule computes what the graph computes, whatever the number of multipliers.
 
+#[path = "../../designs/shipped.rs"]
+mod shipped;
+
 use nonius_codegen::evaluate::evaluate;
 use nonius_codegen::schedule::schedule;
-use nonius_model::design::Design;
-use nonius_model::graph::Evaluation;
-use nonius_model::spec::Spec;
+use nonius_model::graph::{Evaluation, Graph};
 use rand::{Rng, SeedableRng, rngs::StdRng};
-
-fn optical() -> Design {
-    let text = std::fs::read_to_string(concat!(
-        env!("CARGO_MANIFEST_DIR"),
-        "/../designs/optical.toml"
-    ));
-    let spec = Spec::from_toml(&text.expect("designs/optical.toml"), "optical.toml");
-    Design::new(&spec.expect("a shipped design")).expect("a shipped design")
-}
 
 #[test]
 fn scheduled_graph_equals_recorded_graph() {
-    let design = optical();
-    let graph = &design.graph;
     let mut random = StdRng::seed_from_u64(7);
+    for (kind, design) in shipped::kinds() {
+        scheduled_equals_recorded(&kind, &design.graph, &mut random);
+    }
+}
+
+fn scheduled_equals_recorded(kind: &str, graph: &Graph, random: &mut StdRng) {
     for multipliers in [1, 2, 3, 5, graph.products()] {
         let schedule = schedule(graph, multipliers);
-        for _ in 0..200 {
+        for _ in 0..60 {
             let mut inputs = std::collections::HashMap::new();
             for (name, id) in &graph.inputs {
                 let (low, high) = graph.node(*id).range;
@@ -35,7 +31,7 @@ fn scheduled_graph_equals_recorded_graph() {
                 assert_eq!(
                     timed[id.index()],
                     Some(plain.raw(*id)),
-                    "{name} on {multipliers} multipliers"
+                    "{kind}: {name} on {multipliers} multipliers"
                 );
             }
         }
@@ -44,7 +40,9 @@ fn scheduled_graph_equals_recorded_graph() {
 
 #[test]
 fn one_multiplier_takes_at_most_twenty_clocks() {
-    let design = optical();
-    let clocks = schedule(&design.graph, 1).clocks;
-    assert!(clocks <= 20, "{clocks} clocks");
+    for name in shipped::NAMES {
+        let clocks = schedule(&shipped::design(name).graph, 1).clocks;
+        println!("{name}: {clocks} clocks");
+        assert!(clocks <= 20, "{name}: {clocks} clocks");
+    }
 }

@@ -1,14 +1,15 @@
 //! Chips small enough to review as a whole: what a change of the generator does to the Verilog shows in the commit.
 
+#[path = "../../designs/shipped.rs"]
+mod shipped;
+
 use nonius_codegen::generate;
 use nonius_model::design::Design;
 use nonius_model::spec::{All, Coding, Multipliers, Spec};
 
 /// The shipped optical design at 8 bits, altered.
 fn verilog(change: impl Fn(&mut Spec)) -> String {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../designs/optical.toml");
-    let text = std::fs::read_to_string(path).expect("designs/optical.toml");
-    let mut spec = Spec::from_toml(&text, "optical.toml").expect("a shipped design");
+    let mut spec = shipped::optical();
     spec.adc.bits = 8;
     spec.sensor.noise_rms = 0.0;
     spec.accuracy.rms_periods = 1e-3;

@@ -1,15 +1,9 @@
 //! Every table file holds the table.
 
-use nonius_codegen::generate;
-use nonius_model::design::Design;
-use nonius_model::spec::Spec;
+#[path = "../../designs/shipped.rs"]
+mod shipped;
 
-fn optical() -> Design {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../designs/optical.toml");
-    let text = std::fs::read_to_string(path).expect("designs/optical.toml");
-    let spec = Spec::from_toml(&text, "optical.toml").expect("a shipped design");
-    Design::new(&spec).expect("a shipped design")
-}
+use nonius_codegen::generate;
 
 fn hex(text: &str) -> u128 {
     u128::from_str_radix(text.trim(), 16).unwrap_or_else(|_| panic!("{text:?} is not hexadecimal"))
@@ -17,7 +11,7 @@ fn hex(text: &str) -> u128 {
 
 #[test]
 fn every_format_reads_back_as_the_table() {
-    let design = optical();
+    let design = shipped::design("optical");
     let files = generate(&design, "0123", &[])
         .expect("templates render")
         .files;
@@ -93,7 +87,7 @@ fn every_format_reads_back_as_the_table() {
 
 #[test]
 fn coefficients_are_those_of_the_design() {
-    let design = optical();
+    let design = shipped::design("optical");
     let files = generate(&design, "0123", &[])
         .expect("templates render")
         .files;

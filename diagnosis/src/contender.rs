@@ -4,15 +4,13 @@
 use crate::cause::{Domain, Sign};
 use crate::causes::{ACCELERATION_GAIN, Catalogue};
 use crate::exact;
-use crate::generic;
+use crate::generic::{self, HOLDS};
 use crate::library::Shape;
 use crate::model::{Fit, System, atoms_of};
 use crate::select::{Beside, KINDS, RIVALS, SHOWN, Scored, both, score};
 use crate::selection::{Accepted, Unnamed};
 use crate::statistics::{after_trials, log_tail};
 
-/// A cause must hold this share of what a generic basis of its domain explains.
-pub(crate) const HOLDS: f64 = 0.75;
 /// A drift must hold more: steps and bursts are mostly slow, too.
 const SLOWLY: f64 = 0.9;
 /// Gain in log-likelihood (an SNR of 300) from which on a choice between causes is made where tangents are exact.

@@ -58,6 +58,8 @@ pub struct Context {
     pub periods_per_revolution: Option<u32>,
     /// The motion that is taken off the angle; none with a reference.
     pub spline: Option<Spline>,
+    periods_travelled: f64,
+    top_speed: f64,
 }
 
 /// Why there is nothing to diagnose.
@@ -123,6 +125,8 @@ impl Context {
             adc: recording.metadata.adc,
             periods_per_revolution: recording.metadata.periods_per_revolution,
             spline: None,
+            periods_travelled: 0.0,
+            top_speed: f64::MIN_POSITIVE,
         };
         let pairs = recording.cos.iter().zip(&recording.sin);
         let (c, s) = pairs.map(|(c, s)| this.ellipse.corrected(*c, *s)).unzip();
@@ -134,6 +138,18 @@ impl Context {
     #[must_use]
     pub fn samples(&self) -> usize {
         self.time.len()
+    }
+
+    /// Scale periods travelled by the smooth motion, to and fro.
+    #[must_use]
+    pub fn periods_travelled(&self) -> f64 {
+        self.periods_travelled
+    }
+
+    /// Largest size of the smooth speed, radians per second; above zero even at rest, so that speeds can be divided by it.
+    #[must_use]
+    pub fn top_speed(&self) -> f64 {
+        self.top_speed
     }
 
     /// Takes another corrected pair, and follows its angle.
@@ -165,6 +181,9 @@ impl Context {
             self.speed = change.zip(fast).map(|(v, f)| (v + f) * rate).collect();
             self.acceleration = gradient(&self.speed);
             self.acceleration.iter_mut().for_each(|a| *a *= rate);
+            let sizes = self.speed.iter().map(|v| v.abs());
+            self.periods_travelled = sizes.clone().sum::<f64>() / rate / TAU;
+            self.top_speed = sizes.fold(f64::MIN_POSITIVE, f64::max);
         }
         let per = self.periods_per_revolution.map(f64::from);
         self.phi = per.map(|n| self.alpha.iter().map(|a| a / n).collect());

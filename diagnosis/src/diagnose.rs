@@ -234,7 +234,6 @@ fn conclude(
     let positions = own
         .map(|&k| (context.measured[k] - change[k]) / std::f64::consts::TAU)
         .collect();
-    let periods_travelled = travelled(context);
     let mut context = context.clone();
     context.ellipse = exact::ellipse(&context.ellipse, &extended.fit.solution.x);
     Diagnosis {
@@ -243,7 +242,7 @@ fn conclude(
         unexplained,
         extended: model,
         positions,
-        periods_travelled,
+        periods_travelled: context.periods_travelled(),
         context,
         residuals,
         left_motion,
@@ -292,9 +291,4 @@ fn simulation(
         held_out_residual_rms: held_out,
         position_error_rms_rad: position,
     }
-}
-
-fn travelled(context: &Context) -> f64 {
-    let way: f64 = context.speed.iter().map(|v| v.abs()).sum();
-    way / context.rate / std::f64::consts::TAU
 }

@@ -208,14 +208,8 @@ fn bands(lines: &[Line]) -> Vec<Band> {
 /// Lines of the spectrum with hum cut down to what is near it.
 fn without_hum(lines: &mut [Line]) {
     let powers: Vec<f64> = lines.iter().map(|l| l.1).collect();
-    for (k, line) in lines.iter_mut().enumerate() {
-        let mut near = powers[k.saturating_sub(NEAR)..(k + NEAR + 1).min(powers.len())].to_vec();
-        let middle = near.len() / 2;
-        let (_, median, _) = near.select_nth_unstable_by(middle, f64::total_cmp);
-        if line.1 > HUM * *median {
-            line.1 = *median;
-        }
-    }
+    let cut = crate::lines::cut(&powers, NEAR, HUM);
+    lines.iter_mut().zip(cut).for_each(|(l, cut)| l.1 = cut);
 }
 
 /// The spectrum of what is left of the radius in bands, without hum: for plots.

@@ -12,6 +12,8 @@ use crate::causes::{line_wave, speed_varies};
 use crate::context::Context;
 use crate::library::{Group, Library, Row, Shape, Use};
 
+/// A name must hold this share of what a generic basis around it explains.
+pub(crate) const HOLDS: f64 = 0.75;
 /// Knots over the recording of an amount that may change with time: for a line, as many lines around it in the spectrum.
 const TIMES: usize = 12;
 /// The same of what is static, beside what depends on speed and direction.
@@ -41,21 +43,14 @@ fn in_time(context: &Context, count: usize) -> Modulation {
 /// Knots in time, at most so many, by which a change of what repeats every `periods` scale periods can be told from it: one
 /// for each two repetitions. With fewer than two knots nothing can.
 fn told(context: &Context, periods: f64, most: usize) -> usize {
-    let way: f64 = context.speed.iter().map(|v| v.abs()).sum();
-    let times = way / context.rate / std::f64::consts::TAU / periods;
+    let times = context.periods_travelled() / periods;
     let knots = ((times / 2.0) as usize).min(most);
     if knots < 2 { 0 } else { knots }
 }
 
-/// Largest speed, radians per second.
-fn top(context: &Context) -> f64 {
-    let speeds = context.speed.iter();
-    speeds.fold(f64::MIN_POSITIVE, |m, v| m.max(v.abs()))
-}
-
 /// Knots in time, then powers of the speed and the direction.
 fn in_time_and_speed(context: &Context, knots: usize) -> Modulation {
-    let (time, top) = (in_time(context, knots), top(context));
+    let (time, top) = (in_time(context, knots), context.top_speed());
     Rc::new(move |block, i, out| {
         let by: fn(f64) -> f64 = match i.checked_sub(knots) {
             None => return time(block, i, out),
@@ -279,7 +274,7 @@ pub(crate) fn around(
             per_channel(of, DRIFT, in_time(context, DRIFT), library)
         }
         Domain::Speed if speed_varies(context) => {
-            let top = top(context);
+            let top = context.top_speed();
             let knots: Modulation = Rc::new(move |block, i, out| {
                 let pairs = out.iter_mut().zip(block.speed);
                 pairs.for_each(|(o, v)| *o = hat(SPEEDS, i, 0.5 + 0.5 * v / top));

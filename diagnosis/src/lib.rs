@@ -5,8 +5,6 @@
 //! spline, and asks of every cause of the catalogue how much of the rest it explains. A name is given only to a shape
 //! that holds; what cannot be named is said to be unexplained.
 
-#![cfg_attr(test, allow(clippy::unwrap_used))]
-
 mod block;
 mod cause;
 mod causes;

@@ -44,6 +44,32 @@ pub(crate) fn pair_spectrum(a: &[f64], b: &[f64]) -> (Vec<f64>, usize) {
     (x.iter().zip(&y).map(|(x, y)| x + y).collect(), length)
 }
 
+/// The median; of an even number, the upper of the two in the middle. 0 of nothing.
+fn median(values: &[f64]) -> f64 {
+    let mut values = values.to_vec();
+    let middle = values.len() / 2;
+    if values.is_empty() {
+        return 0.0;
+    }
+    *values.select_nth_unstable_by(middle, f64::total_cmp).1
+}
+
+/// A spectrum without what stands out of it: values above `times` the median of those at most `reach` beside them are cut
+/// down to that.
+pub(crate) fn cut(power: &[f64], reach: usize, times: f64) -> Vec<f64> {
+    (0..power.len())
+        .map(|k| {
+            let near = k.saturating_sub(reach)..(k + reach + 1).min(power.len());
+            let median = median(&power[near]);
+            if power[k] > times * median {
+                median
+            } else {
+                power[k]
+            }
+        })
+        .collect()
+}
+
 /// A spectrum over the median of what is near in it.
 pub(crate) fn flattened(power: &[f64]) -> Vec<f64> {
     // Frequencies that are near: closer to each other than to zero.
@@ -51,10 +77,7 @@ pub(crate) fn flattened(power: &[f64]) -> Vec<f64> {
     while flat.len() < power.len() {
         let start = flat.len();
         let end = (start + (start / 4).clamp(16, 512)).min(power.len());
-        let mut near = power[start..end].to_vec();
-        let middle = near.len() / 2;
-        let (_, median, _) = near.select_nth_unstable_by(middle, f64::total_cmp);
-        let median = median.max(f64::MIN_POSITIVE);
+        let median = median(&power[start..end]).max(f64::MIN_POSITIVE);
         flat.extend(power[start..end].iter().map(|p| p / median));
     }
     flat

@@ -6,7 +6,7 @@
 
 use crate::context::Context;
 use crate::finding::{Chip, Finding, Gain, Parameter};
-use crate::generic::hat;
+use crate::generic::{HOLDS, hat};
 use crate::lines;
 use crate::model::{Residual, System};
 use crate::selection::Unnamed;
@@ -17,8 +17,6 @@ use crate::variance::{Fitted, Squares};
 const SHOWN: f64 = 1e-3;
 /// Shapes of noise that could have been claimed.
 const TRIALS: f64 = 30.0;
-/// Share of what knots over everything explain that a name has to hold.
-const HOLDS: f64 = 0.75;
 /// Knots in time and over the speeds.
 const KNOTS: [usize; 2] = [8, 6];
 /// Orders of the period that noise may depend on.
@@ -40,8 +38,6 @@ enum Kind {
 /// What noise depends on, sample by sample.
 struct Dependence<'a> {
     context: &'a Context,
-    /// Largest speed, radians per second.
-    top: f64,
 }
 
 impl Dependence<'_> {
@@ -59,7 +55,7 @@ impl Dependence<'_> {
             (Kind::Amplitude, 0) => self.context.cos[k].powi(4) + self.context.sin[k].powi(4),
             (Kind::Amplitude, _) => 2.0 * (self.context.cos[k] * self.context.sin[k]).powi(2),
             (Kind::Jitter, 0) => 0.0,
-            (Kind::Jitter, _) => (self.context.speed[k] / self.top).powi(2),
+            (Kind::Jitter, _) => (self.context.speed[k] / self.context.top_speed()).powi(2),
         }
     }
 
@@ -70,7 +66,7 @@ impl Dependence<'_> {
         let out = &mut out[row * half..][..half];
         let context = self.context;
         let when = k as f64 / context.samples() as f64;
-        let fast = context.speed[k].abs() / self.top;
+        let fast = context.speed[k].abs() / context.top_speed();
         let (in_time, rest) = out.split_at_mut(KNOTS[0]);
         let (over_speeds, waves) = rest.split_at_mut(KNOTS[1]);
         for (i, o) in in_time.iter_mut().enumerate() {
@@ -116,9 +112,7 @@ pub(crate) fn findings(system: &System, residual: &Residual) -> (Vec<Finding>, V
         weight: &context.weight,
         every: 1,
     };
-    let top = context.speed.iter();
-    let top = top.fold(f64::MIN_POSITIVE, |m, v| m.max(v.abs()));
-    let depends = Dependence { context, top };
+    let depends = Dependence { context };
     let (mut list, mut unnamed) = (vec![], vec![]);
     for (kind, other) in [
         (Kind::Amplitude, Kind::Jitter),
@@ -165,7 +159,14 @@ pub(crate) fn findings(system: &System, residual: &Residual) -> (Vec<Finding>, V
         }
         let amount = with.x[BASE + 1] / scale;
         let error = (with.covariance[(BASE + 1, BASE + 1)] * inflation).sqrt() / scale;
-        list.push(finding(kind, amount, error, top, gain, log_p));
+        list.push(finding(
+            kind,
+            amount,
+            error,
+            context.top_speed(),
+            gain,
+            log_p,
+        ));
     }
     (list, unnamed)
 }
@@ -207,7 +208,7 @@ fn refusal(
     if kind == Kind::Jitter {
         // The sampling time's error, as far as the speed shows it.
         let time: Vec<f64> = (0..n)
-            .map(|k| tangential[k] * depends.context.speed[k] / depends.top)
+            .map(|k| tangential[k] * depends.context.speed[k] / depends.context.top_speed())
             .collect();
         let (power, _) = lines::spectrum(&time);
         let mean = power.iter().sum::<f64>() / power.len() as f64;

@@ -1,9 +1,9 @@
 //! The end of the search: what was accepted, as findings.
 
 use crate::cause::{Candidate, Estimate};
-use crate::contender::HOLDS;
 use crate::exact::Start;
 use crate::finding::{Finding, Gain};
+use crate::generic::HOLDS;
 use crate::model::{Fit, Halves, System, amounts};
 use crate::select::{KINDS, SHOWN};
 use crate::statistics::{after_trials, log_tail};

@@ -48,16 +48,11 @@ pub fn sensor_toml(found: &Diagnosis, recording: &Recording) -> String {
         "\n[adc]\nbits = {}\nlsb = {:?}\ncentre = {:?}\nsample_rate_hz = {:?}",
         adc.bits, adc.lsb, adc.centre, recording.metadata.sample_rate_hz
     );
-    let top = found
-        .context
-        .speed
-        .iter()
-        .fold(0.0f64, |m, v| m.max(v.abs()));
     let _ = writeln!(
         out,
         "\n[motion]\nperiods_travelled = {:?}\nspeed_max_periods_per_s = {:?}",
         found.periods_travelled,
-        top / std::f64::consts::TAU
+        found.context.top_speed() / std::f64::consts::TAU
     );
     if let Some(n) = recording.metadata.periods_per_revolution {
         let _ = writeln!(out, "periods_per_revolution = {n}");

@@ -14,12 +14,11 @@ const REVOLUTIONS: f64 = 1.9;
 #[must_use]
 pub fn unseen(context: &Context) -> Vec<String> {
     let mut list: Vec<&str> = vec![];
-    let way: f64 = context.speed.iter().map(|v| v.abs()).sum();
-    if way / context.rate / std::f64::consts::TAU < PERIODS {
+    if context.periods_travelled() < PERIODS {
         list.push("not enough motion: less than a scale period was travelled, so hardly any error of the sensor can be seen; move it over several periods");
     }
-    let top = context.speed.iter().fold(0.0f64, |m, v| m.max(v.abs()));
-    let moves = |sign: f64| context.speed.iter().any(|v| v * sign > STANDS * top);
+    let stands = STANDS * context.top_speed();
+    let moves = |sign: f64| context.speed.iter().any(|v| v * sign > stands);
     if !speed_varies(context) {
         list.push("not enough motion: at this constant speed channel skew, bandwidths, delayed crosstalk and hysteresis look like phase, gain and offset; record several speeds");
     } else if !(moves(1.0) && moves(-1.0)) {

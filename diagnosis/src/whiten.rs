@@ -27,7 +27,9 @@ impl Whitener {
     #[must_use]
     pub(crate) fn of(residual: &[f64], gone: f64) -> Self {
         let n = residual.len();
-        let mut power = without_lines(&averaged(residual));
+        let power = averaged(residual);
+        let reach = (power.len() / 16).clamp(4, NEAR);
+        let mut power = crate::lines::cut(&power, reach, STANDS_OUT);
         let length = 2 * (power.len() - 1);
         let index = |f: f64| ((f * length as f64).ceil() as usize).min(power.len() - 1);
         let (first, last) = (index(gone), index((2.0 * gone).min(0.5)));
@@ -135,22 +137,4 @@ fn averaged(values: &[f64]) -> Vec<f64> {
         count += 1.0;
     }
     sum.iter().map(|s| s / count.max(1.0)).collect()
-}
-
-/// What stands far out of its surroundings in a spectrum, cut down to them.
-fn without_lines(power: &[f64]) -> Vec<f64> {
-    let reach = (power.len() / 16).clamp(4, NEAR);
-    (0..power.len())
-        .map(|k| {
-            let near = &power[k.saturating_sub(reach)..(k + reach + 1).min(power.len())];
-            let mut sorted = near.to_vec();
-            let middle = sorted.len() / 2;
-            let (_, median, _) = sorted.select_nth_unstable_by(middle, f64::total_cmp);
-            if power[k] > STANDS_OUT * *median {
-                *median
-            } else {
-                power[k]
-            }
-        })
-        .collect()
 }

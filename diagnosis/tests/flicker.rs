@@ -2,7 +2,6 @@
 //!
 //! It is simulated as semiconductors make it: a sum of relaxations with time constants a factor apart, each of the same
 //! power. That has nothing of a 1/f formula in it.
-#![allow(clippy::unwrap_used)]
 
 use std::f64::consts::TAU;
 
@@ -78,8 +77,9 @@ fn diagnosed(colour: &Colour, seed: u64, motion: OfTime, drift: OfTime) -> Diagn
         );
         text += &format!("{t:.7},{},{}\n", code(0.8 * c), code(0.75 * s));
     }
-    let recording = Recording::read_from(text.as_bytes(), "test", &Overrides::default()).unwrap();
-    diagnose(&recording).unwrap()
+    let recording = Recording::read_from(text.as_bytes(), "test", &Overrides::default());
+    diagnose(&recording.expect("a recording that can be read"))
+        .expect("signals that draw an ellipse")
 }
 
 fn names(found: &Diagnosis) -> Vec<&str> {

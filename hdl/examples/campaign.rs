@@ -7,10 +7,13 @@
 //! every commit.
 //! Exit code 1 if any bit of any probe differs.
 
+#[path = "../../designs/shipped.rs"]
+mod shipped;
+
 use std::env;
 use std::error::Error;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::ExitCode;
 use std::time::Duration;
 
@@ -63,7 +66,7 @@ fn run(docs: Option<&Path>) -> Result<bool, Box<dyn Error>> {
         (SHORT, 6)
     };
     let mut outcomes = vec![];
-    for variant in variants()?.into_iter().step_by(step) {
+    for variant in variants().into_iter().step_by(step) {
         let outcome = Outcome {
             verilator: samples(&variant.spec, rows.0, true)?,
             icarus: samples(&variant.spec, rows.1, false)?,
@@ -82,11 +85,6 @@ fn run(docs: Option<&Path>) -> Result<bool, Box<dyn Error>> {
         .all(|o| o.verilator.is_ok() && o.icarus.is_ok()))
 }
 
-fn shipped(name: &str) -> Result<Spec, Box<dyn Error>> {
-    let file = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(format!("../designs/{name}.toml"));
-    Ok(Spec::from_toml(&fs::read_to_string(file)?, name)?)
-}
-
 fn variant(what: &str, spec: Spec) -> Variant {
     let number = match spec.chip.multipliers {
         Multipliers::Count(n) => n.to_string(),
@@ -102,17 +100,17 @@ fn variant(what: &str, spec: Spec) -> Variant {
 
 /// The shipped designs; ADC widths; every number of multipliers; every search and parameter set; then every method and
 /// type with four and five parameters, on one multiplier and on as many as there are products.
-fn variants() -> Result<Vec<Variant>, Box<dyn Error>> {
+fn variants() -> Vec<Variant> {
     let all = Multipliers::All(All::All);
-    let base = shipped("optical")?;
+    let base = shipped::optical();
     let with = |what: &str, change: &dyn Fn(&mut Spec)| {
         let mut spec = base.clone();
         change(&mut spec);
         variant(what, spec)
     };
     let mut list = vec![];
-    for name in ["optical", "magnetic", "interferometer"] {
-        list.push(variant(name, shipped(name)?));
+    for name in shipped::NAMES {
+        list.push(variant(name, shipped::spec(name)));
     }
     for bits in [8, 16, 18] {
         list.push(with("optical", &|s| {
@@ -193,7 +191,7 @@ fn variants() -> Result<Vec<Variant>, Box<dyn Error>> {
             }
         }
     }
-    Ok(list)
+    list
 }
 
 fn samples(

@@ -4,17 +4,20 @@
 //!
 //! writes docs/on-line-costs.md, and .csv for the table of convergence, for the optical design with each method and parameter set. Some minutes of Yosys.
 
+#[path = "../../designs/shipped.rs"]
+mod shipped;
+
 use std::env;
 use std::error::Error;
 use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::ExitCode;
 
 use nonius_hdl::ChipDir;
 use nonius_hdl::place::{Device, place};
 use nonius_hdl::progress::silent;
 use nonius_model::design::Design;
-use nonius_model::spec::{CalibrationMethod, CalibrationStart, Spec};
+use nonius_model::spec::{CalibrationMethod, CalibrationStart};
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = env::args().skip(1).collect();
@@ -80,8 +83,7 @@ const CHIPS: [(&str, CalibrationMethod, CalibrationStart, u32, bool); 17] = [
 ];
 
 fn run(docs: &Path) -> Result<(), Box<dyn Error>> {
-    let file = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../designs/optical.toml");
-    let base = Spec::from_toml(&std::fs::read_to_string(file)?, "optical.toml")?;
+    let base = shipped::optical();
     let mut page = String::from(HEAD);
     let mut csv = String::from("method,start,parameters,completion,clocks,lut4\n");
     let mut bare = 0;

@@ -154,7 +154,7 @@ fn skewed() -> Vec<Spec> {
 /// Nobody's linter has anything to say, without waivers: Verilator -Wall, Icarus -Wall, Yosys check.
 #[test]
 fn every_variant_is_clean() {
-    let others = ["magnetic", "interferometer"].map(shipped);
+    let others = ["magnetic", "interferometer"].map(shipped::spec);
     let all = variants().into_iter().chain(started()).chain(skewed());
     for spec in all.chain(others) {
         let dir = tempfile::tempdir().expect("scratch folder");
@@ -196,6 +196,6 @@ fn skews_in_icarus_and_verilator() {
 #[test]
 fn shipped_designs_in_icarus_and_verilator() {
     for name in ["optical", "magnetic", "interferometer"] {
-        agrees(&shipped(name), 2000, &Options::default());
+        agrees(&shipped::spec(name), 2000, &Options::default());
     }
 }

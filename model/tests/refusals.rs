@@ -3,7 +3,7 @@
 mod support;
 
 use nonius_model::design::{Design, DesignError, Words};
-use nonius_model::spec::{CalibrationMethod, CalibrationStart, Overrides, Spec};
+use nonius_model::spec::{CalibrationMethod, CalibrationStart, Multipliers, Overrides, Spec};
 use proptest::prelude::*;
 use support::{Encoder, optical, shipped, wrapped};
 
@@ -29,9 +29,47 @@ fn an_unknown_key_is_named_with_its_line_and_the_nearest_known_one() {
 }
 
 #[test]
+fn a_value_of_the_wrong_kind_is_told_without_words_of_rust() {
+    for (was, is, expected) in [
+        (
+            "bits = 12",
+            "bits = \"many\"",
+            "d.toml:15:8: bits: invalid type: string \"many\", expected a whole number, 0 or more",
+        ),
+        (
+            "bits = 12",
+            "bits = -12",
+            "d.toml:15:8: bits: invalid value: `-12`, expected a whole number, 0 or more",
+        ),
+        (
+            "full_scale = 1.0 ",
+            "full_scale = true ",
+            "d.toml:16:14: full_scale: invalid type: boolean `true`, expected a number",
+        ),
+    ] {
+        let message = Spec::from_toml(&text().replace(was, is), "d.toml")
+            .expect_err("a wrong kind")
+            .to_string();
+        assert_eq!(message.lines().next(), Some(expected));
+    }
+}
+
+#[test]
+fn numbers_in_messages_are_short() {
+    let mut spec = optical();
+    spec.sensor.speed_max_periods_per_s = 1e300;
+    spec.adc.full_scale = 1e299;
+    let message = Design::new(&spec).expect_err("no such ADC").to_string();
+    assert!(
+        message.len() < 200 && message.contains("1e299"),
+        "{message}"
+    );
+}
+
+#[test]
 fn what_cannot_work_names_the_field() {
     type Change = fn(&mut Spec);
-    let cases: [(&str, Change); 13] = [
+    let cases: [(&str, Change); 14] = [
         ("loop.type", |s| s.tracking.method = 2),
         ("loop.method", |s| s.tracking.method = 4),
         ("loop.bandwidth_hz", |s| s.tracking.bandwidth_hz = 4e5),
@@ -64,6 +102,9 @@ fn what_cannot_work_names_the_field() {
         ("adc.bits", |s| s.adc.bits = 24),
         ("accuracy.rms_periods", |s| s.accuracy.rms_periods = 1e-6),
         ("formats.phase_bits", |s| s.formats.phase_bits = Some(60)),
+        ("chip.multipliers", |s| {
+            s.chip.multipliers = Multipliers::Count(17)
+        }),
         ("sensor.amplitude", |s| s.sensor.amplitude = f64::NAN),
     ];
     for (expected, change) in cases {
@@ -128,7 +169,7 @@ const WORDS: [Word; 5] = [
 /// One bit less in any word misses the budget.
 #[test]
 fn each_word_is_the_shortest() {
-    for spec in ["optical", "magnetic", "interferometer"].map(shipped) {
+    for spec in shipped::NAMES.map(shipped::spec) {
         let chosen = Design::new(&spec).expect("a shipped design");
         for (short, ..) in WORDS {
             let mut spec = spec.clone();

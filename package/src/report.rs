@@ -2,6 +2,7 @@
 
 use askama::Template;
 use nonius_model::design::Design;
+use nonius_model::physical::{metres, radians_of_revolution};
 use nonius_plot::{Axis, Look, Mark, Plot, Series};
 
 use crate::curves;
@@ -71,12 +72,11 @@ const SIMULATED: &str = "Accuracy simulated";
 
 fn said(design: &Design, j: &DesignJson) -> Vec<(&'static str, String, String)> {
     let (spec, t) = (&design.spec, &j.tracking);
-    let per_period = |periods: f64| match spec.sensor.scale_period_m {
-        Some(length) => format!(
-            "{periods:.2e} periods, {}",
-            engineering(periods * length, "m")
-        ),
-        None => format!("{periods:.2e} periods"),
+    let per_period = |periods: f64| {
+        let metres = metres(spec, periods).map(|x| engineering(x, "m"));
+        let radians = radians_of_revolution(spec, periods).map(|x| engineering(x, "rad"));
+        let units = [Some(format!("{periods:.2e} periods")), metres, radians];
+        units.into_iter().flatten().collect::<Vec<_>>().join(", ")
     };
     let phase = &design.structure.formats.alpha;
     let skew = j.channel_skew.as_ref().map(|skew| {

@@ -1,20 +1,15 @@
 //! The shipped designs reach what they ask for, simulated on the bit-true chip with everything that disturbs it.
 
-use nonius_model::design::Design;
-use nonius_model::spec::Spec;
-use nonius_package::accuracy;
+#[path = "../../designs/shipped.rs"]
+mod shipped;
 
-fn shipped(name: &str) -> (Design, Spec) {
-    let path = format!("{}/../designs/{name}.toml", env!("CARGO_MANIFEST_DIR"));
-    let text = std::fs::read_to_string(path).expect("a shipped design");
-    let spec = Spec::from_toml(&text, name).expect("a shipped design");
-    (Design::new(&spec).expect("a shipped design"), spec)
-}
+use nonius_model::design::Design;
+use nonius_package::accuracy;
 
 #[test]
 fn shipped_designs_reach_the_accuracy_they_ask_for() {
-    for name in ["optical", "magnetic", "interferometer"] {
-        let (design, spec) = shipped(name);
+    for name in shipped::NAMES {
+        let (design, spec) = (shipped::design(name), shipped::spec(name));
         let found = accuracy(&design);
         let asked = spec.accuracy.rms_periods;
         println!(
@@ -32,8 +27,8 @@ fn shipped_designs_reach_the_accuracy_they_ask_for() {
 /// that its noise counts. It is on the safe side: noise spreads the ADC's steps, and the loop takes some of them out.
 #[test]
 fn the_budget_predicts_what_is_simulated() {
-    for name in ["optical", "magnetic", "interferometer"] {
-        let (_, mut spec) = shipped(name);
+    for name in shipped::NAMES {
+        let mut spec = shipped::spec(name);
         for gamma_last in [5, spec.calibration.gamma_last] {
             spec.calibration.gamma_last = gamma_last;
             let design = Design::new(&spec).expect("a shipped design");

@@ -1,15 +1,18 @@
 //! The sine table and its interpolation, proven: every phase that the sine unit can be given is tried.
 //!
-//! The table is kept in docs/sine.md; UPDATE_EXPECT=1 writes it anew.
+//! The table is kept in docs/sine.md; NONIUS_BLESS=1 writes it anew.
+
+#[path = "../../designs/shipped.rs"]
+mod shipped;
 
 use std::f64::consts::TAU;
 use std::fmt::Write;
 use std::path::Path;
 
-use expect_test::expect_file;
 use nonius_model::design::Design;
-use nonius_model::spec::Spec;
 use nonius_package::sine_error;
+
+const HOW: &str = "NONIUS_BLESS=1 cargo test -p nonius-package --test sine";
 
 /// What the roundings and the straight line can do together, as fractions of the amplitude.
 fn bound(design: &Design) -> f64 {
@@ -24,19 +27,16 @@ fn bound(design: &Design) -> f64 {
 
 #[test]
 fn no_phase_is_beyond_the_bound() {
-    let mut page = String::from(
+    let mut page = format!(
         "# The sine table\n\n\
-         Written by `UPDATE_EXPECT=1 cargo test -p nonius-package --test sine`; do not edit. Every phase of the sine unit is\n\
+         Written by `{HOW}`; do not edit. Every phase of the sine unit is\n\
          tried; a phase stands for the middle of what it cuts off. Bound: half bits of table, slope and result, and the\n\
          parabola that the straight line leaves out.\n\n\
          | design | rows | phases tried | sine and cosine, largest error | bound | angle, largest error, turns |\n\
          |---|---|---|---|---|---|\n",
     );
-    for name in ["optical", "magnetic", "interferometer"] {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../designs/{name}.toml"));
-        let text = std::fs::read_to_string(path).expect("a shipped design");
-        let spec = Spec::from_toml(&text, name).expect("a shipped design");
-        let design = Design::new(&spec).expect("a shipped design");
+    for name in shipped::NAMES {
+        let design = shipped::design(name);
         let (found, bound) = (sine_error(&design), bound(&design));
         writeln!(
             page,
@@ -59,5 +59,6 @@ fn no_phase_is_beyond_the_bound() {
         // The bound says something.
         assert!(found.largest > bound / 3.0, "{name}: {found:?}, {bound:e}");
     }
-    expect_file!["../../docs/sine.md"].assert_eq(&page);
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/sine.md");
+    nonius_kept::same(Path::new(file), &page, HOW);
 }

@@ -101,7 +101,7 @@ mod tests {
     #[test]
     fn sixteen_samples_are_enough_and_fifteen_are_not() {
         verdict(f64::cos, f64::sin, 16).expect("accepted");
-        let error = verdict(f64::cos, f64::sin, 15).unwrap_err();
+        let error = verdict(f64::cos, f64::sin, 15).expect_err("a refusal");
         assert!(
             error
                 .to_string()
@@ -112,7 +112,7 @@ mod tests {
 
     #[test]
     fn constant_channels_are_dead_and_named() {
-        let error = verdict(f64::cos, |_| 2.5, 100).unwrap_err();
+        let error = verdict(f64::cos, |_| 2.5, 100).expect_err("a refusal");
         assert!(
             error
                 .to_string()
@@ -127,7 +127,7 @@ mod tests {
     #[test]
     fn a_channel_that_only_flickers_is_dead_where_the_other_turns() {
         let flicker = |k: f64| (k * 7.0).sin().signum() * 0.001;
-        let error = verdict(|k| (k / 9.0).cos(), flicker, 1000).unwrap_err();
+        let error = verdict(|k| (k / 9.0).cos(), flicker, 1000).expect_err("a refusal");
         assert!(error.to_string().contains("while 'cos' turns"), "{error}");
     }
 

@@ -208,7 +208,9 @@ mod tests {
     }
 
     fn message(line: &str) -> String {
-        header(line, &Overrides::default()).unwrap_err().to_string()
+        header(line, &Overrides::default())
+            .expect_err("several records in one")
+            .to_string()
     }
 
     #[test]
@@ -238,7 +240,7 @@ mod tests {
             sin_column: Some("A".into()),
             ..overrides
         };
-        let error = header("A,B", &same).unwrap_err();
+        let error = header("A,B", &same).expect_err("a refusal");
         assert!(
             matches!(*error.kind, ErrorKind::SameColumn { .. }),
             "{error}"
@@ -247,7 +249,7 @@ mod tests {
             sin_column: Some("time_s".into()),
             ..same
         };
-        let error = header("A,time_s", &time).unwrap_err();
+        let error = header("A,time_s", &time).expect_err("a refusal");
         assert!(
             matches!(*error.kind, ErrorKind::ReservedColumn { .. }),
             "{error}"

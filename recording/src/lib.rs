@@ -6,8 +6,6 @@
 //!
 //! Nothing here prints. What a reader of the output must know is in the `notes` of each result.
 
-#![cfg_attr(test, allow(clippy::unwrap_used))]
-
 mod adc;
 mod cells;
 mod checks;

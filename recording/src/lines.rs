@@ -89,7 +89,7 @@ mod tests {
     fn bytes_that_are_no_text_have_a_place() {
         let mut lines = Lines::new(&b"ok\n1,\xFF"[..], "f");
         lines.next().expect("memory");
-        let error = lines.next().unwrap_err();
+        let error = lines.next().expect_err("a refusal");
         assert_eq!(error.place, Place::at("f", 2, 3));
         assert!(matches!(*error.kind, ErrorKind::NotUtf8));
     }
@@ -97,9 +97,12 @@ mod tests {
     #[test]
     fn utf_16_and_bare_carriage_returns_are_named() {
         let mut lines = Lines::new(&b"\xFF\xFEc\0o\0s\0"[..], "f");
-        assert!(matches!(*lines.next().unwrap_err().kind, ErrorKind::Utf16));
+        assert!(matches!(
+            *lines.next().expect_err("a refusal").kind,
+            ErrorKind::Utf16
+        ));
         let mut lines = Lines::new(&b"cos,sin\r1,2\r"[..], "f");
-        let error = lines.next().unwrap_err();
+        let error = lines.next().expect_err("a refusal");
         assert!(matches!(*error.kind, ErrorKind::BareCarriageReturn));
         assert_eq!(error.place.column, Some(8));
     }
@@ -107,7 +110,7 @@ mod tests {
     #[test]
     fn a_line_without_end_is_refused() {
         let mut lines = Lines::new(std::io::BufReader::new(std::io::repeat(b'1')), "f");
-        let error = lines.next().unwrap_err();
+        let error = lines.next().expect_err("a refusal");
         assert!(matches!(*error.kind, ErrorKind::LineTooLong { .. }));
     }
 }

@@ -105,9 +105,9 @@ mod tests {
         let mut clock = Clock::default();
         clock.check(0.0, 1.0, 2.0).expect("in time");
         clock.check(0.0, 1.0, 2.0).expect("in time");
-        let still = clock.check(0.0, 1.0, 3.0).unwrap_err();
+        let still = clock.check(0.0, 1.0, 3.0).expect_err("a refusal");
         assert!(matches!(still, ErrorKind::TimeStill { .. }));
-        let back = clock.check(-1.0, 1.0, 3.0).unwrap_err();
+        let back = clock.check(-1.0, 1.0, 3.0).expect_err("a refusal");
         assert!(matches!(back, ErrorKind::TimeBack { .. }));
     }
 

@@ -1,5 +1,4 @@
 //! ADCs described in part, in counts, one-sided, or not at all.
-#![allow(clippy::unwrap_used)]
 
 use nonius_recording::{Adc, AdcSource, Overrides, Recording};
 
@@ -22,7 +21,8 @@ fn read(head: &str, table: &str) -> (Adc, Vec<String>) {
         ..Overrides::default()
     };
     let text = format!("{head}{table}");
-    let recording = Recording::read_from(text.as_bytes(), "f", &overrides).unwrap();
+    let recording = Recording::read_from(text.as_bytes(), "f", &overrides)
+        .expect("a recording that can be read");
     let adc = recording.metadata.adc;
     // In every case the codes give the cells back to the last digit that matters.
     for ((c, s), k) in recording.codes().zip(0..) {
@@ -134,7 +134,8 @@ fn values_beyond_the_range_are_said() {
         ..Overrides::default()
     };
     let table = codes(0.9, 0.0, 1.0 / 4096.0, 0.0, 6);
-    let recording = Recording::read_from(table.as_bytes(), "f", &overrides).unwrap();
+    let recording = Recording::read_from(table.as_bytes(), "f", &overrides)
+        .expect("a recording that can be read");
     assert!(recording.notes[0].contains("values lie outside the range of the ADC (-0.5 … 0.5)"));
 }
 

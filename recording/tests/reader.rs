@@ -1,5 +1,4 @@
 //! What the reader understands.
-#![allow(clippy::unwrap_used)]
 
 use nonius_recording::{AdcSource, Overrides, Recording};
 
@@ -37,13 +36,16 @@ fn every_column_finds_its_place() {
     assert_eq!(recording.cos[0], 1.0);
     assert_eq!(recording.sin[1], 0.05);
     assert_eq!(recording.metadata.sample_rate_hz, 100.0);
-    assert_eq!(recording.temperature_c.as_ref().unwrap()[99], 21.5);
-    assert!((recording.reference_rad.as_ref().unwrap()[99] + 4.95).abs() < 1e-9);
-    assert_eq!(recording.other("x").unwrap(), [7.0; 100]);
+    assert_eq!(
+        recording.temperature_c.as_ref().expect("temperatures")[99],
+        21.5
+    );
+    assert!((recording.reference_rad.as_ref().expect("a reference")[99] + 4.95).abs() < 1e-9);
+    assert_eq!(recording.other("x").expect("the column"), [7.0; 100]);
     assert!(
         recording
             .other("remark")
-            .unwrap()
+            .expect("the column")
             .iter()
             .all(|v| v.is_nan())
     );
@@ -168,7 +170,7 @@ fn a_wrapped_reference_becomes_continuous() {
     });
     let reference = read(&format!("time_s,cos,sin,reference_rad\n{rows}"))
         .reference_rad
-        .unwrap();
+        .expect("a reference");
     assert!((reference[399] - reference[0] + 9.0 * 3.99).abs() < 1e-5);
 }
 
@@ -178,9 +180,11 @@ fn samples_in_memory_make_a_recording() {
     let cos: Vec<f64> = time.iter().map(|t| (t / 9.0).cos()).collect();
     let sin: Vec<f64> = time.iter().map(|t| (t / 9.0).sin()).collect();
     let none = Overrides::default();
-    let recording = Recording::from_samples(time.clone(), cos.clone(), sin.clone(), &none).unwrap();
+    let recording = Recording::from_samples(time.clone(), cos.clone(), sin.clone(), &none)
+        .expect("samples that make a recording");
     assert_eq!(recording.metadata.adc.cos.source, AdcSource::Assumed);
-    let short = Recording::from_samples(time, cos, sin[1..].to_vec(), &none).unwrap_err();
+    let short = Recording::from_samples(time, cos, sin[1..].to_vec(), &none)
+        .expect_err("columns of unequal length");
     assert!(short.to_string().contains("[64, 64, 63]"), "{short}");
 }
 

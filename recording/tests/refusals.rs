@@ -1,5 +1,4 @@
 //! What the reader refuses: the place, and a message that says what to do.
-#![allow(clippy::unwrap_used)]
 
 use nonius_recording::{Overrides, Recording};
 
@@ -114,7 +113,7 @@ fn time() {
         "r.csv:5:1: time_s stands still",
         "--sample-rate",
     );
-    let twice = good() + good().split_once('\n').unwrap().1;
+    let twice = good() + good().split_once('\n').expect("a header").1;
     assert_refused(
         twice,
         "r.csv:42:1: time_s runs back from 0.39 to 0",
@@ -157,7 +156,7 @@ fn files() {
     assert_refused(short, "r.csv: 15 samples are too few", "at least 16");
     let gone = Recording::read(std::path::Path::new("no/such.csv"), &Overrides::default());
     assert!(
-        gone.unwrap_err()
+        gone.expect_err("a refusal")
             .to_string()
             .starts_with("no/such.csv: cannot be read")
     );

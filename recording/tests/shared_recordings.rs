@@ -1,5 +1,4 @@
 //! The real recordings beside the workspace: read, estimated, surveyed.
-#![allow(clippy::unwrap_used)]
 
 mod support;
 
@@ -8,7 +7,7 @@ use support::shared_recording;
 
 fn read(check: &str, name: &str) -> Option<Recording> {
     let file = shared_recording(check, name)?;
-    Some(Recording::read(&file, &Overrides::default()).unwrap())
+    Some(Recording::read(&file, &Overrides::default()).expect("a recording that can be read"))
 }
 
 #[track_caller]
@@ -50,7 +49,7 @@ fn rm44_has_a_12_bit_adc_and_turns_once() {
         assert_eq!(survey.fit.method, FitMethod::Conic);
         assert!(survey.fit.residual_rms < 0.005);
         // The reference turns the other way.
-        let reference = recording.reference_rad.unwrap();
+        let reference = recording.reference_rad.expect("a reference");
         let turned = (reference[999] - reference[0]) / std::f64::consts::TAU;
         assert_near(survey.motion.periods_net, -turned, 1e-3);
         assert_near(survey.motion.max_speed_periods_per_s, 1.0, 0.1);
@@ -99,7 +98,10 @@ fn the_three_photodiode_interferometers_show_no_codes() {
         let adc = recording.metadata.adc.cos;
         assert_eq!((adc.bits, adc.source), (16, AdcSource::Assumed));
         assert!(recording.notes[0].starts_with("the values show no codes; the ADC was assumed"));
-        assert_eq!(recording.other("pd2_V").unwrap().len(), recording.samples());
+        assert_eq!(
+            recording.other("pd2_V").expect("the column").len(),
+            recording.samples()
+        );
         let ellipse = Survey::of(&recording).fit.ellipse;
         assert_near(ellipse.a_c / ellipse.a_s, gain_ratio, 0.01);
         assert_near(ellipse.beta.to_degrees(), beta, 0.05);
@@ -112,8 +114,8 @@ fn the_wheel_magnetometer_turns_with_its_gyroscope() {
         return;
     };
     assert_near(recording.metadata.adc.cos.lsb, 1.0 / 2048.0, 1e-6);
-    let reference = recording.reference_rad.as_ref().unwrap();
-    let turned = (reference.last().unwrap() - reference[0]) / std::f64::consts::TAU;
+    let reference = recording.reference_rad.as_ref().expect("a reference");
+    let turned = (reference.last().expect("a sample") - reference[0]) / std::f64::consts::TAU;
     assert_near(Survey::of(&recording).motion.periods_net, -turned, 0.01);
 }
 
@@ -122,7 +124,7 @@ fn the_optical_tables_are_refused_whole_and_read_one_by_one() {
     let Some(file) = shared_recording("optical tables", "optical_servo_tables.csv") else {
         return;
     };
-    let error = Recording::read(&file, &Overrides::default()).unwrap_err();
+    let error = Recording::read(&file, &Overrides::default()).expect_err("several records in one");
     assert!(matches!(*error.kind, ErrorKind::TimeBack { .. }), "{error}");
     assert_eq!((error.place.line, error.place.column), (Some(514), Some(1)));
     let text = error.to_string();
@@ -131,14 +133,14 @@ fn the_optical_tables_are_refused_whole_and_read_one_by_one() {
         "{text}"
     );
 
-    let whole = std::fs::read_to_string(file).unwrap();
-    let (header, rows) = whole.split_once('\n').unwrap();
+    let whole = std::fs::read_to_string(file).expect("a file of text");
+    let (header, rows) = whole.split_once('\n').expect("a header");
     for unit in 0..16 {
         let of_unit = |row: &&str| row.rsplit(',').next() == Some(&unit.to_string());
         let rows: Vec<&str> = rows.lines().filter(of_unit).collect();
         let one = format!("{header}\n{}\n", rows.join("\n"));
-        let recording =
-            Recording::read_from(one.as_bytes(), "one unit", &Overrides::default()).unwrap();
+        let recording = Recording::read_from(one.as_bytes(), "one unit", &Overrides::default())
+            .expect("a recording that can be read");
         assert_eq!(recording.samples(), 512);
         let adc = recording.metadata.adc.cos;
         assert_eq!(

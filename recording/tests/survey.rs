@@ -1,5 +1,4 @@
 //! The quick look at synthetic recordings of known signals and motion.
-#![allow(clippy::unwrap_used)]
 
 use std::f64::consts::TAU;
 
@@ -48,7 +47,8 @@ fn survey(
         cos.push(pair.0);
         sin.push(pair.1);
     }
-    let recording = Recording::from_samples(time, cos, sin, &Overrides::default()).unwrap();
+    let recording = Recording::from_samples(time, cos, sin, &Overrides::default())
+        .expect("samples that make a recording");
     Survey::of(&recording)
 }
 

@@ -2,6 +2,9 @@
 
 use serde::Deserialize;
 
+use crate::drift::Drift;
+use crate::interference::Interference;
+
 /// One `[[cause]]`; amplitudes are fractions of the channel's amplitude, phases those of cos(x + phase).
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(tag = "name", rename_all = "snake_case", deny_unknown_fields)]
@@ -87,86 +90,17 @@ pub enum Cause {
     /// An offset with the sign of the speed.
     Hysteresis { offset_cos: f64, offset_sin: f64 },
     /// A line added to each channel, and its second and third harmonic.
-    Interference {
-        frequency_hz: f64,
-        amplitude_cos: f64,
-        phase_cos: f64,
-        amplitude_sin: f64,
-        phase_sin: f64,
-        #[serde(default)]
-        amplitude_cos_2: f64,
-        #[serde(default)]
-        phase_cos_2: f64,
-        #[serde(default)]
-        amplitude_sin_2: f64,
-        #[serde(default)]
-        phase_sin_2: f64,
-        #[serde(default)]
-        amplitude_cos_3: f64,
-        #[serde(default)]
-        phase_cos_3: f64,
-        #[serde(default)]
-        amplitude_sin_3: f64,
-        #[serde(default)]
-        phase_sin_3: f64,
-    },
+    Interference(Interference),
     /// The amplitude of both channels modulated by a line.
     AmplitudeRipple {
         frequency_hz: f64,
         depth: f64,
         phase: f64,
     },
-    /// Offsets that change from one end to the other: evenly, and along Legendre polynomials of the time of degree 2 … 6 that
-    /// bend the line between the same ends.
-    OffsetDrift {
-        change_cos: f64,
-        change_sin: f64,
-        #[serde(default)]
-        curve_cos_2: f64,
-        #[serde(default)]
-        curve_cos_3: f64,
-        #[serde(default)]
-        curve_cos_4: f64,
-        #[serde(default)]
-        curve_cos_5: f64,
-        #[serde(default)]
-        curve_cos_6: f64,
-        #[serde(default)]
-        curve_sin_2: f64,
-        #[serde(default)]
-        curve_sin_3: f64,
-        #[serde(default)]
-        curve_sin_4: f64,
-        #[serde(default)]
-        curve_sin_5: f64,
-        #[serde(default)]
-        curve_sin_6: f64,
-    },
+    /// Offsets that change from one end of the recording to the other.
+    OffsetDrift(Drift),
     /// Gains likewise.
-    GainDrift {
-        change_cos: f64,
-        change_sin: f64,
-        #[serde(default)]
-        curve_cos_2: f64,
-        #[serde(default)]
-        curve_cos_3: f64,
-        #[serde(default)]
-        curve_cos_4: f64,
-        #[serde(default)]
-        curve_cos_5: f64,
-        #[serde(default)]
-        curve_cos_6: f64,
-        #[serde(default)]
-        curve_sin_2: f64,
-        #[serde(default)]
-        curve_sin_3: f64,
-        #[serde(default)]
-        curve_sin_4: f64,
-        #[serde(default)]
-        curve_sin_5: f64,
-        #[serde(default)]
-        curve_sin_6: f64,
-    },
+    GainDrift(Drift),
     /// The amplitude of both channels modulated with the revolution.
     Runout { order: f64, depth: f64, phase: f64 },
     /// The graduation is off with the revolution: radians of the scale period.

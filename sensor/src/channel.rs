@@ -38,20 +38,6 @@ pub(crate) fn of_both(cause: &Cause, time: f64, phi: f64) -> f64 {
     }
 }
 
-/// A change from one end of the recording to the other, at a share of its time, with Legendre polynomials of degree 2 … 6.
-fn drift(change: f64, curve: [f64; 5], share: f64) -> f64 {
-    let x = 2.0 * share - 1.0;
-    // Odd ones are part of the change.
-    let line = 0.5 * change - curve[1] - curve[3];
-    let (mut before, mut now, mut sum) = (1.0, x, line * x);
-    for (c, n) in curve.iter().zip(1..) {
-        let n = f64::from(n);
-        (before, now) = (now, ((2.0 * n + 1.0) * x * now - n * before) / (n + 1.0));
-        sum += c * now;
-    }
-    sum
-}
-
 /// What is added to a channel y, in its amplitudes.
 pub(crate) fn of_one(cause: &Cause, which: usize, y: f64, at: &Moment) -> f64 {
     let of = |cos: f64, sin: f64| if which == 0 { cos } else { sin };
@@ -93,104 +79,9 @@ pub(crate) fn of_one(cause: &Cause, which: usize, y: f64, at: &Moment) -> f64 {
             offset_cos,
             offset_sin,
         } => of(offset_cos, offset_sin) * at.speed.signum(),
-        Cause::Interference {
-            frequency_hz,
-            amplitude_cos,
-            phase_cos,
-            amplitude_sin,
-            phase_sin,
-            amplitude_cos_2,
-            phase_cos_2,
-            amplitude_sin_2,
-            phase_sin_2,
-            amplitude_cos_3,
-            phase_cos_3,
-            amplitude_sin_3,
-            phase_sin_3,
-        } => [
-            (of(amplitude_cos, amplitude_sin), of(phase_cos, phase_sin)),
-            (
-                of(amplitude_cos_2, amplitude_sin_2),
-                of(phase_cos_2, phase_sin_2),
-            ),
-            (
-                of(amplitude_cos_3, amplitude_sin_3),
-                of(phase_cos_3, phase_sin_3),
-            ),
-        ]
-        .iter()
-        .zip(1..)
-        .map(|((amplitude, phase), harmonic)| {
-            let turns = f64::from(harmonic) * frequency_hz * at.time;
-            amplitude * (TAU * turns + phase).cos()
-        })
-        .sum(),
-        Cause::OffsetDrift {
-            change_cos,
-            change_sin,
-            curve_cos_2,
-            curve_cos_3,
-            curve_cos_4,
-            curve_cos_5,
-            curve_cos_6,
-            curve_sin_2,
-            curve_sin_3,
-            curve_sin_4,
-            curve_sin_5,
-            curve_sin_6,
-        } => {
-            let curve = if which == 0 {
-                [
-                    curve_cos_2,
-                    curve_cos_3,
-                    curve_cos_4,
-                    curve_cos_5,
-                    curve_cos_6,
-                ]
-            } else {
-                [
-                    curve_sin_2,
-                    curve_sin_3,
-                    curve_sin_4,
-                    curve_sin_5,
-                    curve_sin_6,
-                ]
-            };
-            drift(of(change_cos, change_sin), curve, at.time / at.whole)
-        }
-        Cause::GainDrift {
-            change_cos,
-            change_sin,
-            curve_cos_2,
-            curve_cos_3,
-            curve_cos_4,
-            curve_cos_5,
-            curve_cos_6,
-            curve_sin_2,
-            curve_sin_3,
-            curve_sin_4,
-            curve_sin_5,
-            curve_sin_6,
-        } => {
-            let curve = if which == 0 {
-                [
-                    curve_cos_2,
-                    curve_cos_3,
-                    curve_cos_4,
-                    curve_cos_5,
-                    curve_cos_6,
-                ]
-            } else {
-                [
-                    curve_sin_2,
-                    curve_sin_3,
-                    curve_sin_4,
-                    curve_sin_5,
-                    curve_sin_6,
-                ]
-            };
-            y * drift(of(change_cos, change_sin), curve, at.time / at.whole)
-        }
+        Cause::Interference(ref line) => line.at(which, at.time),
+        Cause::OffsetDrift(ref drift) => drift.at(which, at.time / at.whole),
+        Cause::GainDrift(ref drift) => y * drift.at(which, at.time / at.whole),
         _ => 0.0,
     }
 }

@@ -7,7 +7,9 @@ mod cause;
 mod channel;
 mod converter;
 mod coupling;
+mod drift;
 mod flicker;
+mod interference;
 mod keys;
 mod lag;
 mod motion;
@@ -16,6 +18,8 @@ mod sensor;
 mod signals;
 
 pub use cause::{Cause, Channel};
+pub use drift::Drift;
+pub use interference::Interference;
 pub use motion::Motion;
 pub use sensor::{Adc, Sensor, SensorError, Signals};
 pub use signals::Samples;

@@ -1,5 +1,8 @@
 //! Vectors and waves are read back and replayed: model, recorded graph and scheduled graph agree with every value.
 
+#[path = "../../designs/shipped.rs"]
+mod shipped;
+
 use std::collections::HashMap;
 
 use nonius_codegen::evaluate::evaluate;
@@ -8,20 +11,13 @@ use nonius_codegen::{Files, generate};
 use nonius_model::chip::Chip;
 use nonius_model::design::Design;
 use nonius_model::graph::{Evaluation, Kind};
-use nonius_model::spec::Spec;
+use nonius_model::spec::Coding;
 use nonius_testvectors::read_vectors::{Row, rows};
 use nonius_testvectors::waves::{Waves, gtkw};
 use nonius_testvectors::{stimulus, vectors};
 use proptest::prelude::*;
 
-const ROWS: usize = 300;
-
-fn optical() -> Design {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../designs/optical.toml");
-    let text = std::fs::read_to_string(path).expect("designs/optical.toml");
-    let spec = Spec::from_toml(&text, "optical.toml").expect("a shipped design");
-    Design::new(&spec).expect("a shipped design")
-}
+const ROWS: usize = 120;
 
 fn chip_files(design: &Design) -> Files {
     generate(design, "test", &[]).expect("templates render")
@@ -31,10 +27,10 @@ fn word(raw: i128, bits: u32) -> u64 {
     (raw as u128 & ((1u128 << bits) - 1)) as u64
 }
 
-/// Columns of the registers before the sample, as the graph wants them: integers with their sign.
-fn integer(word: u64, bits: u32, flag: bool) -> i128 {
+/// A column as the graph wants it: an integer with its sign, if it has one.
+fn integer(word: u64, bits: u32, unsigned: bool) -> i128 {
     let word = i128::from(word);
-    if !flag && word >> (bits - 1) & 1 == 1 {
+    if !unsigned && word >> (bits - 1) & 1 == 1 {
         word - (1i128 << bits)
     } else {
         word
@@ -45,14 +41,20 @@ fn integer(word: u64, bits: u32, flag: bool) -> i128 {
 /// schedule on one and on three multipliers, give what the row says.
 #[test]
 fn vectors_replay_through_recorded_and_scheduled_graph() {
-    let design = optical();
-    let files = chip_files(&design);
+    for (kind, design) in shipped::kinds() {
+        replays(&kind, &design);
+    }
+}
+
+fn replays(kind: &str, design: &Design) {
+    let files = chip_files(design);
     let graph = &design.graph;
+    let signed = design.spec.adc.coding == Coding::TwosComplement;
     let schedules = [1, 3].map(|m| schedule(graph, m));
-    for stimulus in stimulus::named(&design, ROWS) {
-        let text = vectors::rows(&design, &stimulus, &files.columns);
+    for stimulus in stimulus::named(design, ROWS) {
+        let text = vectors::rows(design, &stimulus, &files.columns);
         let read: Vec<Row> =
-            rows(&text, design.spec.adc.bits, true, files.columns.len()).expect("rows");
+            rows(&text, design.spec.adc.bits, signed, files.columns.len()).expect("rows");
         assert_eq!(read.len(), ROWS);
         let mut registers: HashMap<&str, i128> = HashMap::new();
         for (row, sample) in read.iter().zip(&stimulus.samples) {
@@ -73,7 +75,7 @@ fn vectors_replay_through_recorded_and_scheduled_graph() {
             for ((name, id, bits), seen) in files.columns.iter().zip(&row.words) {
                 let next = graph.next.iter().find(|n| n.0 == *name).map(|n| n.1);
                 let node = next.unwrap_or(*id);
-                let place = || format!("{} sample {} {name}", stimulus.name, row.number);
+                let place = || format!("{kind}: {} sample {} {name}", stimulus.name, row.number);
                 assert_eq!(word(recorded.raw(node), *bits), *seen, "{}", place());
                 for timed in &timed {
                     let raw = timed[node.index()].unwrap_or_else(|| panic!("{} lost", place()));
@@ -91,13 +93,18 @@ fn vectors_replay_through_recorded_and_scheduled_graph() {
 
 #[test]
 fn waves_read_back_as_the_chip() {
-    let design = optical();
-    let files = chip_files(&design);
-    let stimuli = stimulus::named(&design, ROWS);
+    for (kind, design) in shipped::kinds() {
+        waves_read_back(&kind, &design);
+    }
+}
+
+fn waves_read_back(kind: &str, design: &Design) {
+    let files = chip_files(design);
+    let stimuli = stimulus::named(design, ROWS);
     let sweep = stimuli.iter().find(|s| s.name == "sweep").expect("sweep");
     let mut bytes = vec![];
-    let mut chip = Chip::bit_true(&design);
-    let mut waves = Waves::new(&mut bytes, &design, &files.columns, files.clocks).expect("memory");
+    let mut chip = Chip::bit_true(design);
+    let mut waves = Waves::new(&mut bytes, design, &files.columns, files.clocks).expect("memory");
     for s in &sweep.samples {
         let probes = chip.step_codes(s.cos, s.sin, s.preset, s.calibrate);
         waves.sample(s, &probes, &chip).expect("memory");
@@ -147,7 +154,7 @@ fn waves_read_back_as_the_chip() {
     assert!(strobed("rst_n")[1..].iter().all(|&v| v));
     let offered: Vec<bool> = (0..=4 * ROWS).map(|i| matches!(i % 4, 1 | 2)).collect();
     assert_eq!(strobed("sample_valid"), offered);
-    let mut replay = Chip::bit_true(&design);
+    let mut replay = Chip::bit_true(design);
     let position = header
         .find_var(&["chip_tb", "position_periods"])
         .expect("a real")
@@ -159,10 +166,11 @@ fn waves_read_back_as_the_chip() {
     for (k, (after, _)) in after.enumerate() {
         let (stamp, values, analogue) = after;
         let bits = design.spec.adc.bits;
-        let signed = |name: &str| integer(values[&path(name)] as u64, bits, false) as i64;
+        let unsigned = design.spec.adc.coding == Coding::OffsetBinary;
+        let code = |name: &str| integer(values[&path(name)] as u64, bits, unsigned) as i64;
         let probes = replay.step_codes(
-            signed("adc_cos"),
-            signed("adc_sin"),
+            code("adc_cos"),
+            code("adc_sin"),
             values[&path("preset")] == 1,
             values[&path("calibrate")] == 1,
         );
@@ -182,16 +190,20 @@ fn waves_read_back_as_the_chip() {
             assert_eq!(
                 values[&path(name)],
                 u128::from(word(expected.into(), *bits)),
-                "{name} at {k}"
+                "{kind}: {name} at {k}"
             );
         }
-        assert_eq!(analogue[&position], replay.position(), "position at {k}");
+        assert_eq!(
+            analogue[&position],
+            replay.position(),
+            "{kind}: position at {k}"
+        );
     }
 }
 
 #[test]
 fn the_save_file_names_signals_that_are_there() {
-    let design = optical();
+    let design = shipped::design("optical");
     let files = chip_files(&design);
     let mut bytes = vec![];
     Waves::new(&mut bytes, &design, &files.columns, files.clocks)
@@ -216,7 +228,7 @@ fn the_save_file_names_signals_that_are_there() {
 proptest! {
     #[test]
     fn damaged_vectors_are_refused_by_line(at in 0usize..2000, byte in any::<u8>()) {
-        let design = optical();
+        let design = shipped::design("optical");
         let files = chip_files(&design);
         let stimuli = stimulus::named(&design, 10);
         let text = vectors::rows(&design, &stimuli[1], &files.columns);

@@ -1,22 +1,15 @@
 //! The stimulus `ties` makes what its name says.
 
-use std::path::Path;
+#[path = "../../designs/shipped.rs"]
+mod shipped;
 
-use nonius_model::design::Design;
-use nonius_model::spec::Spec;
 use nonius_testvectors::stimulus::named;
 use nonius_testvectors::ties::Ties;
 
-fn shipped(name: &str) -> Design {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../designs/{name}.toml"));
-    let text = std::fs::read_to_string(path).expect("a shipped design");
-    Design::new(&Spec::from_toml(&text, name).expect("a shipped design")).expect("it works")
-}
-
 #[test]
 fn every_rounding_meets_a_tie() {
-    for name in ["optical", "magnetic", "interferometer"] {
-        let design = shipped(name);
+    for name in shipped::NAMES {
+        let design = shipped::design(name);
         let ties = Ties::new(&design);
         let stimuli = named(&design, 2000);
         let searched = stimuli.iter().find(|s| s.name == "ties").expect("ties");

@@ -49,32 +49,6 @@ pub(crate) fn glitches(draw: &mut Draw) -> Box<dyn Effect> {
     Box::new(Glitches { hits })
 }
 
-/// Samples lost; the magnitude, less one, is the number of the set of places.
-struct Dropped {
-    sets: Sets,
-    clock: bool,
-}
-
-impl Effect for Dropped {
-    fn name(&self) -> &'static str {
-        "dropped_samples"
-    }
-    fn takes_reference_along(&self) -> bool {
-        true
-    }
-    fn limit(&self) -> f64 {
-        self.sets.limit()
-    }
-    fn choices(&self) -> Option<Vec<f64>> {
-        Some(self.sets.choices())
-    }
-    fn damage(&self, m: f64, rows: &mut Rows, _world: &World) {
-        for k in self.sets.chosen(m) {
-            rows.drop_sample(*k, self.clock);
-        }
-    }
-}
-
 /// Sets of places, each from the last to the first, not at the ends: which set is the magnitude.
 struct Sets(Vec<Vec<usize>>);
 
@@ -109,25 +83,32 @@ impl Sets {
     }
 }
 
-pub(crate) fn dropped(draw: &mut Draw) -> Box<dyn Effect> {
-    let sets = Sets::draw(draw, 4);
-    // Most loggers count; some have a clock and show the gap.
-    let clock = draw.random.random_bool(0.3);
-    Box::new(Dropped { sets, clock })
+/// What happens to the sample at a place.
+#[derive(Clone, Copy)]
+enum Fate {
+    /// It is lost; a time base that is a clock shows the gap.
+    Dropped { clock: bool },
+    /// It is shown twice, and what follows comes later.
+    Doubled,
+    /// It is shown again in the place of the next one, and the time base goes on as it should.
+    Held,
 }
 
-/// Samples shown twice; wild: in the place of the next one, and the time base goes on as it should.
-struct Repeated {
+/// Samples that are missing or too many; the magnitude, less one, is the number of the set of places.
+struct Slips {
     sets: Sets,
-    hold: bool,
+    fate: Fate,
 }
 
-impl Effect for Repeated {
+impl Effect for Slips {
     fn name(&self) -> &'static str {
-        "repeated_samples"
+        match self.fate {
+            Fate::Dropped { .. } => "dropped_samples",
+            Fate::Doubled | Fate::Held => "repeated_samples",
+        }
     }
     fn takes_reference_along(&self) -> bool {
-        !self.hold
+        !matches!(self.fate, Fate::Held)
     }
     fn limit(&self) -> f64 {
         self.sets.limit()
@@ -137,19 +118,28 @@ impl Effect for Repeated {
     }
     fn damage(&self, m: f64, rows: &mut Rows, _world: &World) {
         for k in self.sets.chosen(m) {
-            if self.hold {
-                rows.hold(*k);
-            } else {
-                rows.double(*k);
+            match self.fate {
+                Fate::Dropped { clock } => rows.drop_sample(*k, clock),
+                Fate::Doubled => rows.double(*k),
+                Fate::Held => rows.hold(*k),
             }
         }
     }
 }
 
+pub(crate) fn dropped(draw: &mut Draw) -> Box<dyn Effect> {
+    let sets = Sets::draw(draw, 4);
+    // Most loggers count; some have a clock and show the gap.
+    let clock = draw.random.random_bool(0.3);
+    Box::new(Slips {
+        sets,
+        fate: Fate::Dropped { clock },
+    })
+}
+
+/// Wild: held.
 pub(crate) fn repeated(draw: &mut Draw) -> Box<dyn Effect> {
     let sets = Sets::draw(draw, 12);
-    Box::new(Repeated {
-        sets,
-        hold: draw.wild,
-    })
+    let fate = if draw.wild { Fate::Held } else { Fate::Doubled };
+    Box::new(Slips { sets, fate })
 }

@@ -2,6 +2,9 @@
 
 mod angle;
 mod code;
+mod direction;
+mod high_pass;
+mod lag;
 mod line;
 mod place;
 mod revolution;
@@ -56,6 +59,7 @@ impl Catalogue {
         angle::enter(context, &mut this);
         code::enter(context, &mut this);
         speed::enter(context, &mut this);
+        high_pass::enter(context, &mut this);
         time::enter(context, &mut this);
         revolution::enter(context, &mut this);
         for (id, candidate) in this.candidates.iter_mut().enumerate() {

@@ -46,11 +46,9 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
         catalogue.generic(Domain::Time, orders);
     }
     // Over a period or two, time and angle are one, and a polynomial of time is any shape of the angle.
-    let way: f64 = context.speed.iter().map(|v| v.abs()).sum();
-    let periods = way / context.rate / std::f64::consts::TAU;
     let mut drivers: Vec<(&'static str, Modulated, usize)> = [1, 3, DEGREE]
         .into_iter()
-        .filter(|degree| periods >= 3.0 * *degree as f64)
+        .filter(|degree| context.periods_travelled() >= 3.0 * *degree as f64)
         .map(|degree| ("time", time, degree))
         .collect();
     if drivers.is_empty() {

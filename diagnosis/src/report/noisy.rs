@@ -38,9 +38,8 @@ pub(super) fn of(finding: &Finding, found: &Diagnosis) -> Vec<Plot> {
         }
         "clock_jitter" => {
             let rms = finding.parameter("rms_s").unwrap_or(0.0);
-            let top = context.speed.iter().fold(0.0f64, |m, v| m.max(v.abs()));
             let value = |k: usize| (context.speed[k].abs(), tangential[k]);
-            let sizes = sizes(n, &context.weight, &value, [0.0, top]);
+            let sizes = sizes(n, &context.weight, &value, [0.0, context.top_speed()]);
             let label = "speed, radians of a scale period per second";
             vec![drawn(
                 "Noise of the angle against speed",

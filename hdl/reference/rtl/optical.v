@@ -5,7 +5,7 @@
 // radial residual rho shows what the correction still misses and moves its parameters theta.
 // After S. Balemi, "Automatic calibration of sinusoidal encoder signals", IFAC 2005; equation numbers are the paper's.
 //
-// Design a31246b9e5bd: 16 products on 1 multiplier, 19 clocks per sample.
+// Design 5968616ecbb4: 16 products on 1 multiplier, 19 clocks per sample.
 //
 // Formats: sW.F is a two's complement number of W bits, F of them behind the point; uW.F has no sign and is kept here
 // with a zero in front, so that every number is signed. Angles are in turns of a scale period. A signal that saturates
@@ -51,7 +51,7 @@
 //     half_bit           0.0000019073486328125   Half a bit of the sine phase: what was cut off, on average.
 //     half_segment       0.001953125             Half a sine table segment.
 //     lock_error         0.375                   Largest |e| in lock, radians.
-//     lock_residual      0.5625                  Largest |ρ| in lock.
+//     lock_residual      0.5                     Largest |ρ| in lock.
 //     weak_signal        0.25                    Corrected signals below this are lost.
 //     restart_residual   0.25                    |ρ| above this restarts the γ gears.
 //     direction_rate     0.0000152587890625      Rate below which the direction does not change, turns per sample.
@@ -68,7 +68,7 @@
 //     quarter            0.25                    ¼.
 //     minus_weak_signal  -0.25
 //     minus_lock_error   -0.375
-//     minus_lock_residual -0.5625
+//     minus_lock_residual -0.5
 //     minus_one          -1
 //     minus_direction_rate -0.0000152587890625
 //     minus_restart_residual -0.25
@@ -347,7 +347,7 @@ module optical (
     // Lock window
     //   |e| and |rho| below their limits, signal present
     //   (calibration needs lock: the update would otherwise drive the gains to zero)
-    wire in_window_condition_3_now = ($signed(rho_now[17:12]) < 6'sd9) & ~($signed(rho_now[17:12]) < 6'sh37); // step 9
+    wire in_window_condition_3_now = ($signed(rho_now[17:15]) < 3'sd1) & ~($signed(rho_now[17:15]) < 3'sh7); // step 9
     wire in_window_condition_now = ~signal_lost_next_now; // step 8
     wire in_window_now = ((($signed(e[17:13]) < 5'sd3) & ~($signed(e[17:13]) < 5'sh1d)) & in_window_condition_3) & in_window_condition; // step 12
     wire flip_condition_now = ~(locked | signal_lost_next_now); // step 8
@@ -450,7 +450,7 @@ module optical (
     wire signed [17:0] rho_s_now = {{2{rho_s_rounded[15]}}, rho_s_rounded}; // s18.16, step 13
 
     // Parameter update
-    //   theta -= gamma (2 y_c rho_c, rho_c, 2 y_s rho_s, rho_s, 8 y_c rho_s), 2 and 8 times 1/amplitude^2 as a power of two
+    //   theta -= gamma gradient, each component times a power of two that lets all parameters converge alike
     //   (paper section 5.5.1, M of equation (7))
     wire signed [26:0] gradient_5 = product_0[26:0]; // s27.27, step 17
     wire signed [26:0] y_c_times_rho_c = product_0[26:0]; // s27.27, step 15

@@ -2,23 +2,16 @@
 
 #![allow(dead_code, reason = "each test binary uses its own part")]
 
-use std::fs;
+#[path = "../../../designs/shipped.rs"]
+pub(crate) mod shipped;
+
+#[allow(unused_imports, reason = "each test binary uses its own part")]
+pub(crate) use shipped::optical;
+
 use std::path::Path;
 
 use nonius_model::design::Design;
 use nonius_model::spec::Spec;
-
-/// A shipped design.
-pub(crate) fn shipped(name: &str) -> Spec {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../designs/{name}.toml"));
-    let text = fs::read_to_string(path).expect("a shipped design");
-    Spec::from_toml(&text, name).expect("a shipped design")
-}
-
-/// The optical one.
-pub(crate) fn optical() -> Spec {
-    shipped("optical")
-}
 
 /// Writes what `nonius build` writes; `rows` samples of every stimulus.
 pub(crate) fn write(spec: &Spec, rows: usize, dir: &Path) {

@@ -30,7 +30,23 @@ pub(super) fn between(
     if value.is_finite() && value >= low && value <= high {
         return Ok(());
     }
-    refuse(field, value, format!("{low} … {high}"), reason)
+    let limit = format!("{} … {}", number(low), number(high));
+    refuse(field, number(value), limit, reason)
+}
+
+/// Short, whatever its size.
+pub(super) fn number(value: f64) -> String {
+    let plain = value.to_string();
+    if plain.len() <= 9 {
+        return plain;
+    }
+    let rounded = format!("{value:.4e}").parse().unwrap_or(value);
+    let plain = rounded.to_string();
+    if plain.len() <= 9 {
+        plain
+    } else {
+        format!("{rounded:e}")
+    }
 }
 
 /// Checks every field for sense.
@@ -295,6 +311,19 @@ const PINS: [&str; 8] = [
     "start",
     "last",
 ];
+
+/// Refuses more multipliers than there are products.
+pub(super) fn used(multipliers: Multipliers, graph: &Graph) -> Result<(), DesignError> {
+    match multipliers {
+        Multipliers::Count(n) if n as usize > graph.products().max(1) => refuse(
+            "chip.multipliers",
+            n,
+            format!("1 … {} or \"all\"", graph.products().max(1)),
+            "each sample of this chip has so many products; more multipliers would stand idle",
+        ),
+        _ => Ok(()),
+    }
+}
 
 /// The module is called like none of its signals: linters would say that one hides the other.
 pub(super) fn apart(name: &str, graph: &Graph) -> Result<(), DesignError> {

@@ -77,6 +77,7 @@ impl Design {
         let skew = skew::settle(spec, &budget, &mut structure, &constants);
         let graph = record(&structure, &constants, chip_kernel)?;
         check::apart(&spec.name, &graph)?;
+        check::used(spec.chip.multipliers, &graph)?;
         Ok(Self {
             spec: spec.clone(),
             tracking,

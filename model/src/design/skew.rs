@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use super::check::{between, refuse};
+use super::check::{between, number, refuse};
 use super::{Budget, DesignError, Loop};
 use crate::kernel::skew::{Order, correct};
 use crate::kernel::{Coefficients, Constant, Structure};
@@ -55,7 +55,7 @@ pub(super) fn check(spec: &Spec, tracking: &Loop) -> Result<(), DesignError> {
         let limit = PHASE_MAX / TAU / spec.sensor.speed_max_periods_per_s;
         return refuse(
             field,
-            delay,
+            number(delay),
             format!("±{limit:.3e} at this largest speed"),
             format!(
                 "at sensor.speed_max_periods_per_s the sine would run {:.2} rad ahead, and the series that turns it back \
@@ -67,7 +67,7 @@ pub(super) fn check(spec: &Spec, tracking: &Loop) -> Result<(), DesignError> {
     if !steady(tracking, 1.5 * delay * spec.adc.sample_rate_hz) {
         return refuse(
             field,
-            delay,
+            number(delay),
             "nearer to 0, or a narrower loop",
             "the correction follows the loop's own speed, and with a loop as wide as this one both would swing",
         );

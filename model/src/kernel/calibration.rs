@@ -67,7 +67,7 @@ const STEP: [&str; 8] = [
 
 static UPDATE: Formula = Formula {
     title: "Parameter update",
-    equation: "theta -= gamma (2 y_c rho_c, rho_c, 2 y_s rho_s, rho_s, 8 y_c rho_s), 2 and 8 times 1/amplitude^2 as a power of two",
+    equation: "theta -= gamma gradient, each component times a power of two that lets all parameters converge alike",
     source: "paper section 5.5.1, M of equation (7)",
 };
 

@@ -107,10 +107,28 @@ fn place(text: &str, error: &toml::de::Error) -> String {
             let before = text.get(..span.start).unwrap_or_default();
             let line = before.matches('\n').count() + 1;
             let column = before.rsplit('\n').next().map_or(0, |l| l.chars().count()) + 1;
-            format!("{line}:{column}: {message}")
+            let here = text.lines().nth(line - 1).unwrap_or_default();
+            let key = here.split_once('=').map_or("", |(key, _)| key.trim());
+            let named =
+                message.contains(&format!("`{key}`")) || key.is_empty() || key.starts_with('#');
+            let of = if named {
+                String::new()
+            } else {
+                format!("{key}: ")
+            };
+            format!("{line}:{column}: {of}{}", plain(message))
         }
-        None => format!("1: {message}"),
+        None => format!("1: {}", plain(message)),
     }
+}
+
+/// Without the names that Rust has for kinds of numbers.
+fn plain(message: &str) -> String {
+    message
+        .replace("expected u32", "expected a whole number, 0 or more")
+        .replace("expected f64", "expected a number")
+        .replace("floating point `", "`")
+        .replace("integer `", "`")
 }
 
 fn unknown_keys(table: &Table, text: &str, file: &str) -> Result<(), SpecError> {

@@ -1,6 +1,12 @@
 //! A bit-true chip, a sensor in front of it, and how far its parameters are from the truth.
 #![allow(dead_code, reason = "each test uses its own part")]
 
+#[path = "../../../designs/shipped.rs"]
+mod shipped;
+
+#[allow(unused_imports, reason = "each test binary uses its own part")]
+pub(crate) use shipped::optical;
+
 use std::f64::consts::TAU;
 
 use nonius_model::bits::Bits;
@@ -9,13 +15,6 @@ use nonius_model::design::Design;
 use nonius_model::physical::Converter;
 use nonius_model::spec::Spec;
 use rand::{Rng, SeedableRng, rngs::StdRng};
-
-/// The shipped optical design.
-pub(crate) fn optical() -> Spec {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../designs/optical.toml");
-    let text = std::fs::read_to_string(path).expect("designs/optical.toml");
-    Spec::from_toml(&text, "optical.toml").expect("a shipped design")
-}
 
 /// White noise of unit variance.
 pub(crate) struct Noise(StdRng);

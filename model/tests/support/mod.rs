@@ -1,17 +1,13 @@
 //! Simulated encoders for the tests of the chip.
 #![allow(dead_code, reason = "each test binary uses its own part")]
 
+#[path = "../../../designs/shipped.rs"]
+pub(crate) mod shipped;
+
+#[allow(unused_imports, reason = "each test binary uses its own part")]
+pub(crate) use shipped::optical;
+
 use nonius_model::spec::Spec;
-
-pub(crate) fn shipped(name: &str) -> Spec {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../designs");
-    let text = std::fs::read_to_string(format!("{folder}/{name}.toml")).expect("a shipped design");
-    Spec::from_toml(&text, name).expect("a shipped design")
-}
-
-pub(crate) fn optical() -> Spec {
-    shipped("optical")
-}
 
 /// Equation (4), as fractions of the ADC's range, and the ADC.
 pub(crate) struct Encoder {

@@ -1,15 +1,44 @@
-//! Whether a kept file still says what is measured, its numbers within what another machine may change.
+//! For tests: files that are kept in the repository are compared with what is made now, and written anew where
+//! `NONIUS_BLESS` is set.
 
+use std::fs;
 use std::path::Path;
 
-/// Whether files are to be written anew.
-pub(crate) fn blessed() -> bool {
+/// Whether kept files are to be written anew.
+#[must_use]
+pub fn blessed() -> bool {
     std::env::var_os("NONIUS_BLESS").is_some()
 }
 
-/// Fails where the file says something else, or a number that is off by more than `slack` of it; `how` makes it anew.
-pub(crate) fn check(file: &Path, text: &str, slack: impl Fn(f64) -> f64, how: &str) {
-    let kept = std::fs::read_to_string(file).unwrap_or_default();
+/// Writes the file anew where that is asked for.
+///
+/// # Panics
+/// The file cannot be written.
+fn bless(file: &Path, text: &str) {
+    if blessed() {
+        let folder = file.parent().unwrap_or(Path::new(""));
+        let written = fs::create_dir_all(folder).and_then(|()| fs::write(file, text));
+        written.unwrap_or_else(|e| panic!("{}: {e}", file.display()));
+    }
+}
+
+/// The file says exactly this; `how` makes it anew.
+///
+/// # Panics
+/// The file says something else.
+#[track_caller]
+pub fn same(file: &Path, text: &str, how: &str) {
+    near(file, text, |_| 0.0, how);
+}
+
+/// The file says this, its numbers within `slack` of what another machine may change; `how` makes it anew.
+///
+/// # Panics
+/// The file says something else.
+#[track_caller]
+pub fn near(file: &Path, text: &str, slack: impl Fn(f64) -> f64, how: &str) {
+    bless(file, text);
+    let kept = fs::read_to_string(file).unwrap_or_default();
     if let Some((was, is)) = first_difference(&kept, text, slack) {
         panic!("{}: {was:?} is {is:?} now; stale: {how}", file.display());
     }
@@ -39,7 +68,7 @@ fn first_difference(
         let (was, is) = (a.next(), b.next());
         let number = |part: Option<&str>| part?.parse::<f64>().ok();
         let near = match (number(was), number(is)) {
-            (Some(x), Some(y)) => (x - y).abs() <= slack(x),
+            (Some(x), Some(y)) if was != is => (x - y).abs() <= slack(x) && slack(x) > 0.0,
             _ => was == is,
         };
         if !near {
@@ -52,6 +81,7 @@ fn first_difference(
 #[test]
 fn differences_are_seen() {
     let differs = |a: &str, b: &str| first_difference(a, b, |x| 0.01 * x.abs()).is_some();
+    assert!(first_difference("1.0", "1.00", |_| 0.0).is_some());
     assert!(!differs("M1.00 2.00h0, 3 °", "M1.001 2.01h0, 3 °"));
     assert!(differs("M1.00 2.00h0", "M1.00 2.10h0"));
     assert!(differs("order 3", "order 3 of"));

@@ -1,0 +1,82 @@
+//! What turns over with the direction of motion, and what follows the acceleration.
+
+use std::rc::Rc;
+
+use super::speed::{ACCELERATION, SIGN, SOFT, Speed, cause};
+use super::{ACCELERATION_GAIN, HYSTERESIS};
+use crate::cause::Candidate;
+use crate::context::Context;
+use crate::trig::{Trig, channel, normalised};
+
+fn reverses(context: &Context) -> bool {
+    let least = 0.02 * context.top_speed();
+    let share = |sign: f64| {
+        let with = context.speed.iter().filter(|v| **v * sign > least);
+        with.count() as f64 / context.samples() as f64
+    };
+    share(1.0) > 0.01 && share(-1.0) > 0.01
+}
+
+/// The direction of motion; at rest, the one in which it came. What the speed is below a small share of the largest is its
+/// sign only if it goes on to more.
+pub(super) fn sides(context: &Context) -> Vec<f64> {
+    const REST: f64 = 0.01;
+    let (speed, rest) = (&context.speed, REST * context.top_speed());
+    let moves = |v: &f64| v.abs() > rest;
+    let mut side = speed.iter().find(|v| moves(v)).map_or(1.0, |v| v.signum());
+    let mut list = vec![side; speed.len()];
+    for k in 0..speed.len() {
+        if moves(&speed[k]) && speed[k].signum() != side {
+            side = speed[k].signum();
+            // It turned where the speed last was zero.
+            let turned = speed[..k].iter().rposition(|v| v.signum() != side);
+            list[turned.map_or(0, |t| t + 1)..k].fill(side);
+        }
+        list[k] = side;
+    }
+    list
+}
+
+/// Offsets with the direction of motion, turning over at once or over some way.
+pub(super) fn hysteresis(context: &Context, speed: &Speed) -> Vec<Candidate> {
+    if !reverses(context) {
+        return vec![];
+    }
+    let turnings = [SIGN, SOFT];
+    let one = |turning: usize| {
+        let offset = Trig::constant(1.0);
+        let shapes = [0, 1].map(|which| {
+            speed
+                .by
+                .shape(turning, &channel(speed.beta, which, &offset))
+        });
+        Candidate {
+            trials: turnings.len() as f64,
+            evidence: Rc::new(|p| {
+                format!(
+                    "the offsets change with the direction of motion by {:.4} % (cos) and {:.4} % (sin) of the amplitude",
+                    p[0].value * 200.0,
+                    p[1].value * 200.0
+                )
+            }),
+            ..cause(
+                HYSTERESIS,
+                shapes.into(),
+                &["offset_cos", "offset_sin"],
+                "amplitude",
+            )
+        }
+    };
+    turnings.map(one).into()
+}
+
+/// A head that tilts with the acceleration is no cause of the catalogue, and must not be taken for one.
+pub(super) fn tilt(speed: &Speed) -> Candidate {
+    let beta = speed.beta;
+    let gain = |which: usize| {
+        let own = channel(beta, which, &normalised(beta)[which]);
+        speed.by.shape(ACCELERATION, &own)
+    };
+    let shapes = [0, 1].map(gain).into();
+    cause(ACCELERATION_GAIN, shapes, &["gain"], "1")
+}

@@ -1,0 +1,103 @@
+//! AC coupling: a first-order high pass takes the slow part of the signals away.
+
+use std::cell::RefCell;
+use std::f64::consts::TAU;
+use std::rc::Rc;
+
+use super::Catalogue;
+use super::speed::follows;
+use crate::block::Block;
+use crate::cause::{Candidate, Domain, Exact, Sign};
+use crate::context::Context;
+use crate::finding::{Chip, Parameter};
+use crate::library::{Library, Shape};
+
+/// Scale periods of travel that ac coupling needs to be told from shapes of the angle.
+const FEWEST: f64 = 6.0;
+
+/// The slow part of a channel, block after block.
+fn slow(block: &Block, which: usize, rate: f64, state: &RefCell<(usize, f64)>) -> Vec<f64> {
+    let mut state = state.borrow_mut();
+    if block.start != state.0 {
+        *state = (block.start, 0.0);
+    }
+    let mut now = state.1;
+    let values = block.u[which]
+        .iter()
+        .map(|v| {
+            now += rate * (v - now);
+            -now
+        })
+        .collect();
+    *state = (block.start + block.len(), now);
+    values
+}
+
+/// What a high pass takes away, over its corner frequency in hertz.
+fn high_pass(sample_rate: f64) -> impl Fn(f64, &mut Library) -> Vec<Shape> + 'static {
+    move |corner, library| {
+        let rate = (TAU * corner / sample_rate).clamp(0.0, 0.5);
+        let states: [RefCell<(usize, f64)>; 2] = Default::default();
+        let mut shapes = vec![library.pair(move |block: &Block, c, s| {
+            let [cos, sin] = [0, 1].map(|which| {
+                let mut lost = slow(block, which, rate, &states[which]);
+                lost.iter_mut().for_each(|v| *v /= corner.max(1e-300));
+                lost
+            });
+            block.raw(&cos, &sin, c, s);
+        })];
+        // The charge of either capacitor when the recording begins is anything; it leaks away.
+        shapes.extend([0, 1].map(|which| {
+            library.pair(move |block: &Block, c, s| {
+                let left = |t: &f64| (-TAU * corner * t).exp();
+                let change: Vec<f64> = block.time.iter().map(left).collect();
+                block.channel(which, &change, c, s);
+            })
+        }));
+        shapes
+    }
+}
+
+pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
+    let duration = context.samples() as f64 / context.rate;
+    // Over a few periods, what leaks away is any shape of the angle.
+    if context.periods_travelled() < FEWEST {
+        return;
+    }
+    // At the lowest corner a charge leaks away along a line, as it does at any below.
+    let (mut corner, mut least) = (0.03 / duration, 0.0);
+    let corners = (context.rate / 30.0 / corner).log(3.0).floor().max(1.0);
+    while corner < context.rate / 30.0 {
+        let make = high_pass(context.rate);
+        let shapes = make(corner, &mut catalogue.library);
+        catalogue.candidates.push(Candidate {
+            name: "ac_coupling",
+            domain: Domain::Speed,
+            trials: corners,
+            shapes,
+            motion: false,
+            id: 0,
+            exact: follows(corner, make).map(|e| Exact {
+                steps: vec![0.01 * corner],
+                ..e
+            }),
+            sign: Sign::Known(least),
+            chip: Chip::CannotCorrect,
+            parameters: Rc::new(move |e| {
+                let (value, error) = match e.inner_error {
+                    Some(error) => (e.inner[0], error[0]),
+                    None => (e.x[0], e.error[0]),
+                };
+                vec![Parameter::measured("corner_hz", value, error, "Hz")]
+            }),
+            evidence: Rc::new(|p| {
+                format!(
+                    "slow parts of the signals are missing, as behind a high pass of {:.3e} Hz",
+                    p[0].value
+                )
+            }),
+        });
+        least = corner;
+        corner *= 3.0;
+    }
+}

@@ -1,0 +1,138 @@
+//! Causes that grow with the speed or turn over with its sign.
+
+use crate::harness::{Case, NOISE, PLAIN, alone, finds, near, within_errors};
+
+#[test]
+fn delays_and_bandwidths() {
+    let found = finds(
+        "channel_skew",
+        &Case {
+            seen: |a, v| (a, a + 1e-6 * v),
+            ..PLAIN
+        },
+    );
+    near(&found, "delay_s", 1e-6);
+    finds(
+        "bandwidth_mismatch",
+        &Case {
+            seen: |a, v| (a, a - (2e-6 * v).atan()),
+            channels: |c, s, _, _, v| (c, s / (1.0 + (2e-6 * v).powi(2)).sqrt()),
+            ..PLAIN
+        },
+    );
+    let found = finds(
+        "common_bandwidth",
+        &Case {
+            channels: |c, s, _, _, v| {
+                let g = 1.0 / (1.0 + (2e-5 * v).powi(2)).sqrt();
+                (c * g, s * g)
+            },
+            ..PLAIN
+        },
+    );
+    near(&found, "tau_s", 2e-5);
+    let found = finds(
+        "latency",
+        &Case {
+            seen: |a, v| (a - 3e-6 * v, a - 3e-6 * v),
+            reference: true,
+            ..PLAIN
+        },
+    );
+    near(&found, "delay_s", 3e-6);
+}
+
+#[test]
+fn crosstalk_and_hysteresis() {
+    finds(
+        "delayed_crosstalk",
+        &Case {
+            channels: |c, s, _, a, v| {
+                (
+                    c + 0.1 * (a - 1e-5 * v).sin(),
+                    s + 0.05 * (a - 1e-5 * v).cos(),
+                )
+            },
+            ..PLAIN
+        },
+    );
+    let found = finds(
+        "hysteresis",
+        &Case {
+            channels: |c, s, _, _, v| (c + 0.002 * v.signum(), s - 0.001 * v.signum()),
+            ..PLAIN
+        },
+    );
+    near(&found, "offset_cos", 0.002);
+}
+
+#[test]
+fn clock_jitter() {
+    finds(
+        "clock_jitter",
+        &Case {
+            noise: |_, slope, v, n| NOISE * n[0] + slope * v * 6e-7 * n[1],
+            ..PLAIN
+        },
+    );
+}
+
+#[test]
+fn large() {
+    // The largest speed is some 3.4e3 rad/s: a tenth of a radian.
+    let found = alone(
+        "bandwidth_mismatch",
+        &Case {
+            tau: [0.0, 3e-5],
+            ..PLAIN
+        },
+    );
+    within_errors(&found, "tau_sin_s", 3e-5);
+    let found = alone(
+        "channel_skew",
+        &Case {
+            seen: |a, v| (a, a + 3e-5 * v),
+            ..PLAIN
+        },
+    );
+    within_errors(&found, "delay_s", 3e-5);
+    let found = alone(
+        "common_bandwidth",
+        &Case {
+            tau: [1e-4, 1e-4],
+            ..PLAIN
+        },
+    );
+    within_errors(&found, "tau_s", 1e-4);
+    // A third of a radian late, of a hundredth: where the fraction itself is large, its square turns the channels, and
+    // that is not in the shape.
+    alone(
+        "delayed_crosstalk",
+        &Case {
+            channels: |c, s, _, a, v| {
+                (
+                    c + 0.01 * (a - 0.04 - 1e-4 * v).sin(),
+                    s + 0.008 * (a - 1e-4 * v).cos(),
+                )
+            },
+            ..PLAIN
+        },
+    );
+    let found = alone(
+        "hysteresis",
+        &Case {
+            channels: |c, s, _, _, v| (c + 0.003 * v.signum(), s - 0.004 * v.signum()),
+            ..PLAIN
+        },
+    );
+    within_errors(&found, "offset_cos", 0.003);
+    let found = alone(
+        "latency",
+        &Case {
+            seen: |a, v| (a - 3e-5 * v, a - 3e-5 * v),
+            reference: true,
+            ..PLAIN
+        },
+    );
+    within_errors(&found, "delay_s", 3e-5);
+}

@@ -1,0 +1,110 @@
+//! Static causes of each channel.
+
+use crate::harness::{Case, LSB, PLAIN, alone, finds, near, shows, within_errors};
+
+#[test]
+fn bends_and_harmonics() {
+    let found = finds(
+        "even_nonlinearity",
+        &Case {
+            channels: |c, s, _, _, _| (c + 0.003 * c * c, s + 0.002 * s * s),
+            ..PLAIN
+        },
+    );
+    near(&found, "k_cos", 0.003);
+    near(&found, "k_sin", 0.002);
+    let found = finds(
+        "odd_nonlinearity",
+        &Case {
+            channels: |c, s, _, _, _| (c + 0.004 * c.powi(3), s - 0.003 * s.powi(3)),
+            ..PLAIN
+        },
+    );
+    near(&found, "k_cos", 0.004);
+    let found = finds(
+        "spatial_harmonic",
+        &Case {
+            channels: |c, s, _, a, _| {
+                (
+                    c + 0.002 * (4.0 * a + 1.0).cos(),
+                    s + 0.003 * (4.0 * a).sin(),
+                )
+            },
+            ..PLAIN
+        },
+    );
+    near(&found, "amplitude_cos", 0.002);
+}
+
+#[test]
+fn rails_and_codes() {
+    finds(
+        "saturation",
+        &Case {
+            channels: |c, s, _, _, _| {
+                (c - 0.05 * (c - 0.8).max(0.0), s - 0.05 * (s - 0.8).max(0.0))
+            },
+            ..PLAIN
+        },
+    );
+    finds(
+        "adc_nonlinearity",
+        &Case {
+            channels: |c, s, _, _, _| (c + 0.0005 * (c + 0.02).signum(), s),
+            ..PLAIN
+        },
+    );
+    shows("stuck_bit", |rows| {
+        for row in rows {
+            let code = (row[1] / LSB).round() as i64 + 8192;
+            row[1] = ((code & !8) - 8192) as f64 * LSB;
+        }
+    });
+    shows("coarse_quantisation", |rows| {
+        for row in rows {
+            row[1] = (row[1] / LSB / 16.0).round() * 16.0 * LSB;
+        }
+    });
+}
+
+#[test]
+fn large() {
+    let found = alone(
+        "spatial_harmonic",
+        &Case {
+            channels: |c, s, _, a, _| {
+                (c + 0.05 * (3.0 * a + 0.4).cos(), s + 0.04 * (3.0 * a).sin())
+            },
+            ..PLAIN
+        },
+    );
+    within_errors(&found, "amplitude_cos", 0.05);
+    within_errors(&found, "amplitude_sin", 0.04);
+    let found = alone(
+        "even_nonlinearity",
+        &Case {
+            channels: |c, s, _, _, _| (c + 0.05 * c * c, s - 0.04 * s * s),
+            ..PLAIN
+        },
+    );
+    within_errors(&found, "k_cos", 0.05);
+    let found = alone(
+        "odd_nonlinearity",
+        &Case {
+            channels: |c, s, _, _, _| (c - 0.06 * c.powi(3), s - 0.05 * s.powi(3)),
+            ..PLAIN
+        },
+    );
+    within_errors(&found, "k_sin", -0.05);
+    let found = alone(
+        "saturation",
+        &Case {
+            channels: |c, s, _, _, _| {
+                let pressed = |v: f64| v - 0.3 * (v - 0.77).max(0.0);
+                (pressed(c), pressed(s))
+            },
+            ..PLAIN
+        },
+    );
+    within_errors(&found, "threshold", 0.77);
+}

@@ -1,0 +1,95 @@
+//! Causes that change with time: lines and slow changes.
+
+use std::f64::consts::TAU;
+
+use crate::harness::{Case, PLAIN, alone, finds, near, within_errors};
+
+#[test]
+fn lines() {
+    let found = finds(
+        "interference",
+        &Case {
+            channels: |c, s, t, _, _| {
+                (
+                    c + 0.001 * (TAU * 150.0 * t).cos(),
+                    s + 0.0015 * (TAU * 150.0 * t + 2.0).cos(),
+                )
+            },
+            ..PLAIN
+        },
+    );
+    near(&found, "frequency_hz", 150.0);
+    near(&found, "amplitude_sin", 0.0015);
+    let found = finds(
+        "amplitude_ripple",
+        &Case {
+            channels: |c, s, t, _, _| {
+                let m = 1.0 + 0.001 * (TAU * 333.0 * t).cos();
+                (c * m, s * m)
+            },
+            ..PLAIN
+        },
+    );
+    near(&found, "depth", 0.001);
+}
+
+#[test]
+fn slow_changes() {
+    finds(
+        "offset_drift",
+        &Case {
+            channels: |c, s, t, _, _| (c + 0.01 * t, s - 0.008 * t),
+            ..PLAIN
+        },
+    );
+    finds(
+        "gain_drift",
+        &Case {
+            channels: |c, s, t, _, _| (c * (1.0 + 0.01 * t), s * (1.0 - 0.006 * t)),
+            ..PLAIN
+        },
+    );
+}
+
+#[test]
+fn large() {
+    let found = alone(
+        "interference",
+        &Case {
+            channels: |c, s, t, _, _| {
+                (
+                    c + 0.05 * (TAU * 151.3 * t).cos(),
+                    s + 0.04 * (TAU * 151.3 * t + 2.0).cos(),
+                )
+            },
+            ..PLAIN
+        },
+    );
+    within_errors(&found, "frequency_hz", 151.3);
+    within_errors(&found, "amplitude_sin", 0.04);
+    let found = alone(
+        "amplitude_ripple",
+        &Case {
+            channels: |c, s, t, _, _| {
+                let m = 1.0 + 0.06 * (TAU * 333.3 * t).cos();
+                (c * m, s * m)
+            },
+            ..PLAIN
+        },
+    );
+    within_errors(&found, "depth", 0.06);
+    alone(
+        "offset_drift",
+        &Case {
+            channels: |c, s, t, _, _| (c + 0.15 * t, s - 0.1 * t),
+            ..PLAIN
+        },
+    );
+    alone(
+        "gain_drift",
+        &Case {
+            channels: |c, s, t, _, _| (c * (1.0 + 0.2 * t), s * (1.0 - 0.15 * t)),
+            ..PLAIN
+        },
+    );
+}
