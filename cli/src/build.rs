@@ -32,7 +32,8 @@ pub(crate) struct Build {
     recording_args: RecordingArgs,
 }
 
-pub(crate) fn run(args: &Build) -> Result<()> {
+/// Whether the chip reaches the accuracy that was asked for.
+pub(crate) fn run(args: &Build) -> Result<bool> {
     let spec = crate::design_file::read(&args.design)?;
     let design =
         Design::new(&spec).with_context(|| format!("{} cannot work", args.design.display()))?;
@@ -62,7 +63,12 @@ pub(crate) fn run(args: &Build) -> Result<()> {
     }
     write(&package.files, &args.output)?;
     summary(&package.json, &args.output, shown);
-    Ok(())
+    Ok(!missed(&package.json))
+}
+
+/// It is simulated worse than what was asked for.
+fn missed(j: &DesignJson) -> bool {
+    j.simulated.rms_periods > j.budget.asked || !j.simulated.locked
 }
 
 fn summary(j: &DesignJson, output: &Path, shown: &str) {
@@ -125,15 +131,18 @@ fn summary(j: &DesignJson, output: &Path, shown: &str) {
         );
     }
     // With short words of the user's it is said above.
-    let missed = j.simulated.rms_periods > j.budget.asked;
-    if missed
+    if missed(j)
         && j.budget.arithmetic <= j.budget.arithmetic_allowed
         && j.budget.uncorrected <= j.budget.asked
     {
-        say!(
-            "  note        the simulated accuracy misses what was asked for: calibration noise and loop noise add up; \
-             a smaller last gamma or a narrower loop would help"
-        );
+        let why = if !j.simulated.locked {
+            "the loop does not lock on the sensor that the design promises"
+        } else if j.simulated.rms_periods > 2.0 * j.budget.total {
+            "worse than the budget: the calibration has not converged at this speed, or the signals clip"
+        } else {
+            "calibration noise and loop noise add up; a smaller last gamma or a narrower loop would help"
+        };
+        say!("  note        the simulated accuracy misses what was asked for: {why}");
     }
     let folder = output.display();
     say!(

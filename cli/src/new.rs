@@ -147,7 +147,7 @@ fn plain(name: &str) -> Draft {
         description: "a sin/cos encoder".into(),
         head: "Every number below is an example: replace it with your sensor's.".into(),
         amplitude: (0.8, note("nominal, in the unit of full_scale")),
-        amplitude_tolerance: (0.2, note("of the amplitude, each channel")),
+        amplitude_tolerance: (0.15, note("of the amplitude, each channel")),
         offset_max: (0.1, note("of the amplitude, each channel")),
         phase_error_max_deg: (5.0, note("degrees of a scale period")),
         noise_rms: (0.001, note("of the amplitude, each channel")),

@@ -67,3 +67,31 @@ fn no_page_says_fail() {
     }
     assert!(pages > 10, "only {pages} pages were read");
 }
+
+#[test]
+fn files_that_are_named_are_there() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let mut named = 0;
+    for page in ["README.md", "ARCHITECTURE.md"] {
+        let text = fs::read_to_string(root.join(page)).expect("a page");
+        let mut folder = String::new();
+        for word in text.split('`').skip(1).step_by(2) {
+            if !word.ends_with(".rs") && !word.ends_with('/') || word.contains(char::is_whitespace)
+            {
+                continue;
+            }
+            // `codegen/src/schedule.rs`, `settle.rs`: the second lies where the first does, or below a folder just named.
+            let near = format!("{folder}{word}");
+            let found = [word, &near]
+                .into_iter()
+                .find(|path| root.join(path).exists());
+            let found = found.unwrap_or_else(|| panic!("{page}: {word} is not there"));
+            if word.contains('/') {
+                let end = found.rfind('/').map_or(0, |end| end + 1);
+                folder = found[..end].to_owned();
+            }
+            named += 1;
+        }
+    }
+    assert!(named > 60, "only {named} files are named");
+}

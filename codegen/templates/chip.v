@@ -149,7 +149,7 @@ module ${ name }$ (
     // Values that later steps or the testbench read, at the end of the step that computes them
     always @(posedge clk) begin
 //%- for c in captures %//
-        if (step == ${ step_bits }$'d${ c.0 }$) begin
+        if (//% if c.0 == 0 %//start//% else %//step == ${ step_bits }$'d${ c.0 }$//% endif %//) begin
 //%- for line in c.1 %//
             ${ line }$
 //%- endfor %//

@@ -107,6 +107,9 @@ module chip_tb;
                             @(negedge clk);
                             if (valid) check_failed("valid", 128'd0, 128'd1);
                         end
+//%- for p in flow if p.0.is_empty() %//
+                        if (${ p.1 }$ !== expect_${ p.1 }$) check_failed("${ p.1 }$", {${ 128 - p.2 }$'d0, expect_${ p.1 }$}, {${ 128 - p.2 }$'d0, ${ p.1 }$});
+//%- endfor %//
                         if (position !== {expect_count, expect_alpha_hat[${ alpha_bits - 1 }$:0]})
                             check_failed("position", {${ 128 - count_bits - alpha_bits }$'d0, expect_count, expect_alpha_hat[${ alpha_bits - 1 }$:0]}, {${ 128 - count_bits - alpha_bits }$'d0, position});
                     end

@@ -172,6 +172,14 @@ fn faults() -> Vec<Fault> {
         fault("last bit of the lock limit", |v| {
             replaced(v, &["wire", "< 5'sd3)"], "5'sd3", "5'sd4")
         }),
+        fault(
+            "parameters of the next sample at the ports too early",
+            |v| {
+                let idle = "if (start) begin\n            upper_half <=";
+                assert_eq!(v.matches(idle).count(), 1);
+                v.replace(idle, &idle.replace("start", "step == 5'd0"))
+            },
+        ),
         fault("a stale operand", |v| {
             let forwarded = |line: &&str| line.contains("operand_") && line.ends_with("_now;");
             let line = v.lines().find(forwarded).expect("a forwarded operand");

@@ -85,16 +85,17 @@ pub fn accuracy(design: &Design) -> Accuracy {
     let last = 2f64.powi(spec.calibration.gamma_last as i32);
     let periods = 60.0 + 10.0 * last / 64.0 * 2.0;
     let converge = ((periods / fast) as usize).clamp(5_000, 400_000);
-    // A whole period.
-    let (settle, sweep) = (5_000, 100_000);
+    // An axis slows down, the loop comes to rest behind the ramp, and a whole period is measured.
+    let (ramp, sweep) = (5_000, 100_000);
+    let turns = spec.tracking.bandwidth_hz * TAU / spec.adc.sample_rate_hz;
+    let settle = ramp + ((20.0 / turns) as usize).min(100_000);
     let slow = 1.0 / sweep as f64;
     let mut noise = Noise(1);
     let mut chip = Chip::bit_true(design);
     let mut at = 0.1;
     let mut errors = vec![];
     for k in 0..converge + settle + sweep {
-        // An axis slows down; a step in speed would show the loop's transient in the residual.
-        let slowed = (k.saturating_sub(converge) as f64 / settle as f64).min(1.0);
+        let slowed = (k.saturating_sub(converge) as f64 / ramp as f64).min(1.0);
         let speed = fast + (slow - fast) * slowed;
         at += speed;
         let (alpha, alpha_of_sin) = (at * TAU, (at + late * speed) * TAU);

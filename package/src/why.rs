@@ -37,7 +37,17 @@ pub(crate) fn formats(design: &Design) -> Vec<Signal> {
     list
 }
 
+const PARAMETER: &str = "parameter: bounded to what the design promises, a quarter more, up to a power of two; resolution by the \
+                         budget";
+const MULTIPLIED: &str =
+    "parameter as it is multiplied: as wide as a signal, its point as far left as its bounds allow";
+const INCREMENT: &str =
+    "increments of the phase: its resolution, up to what the largest speed needs";
+
 fn why(design: &Design, name: &str, op: &Op, format: Format) -> &'static str {
+    if matches!(op, Op::Lookup { .. }) {
+        return "word of the sine table: the budget's rounding of the table";
+    }
     if !matches!(op, Op::Input | Op::Quantise(..) | Op::QuantiseGeared { .. }) {
         return "exact: every bit of the operation, range by interval analysis";
     }
@@ -78,10 +88,24 @@ fn why(design: &Design, name: &str, op: &Op, format: Format) -> &'static str {
     if let Some((_, why)) = by_name.iter().find(|(n, _)| *n == name) {
         return why;
     }
+    if ["rate", "speed", "kick", "drift", "alpha_hat_from"].contains(&name) {
+        return INCREMENT;
+    }
+    if name.starts_with("theta_") {
+        return if name.ends_with("_deviation")
+            || design
+                .structure
+                .formats
+                .deviation
+                .iter()
+                .any(|to| to.format == format)
+        {
+            PARAMETER
+        } else {
+            MULTIPLIED
+        };
+    }
     let f = &design.structure.formats;
-    let parameter = "parameter: bounded to what the design promises, a quarter more, up to a power of two; resolution by the \
-                     budget";
-    let multiplied = "parameter as it is multiplied: as wide as a signal, its point as far left as its bounds allow";
     let by_format = [
         (f.signal.format, "signals: the budget's rounding of signals"),
         (
@@ -89,10 +113,7 @@ fn why(design: &Design, name: &str, op: &Op, format: Format) -> &'static str {
             "residual: a quarter of the radius at most moves a parameter; a signal's resolution",
         ),
         (f.alpha, "phase: the budget's dead band of the integrator"),
-        (
-            f.rate.format,
-            "increments of the phase: its resolution, half a turn at most",
-        ),
+        (f.rate.format, INCREMENT),
         (
             f.rate_high.format,
             "the upper part of the rate, as wide as a signal, for a multiplier of that width",
@@ -103,10 +124,10 @@ fn why(design: &Design, name: &str, op: &Op, format: Format) -> &'static str {
         ),
         (f.count, "counted periods, as asked for"),
         (SECTOR, "sectors, 64 a period, of four periods"),
-        (f.theta[0].format, multiplied),
-        (f.theta[2].format, multiplied),
-        (f.theta_bend.format, multiplied),
-        (f.theta_cubic.format, multiplied),
+        (f.theta[0].format, MULTIPLIED),
+        (f.theta[2].format, MULTIPLIED),
+        (f.theta_bend.format, MULTIPLIED),
+        (f.theta_cubic.format, MULTIPLIED),
         (
             f.step.format,
             "step of a parameter: one bit more than the widest of them",
@@ -123,7 +144,7 @@ fn why(design: &Design, name: &str, op: &Op, format: Format) -> &'static str {
         (f.adc, "the ADC"),
     ];
     if f.deviation.iter().any(|to| to.format == format) {
-        return parameter;
+        return PARAMETER;
     }
     let known = by_format.iter().find(|(f, _)| *f == format);
     known.map_or(

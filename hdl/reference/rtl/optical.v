@@ -318,10 +318,10 @@ module optical (
     // Loss of signal
     //   |c| and |s| both below the threshold
     wire c_below_weak_signal_now = $signed(c_now[17:14]) < 4'sd1; // step 3
-    wire c_below_minus_weak_signal_now = $signed(c_now[17:14]) < 4'shf; // step 3
+    wire c_below_minus_weak_signal_now = ~($signed(~c_now[17:14]) < 4'sd1); // step 3
     wire c_weak_now = c_below_weak_signal & ~c_below_minus_weak_signal; // step 4
     wire s_below_weak_signal_now = $signed(s_now[17:14]) < 4'sd1; // step 7
-    wire s_below_minus_weak_signal_now = $signed(s_now[17:14]) < 4'shf; // step 7
+    wire s_below_minus_weak_signal_now = ~($signed(~s_now[17:14]) < 4'sd1); // step 7
     wire s_weak = s_below_weak_signal & ~s_below_minus_weak_signal; // step 8
     wire signal_lost_next_now = c_weak & s_weak; // step 8
 
@@ -347,11 +347,11 @@ module optical (
     // Lock window
     //   |e| and |rho| below their limits, signal present
     //   (calibration needs lock: the update would otherwise drive the gains to zero)
-    wire in_window_condition_3_now = ($signed(rho_now[17:15]) < 3'sd1) & ~($signed(rho_now[17:15]) < 3'sh7); // step 9
+    wire in_window_condition_3_now = ($signed(rho_now[17:15]) < 3'sd1) & ($signed(~rho_now[17:15]) < 3'sd1); // step 9
     wire in_window_condition_now = ~signal_lost_next_now; // step 8
-    wire in_window_now = ((($signed(e[17:13]) < 5'sd3) & ~($signed(e[17:13]) < 5'sh1d)) & in_window_condition_3) & in_window_condition; // step 12
+    wire in_window_now = ((($signed(e[17:13]) < 5'sd3) & ($signed(~e[17:13]) < 5'sd3)) & in_window_condition_3) & in_window_condition; // step 12
     wire flip_condition_now = ~(locked | signal_lost_next_now); // step 8
-    wire flip = ($signed(rho_now[17:16]) < 2'sh3) & flip_condition; // step 9
+    wire flip = ~($signed(~rho_now[17:16]) < 2'sd1) & flip_condition; // step 9
 
     // Lock level and loop gear
     //   level' = level + 1 if good, else level - 8; full: narrower loop, empty: widest loop
@@ -408,7 +408,7 @@ module optical (
 
     // Direction
     //   sign of the rate, with a dead band
-    wire speed_below_minus_direction_rate_now = $signed(speed_now[25:11]) < 15'sh7fff; // step 15
+    wire speed_below_minus_direction_rate_now = ~($signed(~speed_now[25:11]) < 15'sd1); // step 15
     wire speed_below_direction_rate_now = $signed(speed_now[25:11]) < 15'sd1; // step 15
     wire direction_next_now = speed_below_minus_direction_rate | (direction & speed_below_direction_rate); // step 16
 
@@ -422,7 +422,7 @@ module optical (
     wire signed [7:0] sector_now = {periods_modulo_4, 6'b0} + {sector_bits[6], sector_bits}; // s8.6, step 0
     wire signed [8:0] sector_relative_difference = {sector_now[7], sector_now} - {travel_origin[7], travel_origin}; // s9.6, step 0
     wire signed [7:0] sector_relative = sector_relative_difference[7:0]; // s8.6, step 0
-    wire whole_period_condition_now = ~($signed(sector_relative[7:6]) < 2'sd1) | ~(8'shc0 < sector_relative); // step 0
+    wire whole_period_condition_now = ~($signed(sector_relative[7:6]) < 2'sd1) | ~(~sector_relative < 8'sh3f); // step 0
     wire whole_period_now = whole_period_condition & counting_now; // step 1
     wire signed [8:0] sector_ahead_sum = {travel_low[7], travel_low} + 9'sh40; // s9.6, step 0
     wire sector_ahead = (travel_high < sector_relative) & ($signed({sector_relative[7], sector_relative}) < sector_ahead_sum); // step 0
@@ -482,7 +482,7 @@ module optical (
 
     // Gears of gamma
     //   gamma halves after some periods of travel, starts again when the residual was large
-    wire residual_large_condition_now = ~(($signed(rho_now[17:14]) < 4'sd1) & ~($signed(rho_now[17:14]) < 4'shf)); // step 9
+    wire residual_large_condition_now = ~(($signed(rho_now[17:14]) < 4'sd1) & ($signed(~rho_now[17:14]) < 4'sd1)); // step 9
     wire residual_large_now = residual_large_condition & fresh_now; // step 12
     wire period_tick = whole_period & fresh_now; // step 12
     wire gamma_restart_now = period_tick & disturbed; // step 12
@@ -559,7 +559,7 @@ module optical (
 
     // Values that later steps or the testbench read, at the end of the step that computes them
     always @(posedge clk) begin
-        if (step == 5'd0) begin
+        if (start) begin
             upper_half <= upper_half_now;
             sin_inside <= sin_inside_now;
             cos_address <= cos_address_now;

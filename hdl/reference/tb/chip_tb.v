@@ -195,6 +195,16 @@ module chip_tb;
                             @(negedge clk);
                             if (valid) check_failed("valid", 128'd0, 128'd1);
                         end
+                        if (theta_2 !== expect_theta_2) check_failed("theta_2", {102'd0, expect_theta_2}, {102'd0, theta_2});
+                        if (theta_4 !== expect_theta_4) check_failed("theta_4", {102'd0, expect_theta_4}, {102'd0, theta_4});
+                        if (theta_1 !== expect_theta_1) check_failed("theta_1", {110'd0, expect_theta_1}, {110'd0, theta_1});
+                        if (theta_3 !== expect_theta_3) check_failed("theta_3", {110'd0, expect_theta_3}, {110'd0, theta_3});
+                        if (theta_5 !== expect_theta_5) check_failed("theta_5", {110'd0, expect_theta_5}, {110'd0, theta_5});
+                        if (signal_lost !== expect_signal_lost) check_failed("signal_lost", {127'd0, expect_signal_lost}, {127'd0, signal_lost});
+                        if (locked !== expect_locked) check_failed("locked", {127'd0, expect_locked}, {127'd0, locked});
+                        if (speed !== expect_speed) check_failed("speed", {102'd0, expect_speed}, {102'd0, speed});
+                        if (direction !== expect_direction) check_failed("direction", {127'd0, expect_direction}, {127'd0, direction});
+                        if (lock_lost !== expect_lock_lost) check_failed("lock_lost", {127'd0, expect_lock_lost}, {127'd0, lock_lost});
                         if (position !== {expect_count, expect_alpha_hat[26:0]})
                             check_failed("position", {69'd0, expect_count, expect_alpha_hat[26:0]}, {69'd0, position});
                     end

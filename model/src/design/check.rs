@@ -120,6 +120,14 @@ pub(super) fn check(spec: &Spec) -> Result<(), DesignError> {
         0.6,
         "a larger offset moves the origin out of the ellipse",
     )?;
+    let reach = 1.0 + spec.sensor.amplitude_tolerance + spec.sensor.offset_max;
+    between(
+        "sensor.amplitude",
+        spec.sensor.amplitude,
+        0.0,
+        1.25 * spec.adc.full_scale / reach,
+        "with its tolerance and its offset the signal goes too far beyond the ADC's range",
+    )?;
     between(
         "sensor.phase_error_max_deg",
         spec.sensor.phase_error_max_deg,

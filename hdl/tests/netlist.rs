@@ -1,0 +1,121 @@
+//! What Yosys makes of the Verilog for an iCE40 still agrees with the model at every port: a comparison that a synthesis
+//! tool gets wrong is right in every simulation of the source.
+
+mod chip;
+
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+use std::time::Duration;
+
+use chip::shipped;
+use nonius_hdl::tools::{Tool, require};
+use nonius_hdl::{ChipDir, Run, icarus};
+use nonius_model::spec::{CalibrationStart, Multipliers, Spec};
+
+/// Samples of each stimulus: enough to lock and to calibrate.
+const ROWS: usize = 140;
+/// What is played: gates take their time.
+const PLAYED: [&str; 2] = ["step", "random"];
+
+/// Netlist and the cells that it is made of, in place of the chip.
+fn synthesise(dir: &Path, name: &str) {
+    let [yosys] = require([Tool::Yosys]).unwrap_or_else(|e| panic!("{e}"));
+    let script = format!(
+        "read_verilog rtl/{name}.v; synth_ice40 -top {name}; write_verilog -noattr netlist.v"
+    );
+    let output = Command::new(&yosys.path)
+        .current_dir(dir)
+        .args(["-q", "-p", &script])
+        .output()
+        .expect("Yosys runs");
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{said}");
+    let cells = yosys.path.parent().and_then(Path::parent);
+    let cells = cells
+        .expect("a prefix")
+        .join("share/yosys/ice40/cells_sim.v");
+    let cells = fs::read_to_string(&cells).unwrap_or_else(|e| panic!("{}: {e}", cells.display()));
+    let netlist = fs::read_to_string(dir.join("netlist.v")).expect("a netlist");
+    // Icarus knows no default for a pin that is left open.
+    let text = format!("`define NO_ICE40_DEFAULT_ASSIGNMENTS\n{cells}\n{netlist}");
+    fs::write(dir.join(format!("rtl/{name}.v")), text).expect("the netlist in the chip's place");
+}
+
+/// The testbench without what looks into the chip: a netlist has other names inside.
+fn ports_only(dir: &Path) {
+    let file = dir.join("tb/chip_tb.v");
+    let text = fs::read_to_string(&file).expect("a testbench");
+    let (inside, ports): (Vec<&str>, Vec<&str>) =
+        text.lines().partition(|line| line.contains("(chip."));
+    assert!(inside.len() > 10 && ports.iter().any(|l| l.contains("(position")));
+    assert!(ports.iter().any(|l| l.contains("(theta_2 !==")));
+    let played = |line: &&str| {
+        let other = line.trim_start().starts_with("play_next(");
+        !other
+            || PLAYED
+                .iter()
+                .any(|name| line.contains(&format!("\"{name}\"")))
+    };
+    let ports: Vec<&str> = ports.into_iter().filter(played).collect();
+    for vectors in fs::read_dir(dir.join("vectors")).expect("vectors") {
+        let path = vectors.expect("an entry").path();
+        let name = path.file_stem().and_then(|s| s.to_str()).expect("a name");
+        if !PLAYED.contains(&name) {
+            fs::remove_file(&path).expect("a file");
+        }
+    }
+    fs::write(file, ports.join("\n") + "\n").expect("a testbench");
+}
+
+fn synthesised(spec: &Spec, change: impl Fn(&Path)) -> Run {
+    let dir = tempfile::tempdir().expect("a scratch folder");
+    chip::write(spec, ROWS, dir.path());
+    change(dir.path());
+    synthesise(dir.path(), &spec.name);
+    ports_only(dir.path());
+    let chip = ChipDir::open(dir.path()).expect("a chip");
+    let limit = Duration::from_secs(900);
+    let run = icarus::simulate(&chip, limit, &[], &nonius_hdl::progress::silent);
+    run.unwrap_or_else(|e| panic!("{e}"))
+}
+
+#[test]
+fn shipped_designs_as_netlists() {
+    let started = {
+        let mut spec = shipped::optical();
+        spec.calibration.start = CalibrationStart::LeastSquares;
+        spec.chip.multipliers = Multipliers::Count(2);
+        spec
+    };
+    let nine = {
+        let mut spec = shipped::optical();
+        spec.calibration.parameters = 9;
+        spec
+    };
+    for spec in shipped::NAMES
+        .map(shipped::spec)
+        .into_iter()
+        .chain([started, nine])
+    {
+        let run = synthesised(&spec, |_| ());
+        assert!(run.passed, "{}: {run:#?}", spec.name);
+    }
+}
+
+/// Yosys 0.23 gets this wrong, and the vectors see it at the ports.
+#[test]
+fn a_comparison_that_is_synthesised_wrong_is_seen() {
+    let spec = shipped::optical();
+    let run = synthesised(&spec, |dir| {
+        let file = dir.join("rtl/optical.v");
+        let text = fs::read_to_string(&file).expect("the chip");
+        let wrong = text.replace(
+            "($signed(~rho_now[17:15]) < 3'sd1)",
+            "~($signed(rho_now[17:15]) < 3'sh6)",
+        );
+        assert_ne!(text, wrong);
+        fs::write(file, wrong).expect("the chip");
+    });
+    assert!(!run.passed, "{run:#?}");
+}
