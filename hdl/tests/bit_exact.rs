@@ -204,6 +204,17 @@ fn starts_in_icarus_and_verilator() {
     }
 }
 
+/// Six gears and more above the designed one.
+#[test]
+fn narrow_loops_in_icarus_and_verilator() {
+    for (method, bandwidth) in [(3, 1e3), (1, 300.0)] {
+        let mut spec = optical();
+        spec.tracking.method = method;
+        spec.tracking.bandwidth_hz = bandwidth;
+        agrees(&spec, 300, &Options::default());
+    }
+}
+
 #[test]
 fn squares_with_bends_in_icarus_and_verilator() {
     for spec in squared() {
