@@ -339,6 +339,8 @@ impl Draft {
             "5".into(),
             "0 (off), 4 (gains, offsets) or 5 (and phase)",
         );
+        out += "\n# [correction]\n";
+        out += "# channel_skew_s = 1e-6                 # sin is sampled so much later than cos\n";
         out += "\n[accuracy]\n";
         out += &line(
             "rms_periods",

@@ -144,7 +144,7 @@ fn closed(recording: &str, simulated: bool) -> Closed {
             time_limit: Some(Duration::from_secs(3600)),
             ..Options::default()
         };
-        let report = verify(&dir.join("chip"), &options, &silent).expect("two simulators");
+        let report = verify(dir.join("chip"), &options, &silent).expect("two simulators");
         assert!(report.passed && report.runs.len() == 2, "{report:#?}");
         let played = fs::read_to_string(dir.join("chip/vectors/recording.vec"));
         assert_eq!(

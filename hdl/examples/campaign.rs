@@ -132,6 +132,13 @@ fn variants() -> Vec<Variant> {
         ("sum of squares", CalibrationMethod::SumOfSquares, 5, false),
         ("batch", CalibrationMethod::Batch, 4, false),
         ("batch", CalibrationMethod::Batch, 5, false),
+        (
+            "sum of squares, completed",
+            CalibrationMethod::SumOfSquares,
+            9,
+            true,
+        ),
+        ("batch, completed", CalibrationMethod::Batch, 8, true),
     ] {
         list.push(with(what, &|s| {
             s.calibration.method = method;

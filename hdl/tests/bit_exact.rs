@@ -122,6 +122,24 @@ fn started() -> Vec<Spec> {
     ]
 }
 
+/// The sum of squares with bends.
+fn squared() -> Vec<Spec> {
+    let with = |parameters: u32, method: CalibrationMethod, multipliers: Multipliers| {
+        let mut spec = optical();
+        spec.calibration.parameters = parameters;
+        spec.calibration.method = method;
+        spec.chip.multipliers = multipliers;
+        spec
+    };
+    use CalibrationMethod::{Batch, SumOfSquares};
+    vec![
+        with(8, SumOfSquares, Multipliers::Count(2)),
+        with(9, SumOfSquares, Multipliers::Count(1)),
+        with(8, Batch, Multipliers::Count(1)),
+        with(9, Batch, Multipliers::All(All::All)),
+    ]
+}
+
 /// Chips for a sine that is sampled later or earlier: each method and type, each parameter set, the series to its first
 /// order (so little skew that it is enough) and to its second.
 fn skewed() -> Vec<Spec> {
@@ -155,8 +173,8 @@ fn skewed() -> Vec<Spec> {
 #[test]
 fn every_variant_is_clean() {
     let others = ["magnetic", "interferometer"].map(shipped::spec);
-    let all = variants().into_iter().chain(started()).chain(skewed());
-    for spec in all.chain(others) {
+    let all = variants().into_iter().chain(started()).chain(squared());
+    for spec in all.chain(skewed()).chain(others) {
         let dir = tempfile::tempdir().expect("scratch folder");
         write(&spec, 2, dir.path());
         let chip = ChipDir::open(dir.path()).expect("a chip");
@@ -182,6 +200,24 @@ fn every_variant_in_icarus() {
 #[test]
 fn starts_in_icarus_and_verilator() {
     for spec in started() {
+        agrees(&spec, 120, &Options::default());
+    }
+}
+
+/// Six gears and more above the designed one.
+#[test]
+fn narrow_loops_in_icarus_and_verilator() {
+    for (method, bandwidth) in [(3, 1e3), (1, 300.0)] {
+        let mut spec = optical();
+        spec.tracking.method = method;
+        spec.tracking.bandwidth_hz = bandwidth;
+        agrees(&spec, 300, &Options::default());
+    }
+}
+
+#[test]
+fn squares_with_bends_in_icarus_and_verilator() {
+    for spec in squared() {
         agrees(&spec, 120, &Options::default());
     }
 }

@@ -124,9 +124,9 @@ pub fn registers(structure: &Structure) -> (Vec<&'static str>, Vec<&'static str>
             let error = name.starts_with("alpha_gradient_error");
             exact && (!phase || structure.has_phase()) && (!error || two_products)
         }
-        name if name.starts_with("gathered") => {
-            structure.gathers() && (!name.ends_with('5') || structure.has_phase())
-        }
+        "gathered_5" => structure.gathers() && structure.has_phase(),
+        "gathered_6" | "gathered_7" | "gathered_8" => structure.squares() && structure.has_bend(),
+        name if name.starts_with("gathered") => structure.gathers(),
         _ => true,
     };
     let keep = |names: &[&'static str]| names.iter().copied().filter(|n| used(n)).collect();

@@ -5,7 +5,7 @@ mod chip_support;
 use std::f64::consts::TAU;
 
 use chip_support::{Bench, optical, order, rms};
-use nonius_model::spec::Spec;
+use nonius_model::spec::{CalibrationMethod, Spec};
 
 /// Samples per period of the signal; the loop's bandwidth is `bandwidth` times its frequency.
 const PER_PERIOD: f64 = 126.0;
@@ -41,6 +41,15 @@ fn third_harmonics(alpha: f64) -> (f64, f64) {
     (
         alpha.cos() + 0.03 * (3.0 * alpha).cos(),
         alpha.sin() + 0.03 * (3.0 * alpha).sin(),
+    )
+}
+
+/// Offsets of 10 %, gain ratio 1.2, β = 5° and cubic terms.
+fn wholly(alpha: f64) -> (f64, f64) {
+    let (c, s) = (alpha.cos(), (alpha - 5f64.to_radians()).sin());
+    (
+        1.0954 * (c + 0.03 * c.powi(3)) + 0.1,
+        0.9129 * (s - 0.03 * s.powi(3)) - 0.1,
     )
 }
 
@@ -80,17 +89,10 @@ fn what_no_radius_shows_needs_the_completion() {
 #[test]
 fn nine_parameters_correct_a_wholly_miscalibrated_sensor() {
     for amplitude in [0.5, 1.0] {
-        let signals = |alpha: f64| {
-            let (c, s) = (alpha.cos(), (alpha - 5f64.to_radians()).sin());
-            (
-                1.0954 * (c + 0.03 * c.powi(3)) + 0.1,
-                0.9129 * (s - 0.03 * s.powi(3)) - 0.1,
-            )
-        };
         let with = |completion| {
             let mut spec = spec(9, completion, 1.0);
             spec.adc.full_scale = 1.4 * spec.sensor.amplitude / amplitude;
-            calibrate(&spec, &signals)
+            calibrate(&spec, &wholly)
         };
         let (radial, [before, after, rest]) = (with(false), with(true));
         println!(
@@ -127,5 +129,56 @@ fn without_net_travel_the_completion_rests() {
         }
         assert!(!bench.chip.state.moving && bench.chip.state.locked);
         assert_eq!(bench.chip.state.theta_9_deviation, before);
+    }
+}
+
+/// The sum of squares with bends, forgetting or in batches: the corrected pair in the estimate's place, θ9 by the completion as
+/// in the final form. The same figures; without the completion it stands still beside the truth like the radial residual.
+#[test]
+fn the_sum_of_squares_is_completed_too() {
+    for method in [CalibrationMethod::SumOfSquares, CalibrationMethod::Batch] {
+        for parameters in [8, 9] {
+            for bandwidth in [0.5, 1.0, 2.0] {
+                let with = |completion| {
+                    let mut spec = spec(parameters, completion, bandwidth);
+                    spec.calibration.method = method;
+                    spec
+                };
+                let [_, alone, _] = calibrate(&with(false), &cubic);
+                let [_, cubic, rest] = calibrate(&with(true), &cubic);
+                let [_, third, third_rest] = calibrate(&with(true), &third_harmonics);
+                println!(
+                    "{method:?}, {parameters} parameters, loop {bandwidth} f: cubic 15 -> {cubic:.3} ({rest:.2} rms; alone {alone:.1}), third 30 -> {third:.3} mrad ({third_rest:.2} rms)"
+                );
+                assert!(alone > 7.0, "{alone}");
+                assert!(cubic <= 0.15, "{cubic}");
+                assert!(third * 25.0 <= 30.0, "{third}");
+            }
+        }
+    }
+}
+
+/// Everything wrong as for the final form, at both ends of the amplitude and of the memory.
+#[test]
+fn the_sum_of_squares_corrects_a_wholly_miscalibrated_sensor() {
+    use CalibrationMethod::{Batch, SumOfSquares};
+    for amplitude in [0.5, 0.71, 1.0] {
+        for (method, forgetting) in [
+            (SumOfSquares, 0),
+            (SumOfSquares, 3),
+            (SumOfSquares, 4),
+            (Batch, 0),
+        ] {
+            let mut spec = spec(9, true, 1.0);
+            spec.adc.full_scale = 1.4 * spec.sensor.amplitude / amplitude;
+            spec.calibration.method = method;
+            spec.calibration.forgetting = forgetting;
+            let [before, after, rest] = calibrate(&spec, &wholly);
+            println!(
+                "{method:?}, forgetting {forgetting}, amplitude {amplitude}: order 2 {before:.1} -> {after:.3} mrad, {rest:.2} rms"
+            );
+            assert!(after <= 0.15, "{after}");
+            assert!(rest <= 0.5, "{rest}");
+        }
     }
 }

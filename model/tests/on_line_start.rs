@@ -15,7 +15,7 @@ fn solved(spec: &Spec, per_period: f64) -> (f64, f64) {
         let signals = sensor(signs);
         let mut bench = Bench::new(spec, u64::from(signs));
         let before = rms(&bench.miscalibration(&signals));
-        let mut locked = 0;
+        let mut locked = 0u32;
         for k in 0.. {
             assert!(k < 40_000, "never solved");
             bench.step(signals(TAU / per_period * f64::from(k)));
@@ -26,7 +26,8 @@ fn solved(spec: &Spec, per_period: f64) -> (f64, f64) {
         }
         let left = rms(&bench.miscalibration(&signals));
         share = share.max(100.0 * left / before);
-        travel = travel.max(f64::from(locked) / per_period);
+        // From the first sample in lock to the last one.
+        travel = travel.max(f64::from(locked - 1) / per_period);
     }
     (share, travel)
 }

@@ -158,6 +158,55 @@ fn the_phase_parameter_stays_at_the_phase_error() {
     }
 }
 
+/// The largest skews that are not refused, at top speed, from rest and not yet calibrated: the loop locks, keeps its lock
+/// where the correction sets in, and is left with what the design says.
+#[test]
+fn the_largest_skew_locks() {
+    for (delay, top, bandwidth) in [
+        (3.9e-7, 100e3, 10e3),
+        (-3.9e-7, 100e3, 20e3),
+        // A whole sample.
+        (9.9e-7, 39e3, 10e3),
+        (-9.9e-7, 39e3, 20e3),
+        // And nearly the widest loop that is not refused for it.
+        (9.9e-7, 39e3, 60e3),
+    ] {
+        for direction in [1.0, -1.0] {
+            let mut spec = spec(5, delay);
+            spec.sensor.speed_max_periods_per_s = top;
+            spec.tracking.bandwidth_hz = bandwidth;
+            spec.accuracy.rms_periods = 1e-3;
+            let design = Design::new(&spec).expect("a design that works");
+            let skew = design.skew.expect("a correction");
+            assert!(skew.phase_max > 0.95 * PHASE_MAX, "{}", skew.phase_max);
+            let fs = spec.adc.sample_rate_hz;
+            let speed = direction * 0.997 * top / fs;
+            let mut bench = Bench::new(&spec, 5);
+            let (mut errors, mut locked) = (vec![], None);
+            for k in 0..60_000 {
+                let k = f64::from(k);
+                let error = bench.chip.position() - speed * k;
+                let (cos, sin) = (TAU * speed * k, TAU * speed * (k + delay * fs) - BETA);
+                bench.step((1.1 * cos.cos() + 0.03, 0.95 * sin.sin() - 0.02));
+                let now = bench.chip.state.locked;
+                assert!(now || locked.is_none(), "lock lost at sample {k}");
+                locked = locked.or(now.then_some(k));
+                if k > 40_000.0 {
+                    errors.push(error - error.round());
+                }
+            }
+            let (budget, error) = (&design.budget, rms(&errors));
+            let allowed = skew.residual_rms_periods + budget.total();
+            println!(
+                "{delay:e} s, {} periods/s, loop {bandwidth} Hz: locked after {locked:?} samples, error {error:.2e} of {allowed:.2e}, uncorrected {:.2e}",
+                direction * top,
+                skew.uncorrected_rms_periods
+            );
+            assert!(locked.is_some() && error <= allowed, "{error} of {allowed}");
+        }
+    }
+}
+
 fn pairs(probes: &Probes<Bits>) -> Vec<(&'static str, Option<Bits>)> {
     let names = Probes::<Bits>::VALUES.iter().filter(|n| **n != "skew");
     names.map(|n| (*n, probes.value(n))).collect()

@@ -126,10 +126,8 @@ pub struct Tracking {
     pub lag_at_top_speed_periods: f64,
     /// Position error per acceleration, periods per (period/s²).
     pub acceleration_error_s2: f64,
-    /// Gears in acquisition, each dividing the bandwidth by 2^`acquisition_stride`.
+    /// Gears in acquisition, each halving the bandwidth.
     pub acquisition_gears: u32,
-    /// See `acquisition_gears`.
-    pub acquisition_stride: u32,
 }
 
 /// The correction of a sine that is sampled later than the cosine.
@@ -288,7 +286,6 @@ impl DesignJson {
                 lag_at_top_speed_periods: t.lag(top / rate) / std::f64::consts::TAU,
                 acceleration_error_s2: 1.0 / (t.ab * std::f64::consts::TAU * rate * rate),
                 acquisition_gears: design.acquisition.gears,
-                acquisition_stride: design.acquisition.stride,
             },
             channel_skew: ChannelSkew::of(design),
             position: Position::of(design),

@@ -261,17 +261,6 @@ fn calibration(spec: &Spec) -> Result<(), DesignError> {
             "recursion (11) for each of 8 or 9 parameters costs 16 or 18 products a sample for what one scalar shows",
         );
     }
-    if bends && c.method != CalibrationMethod::Final {
-        return refuse(
-            "calibration.method",
-            match c.method {
-                CalibrationMethod::Batch => "batch",
-                _ => "sum_of_squares",
-            },
-            "\"final\", or 4 or 5 parameters",
-            "the sum of squares sees the radius alone and cannot be completed: with bends it stands still beside the truth",
-        );
-    }
     let squares = matches!(
         c.method,
         CalibrationMethod::SumOfSquares | CalibrationMethod::Batch

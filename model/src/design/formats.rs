@@ -142,7 +142,8 @@ pub(super) fn structure(
         travel_samples: counting_to(travel_samples(spec)),
         step: accumulator(r.deviation.into_iter().max().unwrap_or(0)),
         level: Quantiser::saturating(Format::unsigned(level_bits(tracking), 0)),
-        loop_gear: Format::unsigned(2, 0),
+        // Two bits even where one would do.
+        loop_gear: counting_to(acquisition.gears.max(3)),
         gamma_gear: counting_to(spec.calibration.gamma_last - spec.calibration.gamma_first),
         gear_periods: counting_to(spec.calibration.gear_periods.saturating_sub(1)),
     };
@@ -164,7 +165,6 @@ pub(super) fn structure(
         formats,
         sine: sine_table(words)?,
         loop_gears: acquisition.gears,
-        loop_stride: acquisition.stride,
         gamma_first: spec.calibration.gamma_first,
         // To the nearest power of two.
         amplitude_shift: (-2.0 * normalisation(spec).0.log2()).round() as u32,

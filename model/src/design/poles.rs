@@ -25,13 +25,12 @@ pub struct Loop {
     pub noise_gain: f64,
 }
 
-/// How the loop widens in acquisition: `gears` steps of 2^`stride` in bandwidth.
+/// How the loop widens in acquisition: `gears` steps of 2 in bandwidth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Acquisition {
-    /// Gears above the designed one.
+    /// Gears above the designed one. Each halves the bandwidth: what a loop makes of the errors of a sensor that is not yet
+    /// calibrated is its increment's ripple, which a loop of a quarter of the bandwidth may no longer pull in.
     pub gears: u32,
-    /// Each divides the bandwidth by 2^`stride`.
-    pub stride: u32,
 }
 
 impl Loop {
@@ -162,14 +161,12 @@ impl Loop {
 }
 
 impl Acquisition {
-    /// The widest loop that is still well damped. With g above 1 its sensitivity rises above 2 for the errors of a sensor
-    /// that is not yet calibrated, at two cycles per period and top speed: it follows, but never looks like it. Type 1 loops are not widened: their damping would suffer.
+    /// The widest loop that is still well damped. Nearer to g = 1 its sensitivity comes near 2 for the errors of a sensor that is
+    /// not yet calibrated, at two cycles per period and top speed: it follows, but never looks like it, or goes astray in the
+    /// next gear. Type 1 loops are not widened: their damping would suffer.
     pub(super) fn new(spec: &Spec, tracking: &Loop) -> Self {
         if spec.tracking.filter_type == 1 {
-            return Self {
-                gears: 0,
-                stride: 1,
-            };
+            return Self { gears: 0 };
         }
         let wide = |shift: i32| {
             let (g, h) = (
@@ -184,13 +181,9 @@ impl Acquisition {
             } else {
                 linear.abs() / 2.0 + discriminant.sqrt()
             };
-            radius < 0.85 && g < 1.0
+            radius < 0.85 && g < 0.8
         };
         let most = (1..24).rev().find(|&shift| wide(shift)).unwrap_or(0) as u32;
-        let gears = most.min(3);
-        Self {
-            gears,
-            stride: most.checked_div(gears).unwrap_or(1),
-        }
+        Self { gears: most }
     }
 }

@@ -18,6 +18,7 @@ struct Equaliser {
     offset: i32,
     gain: i32,
     phase: i32,
+    bend: i32,
 }
 
 impl Equaliser {
@@ -26,10 +27,25 @@ impl Equaliser {
         if structure.has_bend() {
             // By offset and phase the gradient is made of the estimate, whose amplitude is 1, and the offset's has its
             // factor; the phase is 1/2 like the bends.
-            return Self {
-                offset: 0,
-                gain: 1 + amplitude,
-                phase: 2,
+            return match structure.gradient {
+                CalibrationMethod::SumOfSquares => Self {
+                    offset: 0,
+                    gain: amplitude,
+                    phase: 1,
+                    bend: -1,
+                },
+                CalibrationMethod::Batch => Self {
+                    offset: -1,
+                    gain: amplitude - 2,
+                    phase: 1,
+                    bend: -1,
+                },
+                _ => Self {
+                    offset: 0,
+                    gain: 1 + amplitude,
+                    phase: 2,
+                    bend: 0,
+                },
             };
         }
         let (offset, gain, phase) = match structure.gradient {
@@ -47,6 +63,7 @@ impl Equaliser {
             offset,
             gain: gain + amplitude,
             phase: phase + amplitude,
+            bend: 0,
         }
     }
 }
@@ -88,8 +105,8 @@ pub struct Update<S: Signal> {
     pub theta: [S; 9],
     /// ∇α̂ by θ1 … θ5.
     pub sensitivities: [Sensitivity<S>; 5],
-    /// Gathered gradients by θ1 … θ5.
-    pub gathered: [S; 5],
+    /// Gathered gradients by θ1 … θ8.
+    pub gathered: [S; 8],
     /// Periods that the start has solved.
     pub start_periods: S,
     /// sin α̂ cos α̂, where bends are calibrated.
@@ -136,7 +153,7 @@ pub fn update<S: Signal, const PLAIN: bool>(
         seen.start.map(|start| start.running)
     };
     let mut gradient = gradient::linear(seen, k, structure);
-    let bent = (!PLAIN && structure.has_bend()).then(|| gradient::bent(seen, k, structure));
+    let mut bent = (!PLAIN && structure.has_bend()).then(|| gradient::bent(seen, k, structure));
     let solved = starting.map(|_| {
         let solved = start::start(gradient, seen.theta, gate, state, k, structure);
         (this.gathered, this.start_periods) = (solved.gathered, solved.periods);
@@ -149,6 +166,10 @@ pub fn update<S: Signal, const PLAIN: bool>(
     };
     // θ1 … θ4, and θ5 where there is phase.
     let linear = if structure.has_phase() { 5 } else { 4 };
+    if let Some(bent) = &bent {
+        (gradient[1], gradient[3], gradient[4]) = (bent.offsets[0], bent.offsets[1], bent.phase);
+        this.w_null = bent.w;
+    }
     match method {
         CalibrationMethod::Final => {}
         CalibrationMethod::Exact => {
@@ -165,6 +186,14 @@ pub fn update<S: Signal, const PLAIN: bool>(
                 *gradient = gathered.gradient.widen();
                 *before = gathered.next;
             }
+            if let Some(Bent { second, third, .. }) = &mut bent {
+                let bends = second.iter_mut().chain([third]);
+                for (gradient, before) in bends.zip(&mut this.gathered[5..]) {
+                    let gathered = gather::squares(*gradient, *before, gate, k.zero, structure);
+                    *gradient = gathered.gradient.widen();
+                    *before = gathered.next;
+                }
+            }
         }
     }
     if method == CalibrationMethod::Batch {
@@ -173,10 +202,6 @@ pub fn update<S: Signal, const PLAIN: bool>(
             newton(gradient[0], gradient[2]),
             newton(gradient[2], gradient[0]),
         );
-    }
-    if let Some(bent) = &bent {
-        (gradient[1], gradient[3], gradient[4]) = (bent.offsets[0], bent.offsets[1], bent.phase);
-        this.w_null = bent.w;
     }
     seen.rho.begin(&UPDATE);
     // What is gathered acts where its period ends.
@@ -219,9 +244,9 @@ pub fn update<S: Signal, const PLAIN: bool>(
     this.theta[2] = step(gradient[2], 2, by.gain);
     this.theta[3] = step(gradient[3], 3, by.offset);
     if let Some(Bent { second, third, .. }) = bent {
-        this.theta[5] = step(second[0], 5, 0);
-        this.theta[6] = step(second[1], 6, 0);
-        this.theta[7] = step(third, 7, 0);
+        this.theta[5] = step(second[0], 5, by.bend);
+        this.theta[6] = step(second[1], 6, by.bend);
+        this.theta[7] = step(third, 7, by.bend);
     }
     this
 }

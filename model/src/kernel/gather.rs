@@ -20,14 +20,17 @@ pub struct Gathered<S: Signal> {
     pub next: S,
 }
 
-/// The gathered gradients by θ1 … θ5 as they stand.
-pub fn gathered<S: Signal>(state: &State<S>) -> [S; 5] {
+/// The gathered gradients by θ1 … θ8 as they stand.
+pub fn gathered<S: Signal>(state: &State<S>) -> [S; 8] {
     [
         state.gathered_1,
         state.gathered_2,
         state.gathered_3,
         state.gathered_4,
         state.gathered_5,
+        state.gathered_6,
+        state.gathered_7,
+        state.gathered_8,
     ]
 }
 

@@ -23,6 +23,12 @@ static BENDS: Formula = Formula {
     source: "paper section 5.5.1 for section 5.4; offset and second order decoupled",
 };
 
+static BENDS_OF_PAIR: Formula = Formula {
+    title: "Gradient by the bends",
+    equation: "theta_2: 2 rho_c (1 - cos 2a), theta_6: 2 rho_c (2 cos 2a - 1), theta_8: epsilon cos 4a, (cos a, sin a) = (c, s)",
+    source: "paper section 5.4, the sum of squares; offset and second order decoupled",
+};
+
 static EXACT: Formula = Formula {
     title: "Exact gradient",
     equation: "M^T n rho + (w - grad alpha_hat)^T e, w = (-sin(alpha_hat), cos(alpha_hat)) M",
@@ -34,11 +40,11 @@ static EXACT: Formula = Formula {
 pub struct Seen<S: Signal> {
     /// Normalised pair.
     pub y: (S, S),
-    /// (cos α̂, sin α̂).
-    pub estimate: (S, S),
+    /// (cos α̂, sin α̂), for the sum of squares the corrected pair.
+    pub frame: (S, S),
     /// Phase error, radians.
     pub e: S,
-    /// Radial residual.
+    /// Radial residual, for the sum of squares half that of the squared radius.
     pub rho: S,
     /// n ρ.
     pub along: (S, S),
@@ -107,11 +113,16 @@ pub struct Bent<S: Signal> {
     pub w: S,
 }
 
-/// The bends are small, so M is taken as it is without them, in α̂: T2 is cos 2α̂ in the cosine and −cos 2α̂ in the sine.
+/// The bends are small, so M is taken as it is without them, in α̂ (for the sum of squares in the pair's own angle): T2 is
+/// cos 2α̂ in the cosine and −cos 2α̂ in the sine.
 pub fn bent<S: Signal>(seen: &Seen<S>, k: &Coefficients<S>, structure: &Structure) -> Bent<S> {
-    seen.rho.begin(&BENDS);
+    seen.rho.begin(if structure.squares() {
+        &BENDS_OF_PAIR
+    } else {
+        &BENDS
+    });
     let signal = &structure.formats.signal;
-    let ((cos_hat, sin_hat), (rho_c, rho_s)) = (seen.estimate, seen.along);
+    let ((cos_hat, sin_hat), (rho_c, rho_s)) = (seen.frame, seen.along);
     let w = (sin_hat * cos_hat).quantise(signal).named("half_sin_2");
     let half_cos_2 =
         ((cos_hat * cos_hat).quantise(signal).named("cos_square") - k.half).named("half_cos_2");
@@ -147,7 +158,7 @@ pub fn sensitivities<S: Signal>(
 ) -> [Sensitivity<S>; 5] {
     seen.e.begin(&EXACT);
     let signal = &structure.formats.signal;
-    let ((y_c, y_s), (cos_hat, sin_hat)) = (seen.y, seen.estimate);
+    let ((y_c, y_s), (cos_hat, sin_hat)) = (seen.y, seen.frame);
     let before = [
         (
             state.alpha_gradient_1,

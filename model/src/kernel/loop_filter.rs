@@ -3,7 +3,7 @@
 //! α̂' = α̂ + rate', rate' = p·rate + a (e − e₁) + (a + b) e₁. Written with the increment, all three methods of the
 //! paper are this one line: Method 1 remembers α̂₁ and takes rate = α̂ − α̂₁; Methods 2 and 3 remember the rate, which
 //! is the speed; Method 2 has b = 0 and p = p1 p2. p = 1 is type 2. a and a + b are separate coefficients because a
-//! and b nearly cancel. In acquisition a is 2^(stride · gears to go) and a + b the square of that larger, which widens
+//! and b nearly cancel. In acquisition a is 2^(gears to go) and a + b the square of that larger, which widens
 //! the bandwidth by that factor.
 
 use super::{Coefficients, Method, State, Structure};
@@ -40,13 +40,13 @@ pub fn rate<S: Signal>(e: S, state: &State<S>, k: &Coefficients<S>, structure: &
         leak(before, k, structure)
     };
     if structure.method == Method::Two {
-        return (kept + geared(k.loop_a * e, structure.loop_stride)).quantise(&formats.rate);
+        return (kept + geared(k.loop_a * e, 1)).quantise(&formats.rate);
     }
     let change = (e - state.error_previous)
         .quantise(&formats.signal)
         .named("e_change");
-    let kick = geared(k.loop_a * change, structure.loop_stride).named("kick");
-    let drift = geared(k.loop_ab * state.error_previous, 2 * structure.loop_stride).named("drift");
+    let kick = geared(k.loop_a * change, 1).named("kick");
+    let drift = geared(k.loop_ab * state.error_previous, 2).named("drift");
     // The drift is there long before the kick.
     (kept + drift + kick).quantise(&formats.rate)
 }

@@ -68,10 +68,8 @@ pub struct Structure {
     pub formats: Formats,
     /// Sine table.
     pub sine: Rom,
-    /// Last loop gear; gear 0 is the widest bandwidth. 0: a single gear.
+    /// Last loop gear, each of half the bandwidth of the one before; gear 0 is the widest. 0: a single gear.
     pub loop_gears: u32,
-    /// Each loop gear divides the bandwidth by 2^`loop_stride`.
-    pub loop_stride: u32,
     /// First γ is 2^-`gamma_first`.
     pub gamma_first: u32,
     /// The gradient by gains and phase carries the square of the amplitude, ¼ … 1; this power of two brings it near 1.

@@ -90,9 +90,12 @@ fn advance_of<S: Signal, const PLAIN: bool>(
     let fresh = counting.and(in_window).and(travel.new_sector);
     let estimate = (cos_hat, sin_hat);
     let mut polar = None;
+    // What the gradient is made of: the residual, and the pair or its estimate.
+    let (mut residual, mut frame) = (rho, estimate);
     let (rho_c, rho_s) = if !PLAIN && structure.squares() {
         let epsilon = sum_of_squares::half_square(c, s, k.half, structure);
-        gradient::along(gradient::limited(epsilon, structure), (c, s), structure)
+        (residual, frame) = (gradient::limited(epsilon, structure), (c, s));
+        gradient::along(residual, frame, structure)
     } else {
         let limited = gradient::limited(rho, structure);
         polar = starting
@@ -105,9 +108,9 @@ fn advance_of<S: Signal, const PLAIN: bool>(
     };
     let seen = gradient::Seen {
         y: (y_c, y_s),
-        estimate,
+        frame,
         e,
-        rho,
+        rho: residual,
         along: (rho_c, rho_s),
         theta,
         start: polar,
@@ -245,6 +248,9 @@ fn remember<S: Signal>(
         next.gathered_3,
         next.gathered_4,
         next.gathered_5,
+        next.gathered_6,
+        next.gathered_7,
+        next.gathered_8,
     ] = updated.gathered;
     if let Some(completed) = completed {
         next.null_gradient = completed.sensitivity.gradient;

@@ -113,7 +113,7 @@ pub struct Start<S: Signal> {
     /// What θ1 … θ5 move back by where a period ends.
     pub steps: [S; 5],
     /// Gathered gradients.
-    pub gathered: [S; 5],
+    pub gathered: [S; 8],
     /// Periods solved.
     pub periods: S,
 }

@@ -93,6 +93,12 @@ bundle! {
         gathered_4,
         /// Gathered gradient by θ5.
         gathered_5,
+        /// Gathered gradient by θ6.
+        gathered_6,
+        /// Gathered gradient by θ7.
+        gathered_7,
+        /// Gathered gradient by θ8.
+        gathered_8,
         /// Samples since the last whole period of travel.
         travel_samples,
         /// Periods of travel that the start has solved.

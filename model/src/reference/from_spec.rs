@@ -84,6 +84,8 @@ fn equaliser(spec: &Spec, parameters: Parameters) -> Theta {
     equaliser
 }
 
+/// With bends and completion, Θ is searched along the radius whatever the method: sum of squares and radial residual have
+/// one fixed point, and what tells the designs apart is the completion.
 fn search(spec: &Spec) -> Search {
     let k = &spec.calibration;
     match (k.parameters, k.method) {
@@ -106,6 +108,7 @@ fn search(spec: &Spec) -> Search {
 /// radius, its sum under λ is the mean over 1 − λ, and a batch acts by a quarter.
 fn gathered(spec: &Spec) -> f64 {
     match spec.calibration.method {
+        _ if matches!(search(spec), Search::Completed(_)) => 1.0,
         CalibrationMethod::Final | CalibrationMethod::Exact => 1.0,
         CalibrationMethod::SumOfSquares => 0.5f64.powi(3 + spec.calibration.forgetting as i32),
         CalibrationMethod::Batch => 0.5f64.powi(5),
