@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use anyhow::{Context, Result};
 use nonius_diagnosis::Diagnosis;
-use nonius_model::design::Design;
+use nonius_model::design::{Design, DesignError};
 use nonius_model::spec::Spec;
 use toml_edit::{DocumentMut, value};
 
@@ -68,11 +68,56 @@ fn narrower(spec: &Spec, found: &Diagnosis) -> Option<f64> {
     (spec.tracking.filter_type == 2 && now > 4.0 * usual && narrow < now).then_some(narrow)
 }
 
+/// A design, or why there cannot be one.
+type Designed = std::result::Result<String, DesignError>;
+
+/// The text of a changed design, if a chip can be made of it.
+fn designed(document: &DocumentMut) -> Result<Designed> {
+    let text = document.to_string();
+    let spec = Spec::from_toml(&text, "design.toml")?;
+    Ok(Design::new(&spec).map(|_| text))
+}
+
 /// The design with the corrections for what was found; a sentence for each that was switched on, or could not be.
 ///
 /// # Errors
 /// The text is no TOML: it was read before, so a defect.
 pub(crate) fn switch_on(text: &str, found: &Diagnosis) -> Result<(String, Vec<String>)> {
+    let (text, mut notes) = correct_skew(text, found)?;
+    let (text, more) = correct_bends(&text, found)?;
+    notes.extend(more);
+    Ok((text, notes))
+}
+
+/// The delay of the sine as it was measured: that of the raw signals, so it takes the place of one that the design had.
+fn correct_skew(text: &str, found: &Diagnosis) -> Result<(String, Vec<String>)> {
+    let skews = found.findings.iter().filter(|f| f.cause == "channel_skew");
+    let delays: Vec<f64> = skews.filter_map(|f| f.parameter("delay_s")).collect();
+    if delays.is_empty() {
+        return Ok((text.to_owned(), vec![]));
+    }
+    let delay: f64 = format!("{:.4e}", delays.iter().sum::<f64>()).parse()?;
+    let mut document: DocumentMut = text.parse().context("the design is no TOML")?;
+    let section = document.entry("correction").or_insert(toml_edit::table());
+    section["channel_skew_s"] = value(delay);
+    Ok(match designed(&document)? {
+        Ok(changed) => {
+            let note = format!(
+                "design.toml corrects a sine that is sampled {delay:e} s later than the cosine"
+            );
+            (changed, vec![note])
+        }
+        Err(error) => {
+            let note = format!(
+                "the sine is sampled {delay:e} s later, but its correction does not fit the design: {error}"
+            );
+            (text.to_owned(), vec![note])
+        }
+    })
+}
+
+/// Nine parameters for channels that bend.
+fn correct_bends(text: &str, found: &Diagnosis) -> Result<(String, Vec<String>)> {
     let unchanged = |notes| Ok((text.to_owned(), notes));
     let Some(bend) = bend(found) else {
         return unchanged(vec![]);
@@ -100,19 +145,16 @@ pub(crate) fn switch_on(text: &str, found: &Diagnosis) -> Result<(String, Vec<St
              cannot tell from motion"
         ));
     }
-    let changed = document.to_string();
-    let designed = Spec::from_toml(&changed, "design.toml").map(|spec| Design::new(&spec));
-    match designed {
-        Ok(Ok(_)) => {
+    match designed(&document)? {
+        Ok(changed) => {
             notes.push(format!(
                 "design.toml calibrates nine parameters now, for the bend of the channels (up to {:.2} %)",
                 100.0 * bend
             ));
             Ok((changed, notes))
         }
-        Ok(Err(error)) => unchanged(vec![format!(
+        Err(error) => unchanged(vec![format!(
             "the channels bend, but nine parameters do not fit the design: {error}"
         )]),
-        Err(error) => Err(error.into()),
     }
 }

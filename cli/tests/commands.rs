@@ -89,60 +89,6 @@ proptest! {
 }
 
 #[test]
-fn calibrate_prints_the_contract() {
-    let dir = tempfile::tempdir().expect("scratch");
-    fs::write(dir.path().join("r.csv"), recording(4096, 61.3)).expect("recording");
-    let truth = [0.75, 0.04, 0.85, -0.03, 0.03];
-    for method in [
-        "unbiased",
-        "heydemann",
-        "extremes",
-        "sumsq4",
-        "sumsq5",
-        "poly8",
-        "poly9",
-    ] {
-        let output = nonius(
-            dir.path(),
-            &["calibrate", "r.csv", "--method", method, "--json"],
-        );
-        let said = String::from_utf8_lossy(&output.stderr);
-        assert!(output.status.success(), "{method}: {said}");
-        let json: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
-        assert_eq!(json["schema"], "nonius.calibration/1");
-        assert_eq!(json["method"], method);
-        assert_eq!(json["samples"], 4096);
-        assert!(json["cannot_tell"].is_array());
-        let list = json["parameters"].as_array().expect("parameters");
-        let names: Vec<&str> = list.iter().filter_map(|p| p["name"].as_str()).collect();
-        assert_eq!(names[..5], ["a_c", "b_c", "a_s", "b_s", "beta"]);
-        assert_eq!(names[5], "theta_1");
-        if ["unbiased", "heydemann", "sumsq5", "poly9"].contains(&method) {
-            for (p, value) in list.iter().zip(truth) {
-                let found = p["value"].as_f64().expect("a value");
-                let error = p["std_error"].as_f64().expect("an error");
-                assert!((found - value).abs() < 1e-4, "{method} {p}");
-                assert!(error > 0.0 && error < 1e-4, "{method} {p}");
-            }
-            assert!(json["residual_rms"].as_f64().expect("a number") < 1e-3);
-        }
-    }
-    let text = nonius(dir.path(), &["calibrate", "r.csv"]);
-    let text = String::from_utf8_lossy(&text.stdout).into_owned();
-    for word in ["[[Statistics]]", "[[Parameters]]", "a_c", "+/-", "bound"] {
-        assert!(text.contains(word), "{text}");
-    }
-    refused(
-        &nonius(dir.path(), &["calibrate", "r.csv", "--method", "magic"]),
-        &["magic", "unbiased"],
-    );
-    refused(
-        &nonius(dir.path(), &["calibrate", "r.csv", "--noise-ratio=-1"]),
-        &["--noise-ratio"],
-    );
-}
-
-#[test]
 fn diagnose_writes_the_contract() {
     let dir = tempfile::tempdir().expect("scratch");
     let mut text = String::from("# adc_bits: 14\n# full_scale: 1\ntime_s,cos,sin\n");

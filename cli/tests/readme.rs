@@ -51,3 +51,19 @@ fn numbers_in_the_readme_stand_in_the_pages_behind_them() {
     }
     assert!(compared > 20, "only {compared} numbers were compared");
 }
+
+/// A page that says FAIL is no proof of anything that the README says.
+#[test]
+fn no_page_says_fail() {
+    let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs");
+    let mut pages = 0;
+    for entry in fs::read_dir(docs).expect("docs") {
+        let path = entry.expect("an entry").path();
+        if path.extension().is_some_and(|e| e == "md") {
+            let text = fs::read_to_string(&path).expect("a page");
+            assert!(!text.contains("FAIL"), "{}", path.display());
+            pages += 1;
+        }
+    }
+    assert!(pages > 10, "only {pages} pages were read");
+}

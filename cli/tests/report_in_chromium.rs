@@ -12,24 +12,7 @@ use nonius_sensor::{Motion, Sensor};
 
 const WIDTHS: [u32; 2] = [1280, 390];
 
-const PLAIN: &str = r#"
-[signals]
-a_c = 0.8
-b_c = 0.02
-a_s = 0.76
-b_s = -0.01
-beta = 0.03
-noise_rms = 0.001
-[adc]
-bits = 14
-lsb = 0.0001220703125
-centre = 0.0
-sample_rate_hz = 10000.0
-[motion]
-periods_travelled = 400.0
-speed_max_periods_per_s = 700.0
-periods_per_revolution = 16
-"#;
+const PLAIN: &str = include_str!("../../sensor/tests/support/plain.toml");
 
 /// A harmonic, hum and hysteresis.
 const CAUSES: &str = r#"

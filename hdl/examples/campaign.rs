@@ -151,6 +151,22 @@ fn variants() -> Vec<Variant> {
             s.calibration.parameters = parameters;
         }));
     }
+    for (what, filter_type, parameters, multipliers, delay) in [
+        ("skewed", 2, 5, Multipliers::Count(1), 1e-7),
+        ("skewed", 2, 9, all, -3e-7),
+        ("skewed", 1, 4, Multipliers::Count(1), 1e-6),
+        ("skewed, first order", 1, 5, all, 1e-9),
+    ] {
+        list.push(with(what, &|s| {
+            s.tracking.filter_type = filter_type;
+            if filter_type == 1 {
+                s.sensor.speed_max_periods_per_s = 1e3;
+            }
+            s.calibration.parameters = parameters;
+            s.chip.multipliers = multipliers;
+            s.correction.channel_skew_s = delay;
+        }));
+    }
     list.push(with("completed", &|s| {
         s.calibration.parameters = 9;
         s.chip.multipliers = all;

@@ -7,8 +7,6 @@
 //! Nothing is printed, and nothing is written into the chip's directory; whoever calls may
 //! listen to [`progress`].
 
-#![cfg_attr(test, allow(clippy::unwrap_used))]
-
 pub mod chip_dir;
 pub mod error;
 pub mod icarus;

@@ -204,7 +204,9 @@ mod tests {
 
     #[test]
     fn an_empty_path_finds_nothing() {
-        let missing = Tool::Iverilog.find_in(OsStr::new("")).unwrap_err();
+        let missing = Tool::Iverilog
+            .find_in(OsStr::new(""))
+            .expect_err("not there");
         assert_eq!(
             missing.to_string(),
             "`iverilog` is not installed; it is needed to compile the Verilog for Icarus. \

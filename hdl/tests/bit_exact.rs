@@ -122,11 +122,41 @@ fn started() -> Vec<Spec> {
     ]
 }
 
+/// Chips for a sine that is sampled later or earlier: each method and type, each parameter set, the series to its first
+/// order (so little skew that it is enough) and to its second.
+fn skewed() -> Vec<Spec> {
+    let with =
+        |method: u32, filter_type: u32, parameters: u32, multipliers: Multipliers, delay: f64| {
+            let mut spec = optical();
+            spec.tracking.method = method;
+            spec.tracking.filter_type = filter_type;
+            if filter_type == 1 {
+                spec.sensor.speed_max_periods_per_s = 1e3;
+            }
+            spec.calibration.parameters = parameters;
+            spec.chip.multipliers = multipliers;
+            spec.correction.channel_skew_s = delay;
+            spec
+        };
+    let (one, all) = (Multipliers::Count(1), Multipliers::All(All::All));
+    vec![
+        with(3, 2, 5, one, 1e-7),
+        with(3, 2, 5, all, -1e-7),
+        with(1, 2, 4, all, 2e-7),
+        with(1, 1, 5, one, 1e-9),
+        with(2, 1, 4, one, -4e-7),
+        with(3, 1, 9, all, 1e-6),
+        with(3, 2, 9, one, 3e-7),
+        with(3, 2, 0, one, 3e-7),
+    ]
+}
+
 /// Nobody's linter has anything to say, without waivers: Verilator -Wall, Icarus -Wall, Yosys check.
 #[test]
 fn every_variant_is_clean() {
     let others = ["magnetic", "interferometer"].map(shipped::spec);
-    for spec in variants().into_iter().chain(started()).chain(others) {
+    let all = variants().into_iter().chain(started()).chain(skewed());
+    for spec in all.chain(others) {
         let dir = tempfile::tempdir().expect("scratch folder");
         write(&spec, 2, dir.path());
         let chip = ChipDir::open(dir.path()).expect("a chip");
@@ -152,6 +182,13 @@ fn every_variant_in_icarus() {
 #[test]
 fn starts_in_icarus_and_verilator() {
     for spec in started() {
+        agrees(&spec, 120, &Options::default());
+    }
+}
+
+#[test]
+fn skews_in_icarus_and_verilator() {
+    for spec in skewed() {
         agrees(&spec, 120, &Options::default());
     }
 }

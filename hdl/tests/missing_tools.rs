@@ -1,6 +1,5 @@
 //! With nothing on PATH the message says what to install. The test runs itself again with
 //! another PATH, because a process must not change its own.
-#![allow(clippy::unwrap_used)]
 
 mod support;
 
@@ -16,11 +15,11 @@ fn a_missing_tool_is_named_with_its_install_command() {
     if env::var_os("PATH").is_some_and(|it| it.is_empty()) {
         println!(
             "{}",
-            verify(Toy::new().path(), &Options::default(), &silent).unwrap_err()
+            verify(Toy::new().path(), &Options::default(), &silent).expect_err("no tools")
         );
         return;
     }
-    let child = Command::new(env::current_exe().unwrap())
+    let child = Command::new(env::current_exe().expect("this test's path"))
         .args([
             "--exact",
             "a_missing_tool_is_named_with_its_install_command",
@@ -28,8 +27,8 @@ fn a_missing_tool_is_named_with_its_install_command() {
         .arg("--nocapture")
         .env("PATH", "")
         .output()
-        .unwrap();
-    let said = String::from_utf8(child.stdout).unwrap();
+        .expect("it runs");
+    let said = String::from_utf8(child.stdout).expect("text");
     assert!(child.status.success(), "{said}");
     assert!(
         said.contains("`vvp` is needed to simulate the Verilog in Icarus"),

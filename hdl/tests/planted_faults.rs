@@ -180,6 +180,43 @@ fn faults() -> Vec<Fault> {
     ]
 }
 
+/// Faults in the correction of channel skew.
+fn skew_faults() -> Vec<Fault> {
+    let fault = |name, change: fn(&str) -> String| -> Fault { (name, Box::new(change)) };
+    vec![
+        fault("skew taken the other way round", |v| {
+            replaced(v, &["wire", " s_difference_now ="], "} - {{", "} + {{")
+        }),
+        fault(
+            "half of the skew's product left out of the second order",
+            |v| replaced(v, &["wire", " s_between_rounded ="], "} - {{", "} + {{"),
+        ),
+        fault("skew before lock", |v| {
+            replaced(v, &["wire", " skew_chosen ="], "locked ?", "1'b1 ?")
+        }),
+        fault("phase of the sensor with the wrong sign", |v| {
+            replaced(v, &["wire", " skew_slope_difference_now ="], " - ", " + ")
+        }),
+    ]
+}
+
+#[test]
+fn vectors_catch_every_fault_in_the_correction_of_skew() {
+    let dir = tempfile::tempdir().expect("scratch folder");
+    let mut spec = optical();
+    spec.correction.channel_skew_s = 1e-7;
+    write(&spec, ROWS, dir.path());
+    assert!(verdict(dir.path()).0, "the chip without a fault");
+    let rtl = dir.path().join("rtl/optical.v");
+    let sound = fs::read_to_string(&rtl).expect("rtl");
+    for (name, change) in skew_faults() {
+        fs::write(&rtl, change(&sound)).expect("rtl");
+        let (passed, failure) = verdict(dir.path());
+        assert!(!passed, "{name}: not caught");
+        assert!(failure.contains("signal"), "{name}: {failure}");
+    }
+}
+
 #[test]
 fn vectors_catch_every_planted_fault() {
     let dir = tempfile::tempdir().expect("scratch folder");

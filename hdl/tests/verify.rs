@@ -1,5 +1,4 @@
 //! The verdict on a toy chip in real simulators: it passes whole, and nothing less passes.
-#![allow(clippy::unwrap_used)]
 
 mod support;
 
@@ -23,7 +22,7 @@ fn in_icarus(toy: &Toy) -> Run {
 fn refused(toy: &Toy, words: &str) {
     let run = in_icarus(toy);
     assert!(!run.passed);
-    let failure = run.failure.unwrap();
+    let failure = run.failure.expect("a failure");
     assert!(failure.contains(words), "{words:?} is not in {failure:?}");
 }
 
@@ -33,7 +32,7 @@ fn the_toy_passes_in_both_simulators() {
     let before = toy.contents();
     let events = Mutex::new(Vec::new());
     let report = verify(toy.path(), &Options::default(), &|event| {
-        events.lock().unwrap().push(event);
+        events.lock().expect("nobody panicked").push(event);
     })
     .unwrap_or_else(|it| panic!("{it}"));
 
@@ -51,7 +50,7 @@ fn the_toy_passes_in_both_simulators() {
             Event::Simulating(tool),
             Event::Finished(tool),
         ];
-        let mut heard = events.lock().unwrap().clone();
+        let mut heard = events.lock().expect("nobody panicked").clone();
         heard.retain(|it| steps.contains(it));
         assert_eq!(heard, steps);
     }
@@ -61,18 +60,22 @@ fn the_toy_passes_in_both_simulators() {
 #[test]
 fn a_planted_fault_is_named_alike_by_both_simulators() {
     let toy = Toy::new().replace("rtl/adder_core.v", "total <= a + b", "total <= a - b");
-    let report = verify(toy.path(), &Options::default(), &silent).unwrap();
+    let report = verify(toy.path(), &Options::default(), &silent).expect("the tools run");
     assert!(!report.passed);
     assert_eq!(report.disagreements, Vec::<String>::new());
     for run in &report.runs {
         assert!(!run.passed);
-        let ramp = run.stimuli.iter().find(|it| it.name == "ramp").unwrap();
+        let ramp = run
+            .stimuli
+            .iter()
+            .find(|it| it.name == "ramp")
+            .expect("the stimulus");
         assert!(!ramp.passed);
         assert_eq!(
             ramp.detail,
             "signal total sample 0 expected -120 actual -80"
         );
-        let failure = run.failure.as_ref().unwrap();
+        let failure = run.failure.as_ref().expect("a failure");
         assert!(failure.starts_with("stimulus ramp failed: signal total"));
     }
 }
@@ -91,11 +94,11 @@ fn a_hanging_testbench_is_stopped_at_its_limit() {
         time_limit: Some(Duration::from_secs(1)),
         ..Options::default()
     };
-    let report = verify(toy.path(), &options, &silent).unwrap();
+    let report = verify(toy.path(), &options, &silent).expect("the tools run");
     assert!(start.elapsed() < Duration::from_secs(60));
     assert!(!report.passed);
     for run in &report.runs {
-        let failure = run.failure.as_ref().unwrap();
+        let failure = run.failure.as_ref().expect("a failure");
         assert!(
             failure.starts_with("the simulation was stopped at its time limit of 1 s"),
             "{failure}"
@@ -191,9 +194,9 @@ fn a_compilers_warning_is_reported() {
 
 #[test]
 fn a_directory_that_is_no_chip_is_refused_by_name() {
-    let empty = tempfile::tempdir().unwrap();
+    let empty = tempfile::tempdir().expect("a scratch folder");
     let error = verify(empty.path(), &Options::default(), &silent)
-        .unwrap_err()
+        .expect_err("no chip")
         .to_string();
     assert!(error.contains("design.json"), "{error}");
     assert!(error.contains("nonius build"), "{error}");

@@ -1,5 +1,4 @@
 //! Lint, check, area and clock of a toy chip.
-#![allow(clippy::unwrap_used)]
 
 mod support;
 
@@ -47,8 +46,8 @@ fn the_toy_is_placed_and_its_cells_are_counted_without_the_harness() {
         assert_eq!(placed.harness.ff, 18 + 10 + 1);
         assert!((9..=20).contains(&placed.chip.lut4), "{placed:?}");
         assert_eq!(placed.placements.len(), 2);
-        assert!(placed.best_mhz.unwrap() > 20.0, "{placed:?}");
-        assert!(placed.placements[0].logic_cells.unwrap() >= 39);
+        assert!(placed.best_mhz.expect("a clock") > 20.0, "{placed:?}");
+        assert!(placed.placements[0].logic_cells.expect("a count") >= 39);
     }
 }
 
@@ -65,8 +64,8 @@ fn outputs_that_repeat_each_other_keep_their_logic() {
             "    wire negative;\n",
             "    wire negative;\n    assign again = total;\n",
         );
-    let once = place(&Toy::new().open(), Device::Hx8k, &[1], &silent).unwrap();
-    let twice = place(&twice.open(), Device::Hx8k, &[1], &silent).unwrap();
+    let once = place(&Toy::new().open(), Device::Hx8k, &[1], &silent).expect("the tools run");
+    let twice = place(&twice.open(), Device::Hx8k, &[1], &silent).expect("the tools run");
     assert_eq!(once.chip, twice.chip);
     assert_eq!(twice.harness.ff, once.harness.ff + 9);
 }

@@ -42,6 +42,25 @@ fn structures() -> Vec<(String, Spec)> {
             list.push((name, spec));
         }
     }
+    // A skew that the first order takes off, and two that need the second.
+    for (method, filter_type, parameters, delay) in [
+        (1, 2, 5, 1e-7),
+        (3, 2, 5, -1e-7),
+        (2, 1, 4, 4e-8),
+        (3, 1, 5, 2e-10),
+    ] {
+        let mut spec = optical();
+        spec.tracking.method = method;
+        spec.tracking.filter_type = filter_type;
+        spec.calibration.parameters = parameters;
+        spec.correction.channel_skew_s = delay;
+        if filter_type == 1 {
+            spec.sensor.speed_max_periods_per_s = 1.5e3;
+        }
+        let name =
+            format!("method {method} type {filter_type}, {parameters} parameters, skew {delay} s");
+        list.push((name, spec));
+    }
     let mut binary = optical();
     binary.adc.coding = Coding::OffsetBinary;
     binary.adc.bits = 14;

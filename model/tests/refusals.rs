@@ -69,7 +69,7 @@ fn numbers_in_messages_are_short() {
 #[test]
 fn what_cannot_work_names_the_field() {
     type Change = fn(&mut Spec);
-    let cases: [(&str, Change); 10] = [
+    let cases: [(&str, Change); 14] = [
         ("loop.type", |s| s.tracking.method = 2),
         ("loop.method", |s| s.tracking.method = 4),
         ("loop.bandwidth_hz", |s| s.tracking.bandwidth_hz = 4e5),
@@ -79,6 +79,25 @@ fn what_cannot_work_names_the_field() {
         ("calibration.start", |s| {
             s.calibration.method = CalibrationMethod::Batch;
             s.calibration.start = CalibrationStart::LeastSquares;
+        }),
+        ("correction.channel_skew_s", |s| {
+            s.correction.channel_skew_s = f64::NAN;
+        }),
+        // More than a sample, though slow.
+        ("correction.channel_skew_s", |s| {
+            s.correction.channel_skew_s = -1.1e-6;
+            s.sensor.speed_max_periods_per_s = 1e3;
+        }),
+        // 0.31 rad at the largest speed.
+        ("correction.channel_skew_s", |s| {
+            s.correction.channel_skew_s = 5e-7;
+        }),
+        // A loop so wide that it would swing with its own speed.
+        ("correction.channel_skew_s", |s| {
+            s.correction.channel_skew_s = 1e-6;
+            s.sensor.speed_max_periods_per_s = 10e3;
+            s.tracking.bandwidth_hz = 100e3;
+            s.accuracy.rms_periods = 1e-3;
         }),
         ("adc.bits", |s| s.adc.bits = 24),
         ("accuracy.rms_periods", |s| s.accuracy.rms_periods = 1e-6),

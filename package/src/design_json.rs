@@ -3,6 +3,7 @@
 use nonius_model::design::Design;
 use nonius_model::format::Format;
 use nonius_model::graph::Op;
+use nonius_model::kernel::skew::Order;
 use nonius_model::kernel::{Coefficients, Constant};
 use nonius_model::physical::{metres, radians_of_revolution};
 use nonius_model::spec::Spec;
@@ -31,6 +32,9 @@ pub struct DesignJson {
     /// The loop.
     #[serde(rename = "loop")]
     pub tracking: Tracking,
+    /// The correction of channel skew, where the design has one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub channel_skew: Option<ChannelSkew>,
     /// The position at the output.
     pub position: Position,
     /// Every coefficient with its rounding error.
@@ -126,6 +130,43 @@ pub struct Tracking {
     pub acquisition_gears: u32,
     /// See `acquisition_gears`.
     pub acquisition_stride: u32,
+}
+
+/// The correction of a sine that is sampled later than the cosine.
+#[derive(Clone, Debug, Serialize)]
+pub struct ChannelSkew {
+    /// Delay of the sine as asked for, seconds.
+    pub delay_s: f64,
+    /// As the chip has it.
+    pub delay_quantised_s: f64,
+    /// The difference, seconds.
+    pub delay_error_s: f64,
+    /// Phase that it makes at the largest speed, radians.
+    pub phase_at_top_speed_rad: f64,
+    /// Order of the series that takes it off.
+    pub order: u32,
+    /// Angle error there that the series leaves, at worst over what the design promises, periods rms.
+    pub left_at_top_speed_periods: f64,
+    /// What would be there without it, periods rms.
+    pub uncorrected_at_top_speed_periods: f64,
+}
+
+impl ChannelSkew {
+    fn of(design: &Design) -> Option<Self> {
+        let delay_s = design.spec.correction.channel_skew_s;
+        design.skew.map(|skew| Self {
+            delay_s,
+            delay_quantised_s: skew.delay_quantised_s,
+            delay_error_s: skew.delay_quantised_s - delay_s,
+            phase_at_top_speed_rad: skew.phase_max,
+            order: match skew.order {
+                Order::First => 1,
+                Order::Second => 2,
+            },
+            left_at_top_speed_periods: skew.residual_rms_periods,
+            uncorrected_at_top_speed_periods: skew.uncorrected_rms_periods,
+        })
+    }
 }
 
 /// A coefficient.
@@ -249,6 +290,7 @@ impl DesignJson {
                 acquisition_gears: design.acquisition.gears,
                 acquisition_stride: design.acquisition.stride,
             },
+            channel_skew: ChannelSkew::of(design),
             position: Position::of(design),
             coefficients: coefficients(design),
             formats: crate::why::formats(design),
@@ -326,6 +368,11 @@ fn coefficients(design: &Design) -> Vec<Coefficient> {
             "loop_a" => t.a,
             "loop_ab" => t.ab,
             "loop_leak" => 1.0 - t.pole,
+            "skew_delay" => {
+                std::f64::consts::TAU
+                    * design.spec.correction.channel_skew_s
+                    * design.spec.adc.sample_rate_hz
+            }
             _ => constant.ideal,
         };
         let bits =

@@ -74,6 +74,8 @@ pub fn accuracy(design: &Design) -> Accuracy {
     let (s, converter) = (&spec.sensor, Converter::of(spec));
     let (m, o) = (s.amplitude_tolerance / 2.0, s.offset_max / 2.0);
     let beta = s.phase_error_max_deg.to_radians() / 2.0;
+    // The sine is sampled so many samples later, where the design corrects that.
+    let late = spec.correction.channel_skew_s * spec.adc.sample_rate_hz;
     // The larger signal just fits the ADC.
     let room = spec.adc.full_scale / (s.amplitude * (1.0 + m + o));
     let a = s.amplitude * room.min(1.0) * 0.999;
@@ -93,12 +95,13 @@ pub fn accuracy(design: &Design) -> Accuracy {
     for k in 0..converge + settle + sweep {
         // An axis slows down; a step in speed would show the loop's transient in the residual.
         let slowed = (k.saturating_sub(converge) as f64 / settle as f64).min(1.0);
-        at += fast + (slow - fast) * slowed;
-        let alpha = at * TAU;
+        let speed = fast + (slow - fast) * slowed;
+        at += speed;
+        let (alpha, alpha_of_sin) = (at * TAU, (at + late * speed) * TAU);
         let mut channel =
             |v: f64| converter.code(spec.adc.middle + v + a * s.noise_rms * noise.next());
         let cos = channel(a * (1.0 + m) * alpha.cos() + o * a);
-        let sin = channel(a * (1.0 - m) * (alpha - beta).sin() - o * a);
+        let sin = channel(a * (1.0 - m) * (alpha_of_sin - beta).sin() - o * a);
         if k >= converge + settle {
             let error = chip.position() - at;
             errors.push(error - error.round());

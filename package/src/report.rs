@@ -79,7 +79,17 @@ fn said(design: &Design, j: &DesignJson) -> Vec<(&'static str, String, String)> 
         units.into_iter().flatten().collect::<Vec<_>>().join(", ")
     };
     let phase = &design.structure.formats.alpha;
-    vec![
+    let skew = j.channel_skew.as_ref().map(|skew| {
+        (
+            "Channel skew corrected",
+            format!("sine later by {}", engineering(skew.delay_s, "s")),
+            format!(
+                "at top speed {:.2e} periods rms are left of {:.2e}",
+                skew.left_at_top_speed_periods, skew.uncorrected_at_top_speed_periods
+            ),
+        )
+    });
+    let mut list = vec![
         (
             PREDICTED,
             per_period(j.budget.total),
@@ -164,7 +174,9 @@ fn said(design: &Design, j: &DesignJson) -> Vec<(&'static str, String, String)> 
                 spec.sensor.phase_error_max_deg
             ),
         ),
-    ]
+    ];
+    list.extend(skew);
+    list
 }
 
 /// The closed loop's magnitude in dB over frequency.

@@ -57,6 +57,18 @@ fn why(design: &Design, name: &str, op: &Op, format: Format) -> &'static str {
             "travel_samples",
             "counts the samples of a period of travel at a fifth of the loop's bandwidth",
         ),
+        (
+            "skew_rate",
+            "speed up to a quarter above the design's largest, as wide as a signal",
+        ),
+        (
+            "skew_moving",
+            "phase of the sine's delay at that speed, six bits finer than a signal",
+        ),
+        (
+            "skew",
+            "phase of the sine's delay at that speed, six bits finer than a signal",
+        ),
         ("carry", "whole periods gone by in a sample"),
         (
             "quarter_phase",

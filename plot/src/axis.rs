@@ -22,6 +22,10 @@ pub struct Axis {
 
 /// Most intervals between the ticks of an axis.
 const INTERVALS: f64 = 5.0;
+/// Decades below which a logarithmic axis has the numbers of a linear one.
+const LINEAR: f64 = 0.7;
+/// Decades below which 2 and 5 have numbers too.
+const FEW: f64 = 2.5;
 
 impl Axis {
     /// A linear axis between two ends.
@@ -77,14 +81,20 @@ impl Axis {
     pub fn ticks(&self) -> Vec<(f64, String)> {
         let [low, high] = self.ends;
         let decades = (high / low).log10();
-        if self.scale == Scale::Logarithmic && decades >= 1.5 {
-            let every = (decades / INTERVALS).ceil().max(1.0) as usize;
-            let powers = (low.log10().ceil() as i32..=high.log10().floor() as i32).step_by(every);
-            return powers
-                .filter_map(|p| {
-                    let value = 10f64.powi(p);
-                    Some((self.place(value)?, number(value, value)))
-                })
+        if self.scale == Scale::Logarithmic && decades >= LINEAR {
+            // 1, 2 and 5 of each decade, or decades alone, some of them left out where they are many.
+            let (factors, every, first) = if decades < FEW {
+                (&[1.0, 2.0, 5.0][..], 1, low.log10().floor())
+            } else {
+                let every = (decades / INTERVALS).ceil() as usize;
+                (&[1.0][..], every, low.log10().ceil())
+            };
+            let first = first as i32;
+            let powers = (first..=high.log10().floor() as i32).step_by(every);
+            let values = powers.flat_map(|p| factors.iter().map(move |f| f * 10f64.powi(p)));
+            return values
+                .filter(|v| (low..=high).contains(v))
+                .filter_map(|value| Some((self.place(value)?, number(value, value))))
                 .collect();
         }
         let step = step(high - low);
@@ -163,8 +173,24 @@ mod tests {
     fn decades_of_a_logarithmic_axis() {
         let axis = Axis::logarithmic("", [1e-6, 0.0, 1e-2, -3.0]);
         assert_eq!(words(&axis), ["1e-6", "1e-5", "0.0001", "0.001", "0.01"]);
+        assert_eq!(
+            words(&Axis::logarithmic("", [3.0, 60.0])),
+            ["5", "10", "20", "50"]
+        );
         assert_eq!(axis.place(-1.0), None);
         assert_eq!(axis.place(axis.ends[1]), Some(1.0));
+    }
+
+    #[test]
+    fn every_logarithmic_axis_has_two_numbers_and_not_too_many() {
+        for low in 0..100 {
+            for length in 1..400 {
+                let low = 10f64.powf(f64::from(low) / 37.0 - 3.0);
+                let high = low * 10f64.powf(f64::from(length) / 40.0);
+                let ticks = Axis::logarithmic("", [low, high]).ticks().len();
+                assert!((2..=8).contains(&ticks), "{low} to {high}: {ticks}");
+            }
+        }
     }
 
     #[test]

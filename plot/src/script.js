@@ -30,10 +30,15 @@
     const [from, to] = axis.part, low = axis.value(from), high = axis.value(to);
     const at = (value) => (axis.place(value) - from) / (to - from);
     const decades = Math.log10(high / low), list = [];
-    if (axis.log && decades >= 1.5) {
-      const every = Math.max(1, Math.ceil(decades / INTERVALS));
-      for (let p = Math.ceil(Math.log10(low)); p <= Math.log10(high); p += every) {
-        list.push([at(10 ** p), number(10 ** p, 10 ** p)]);
+    // As the axis of the picture has them: decades, with 2 and 5 where they are few; and as a linear axis where less than
+    // one is shown.
+    if (axis.log && decades >= 0.7) {
+      const few = decades < 2.5, every = few ? 1 : Math.ceil(decades / INTERVALS);
+      const first = Math.log10(low), begin = few ? Math.floor(first) : Math.ceil(first);
+      for (let p = begin; p <= Math.log10(high); p += every) {
+        for (const value of (few ? [1, 2, 5] : [1]).map((f) => f * 10 ** p)) {
+          if (value >= low && value <= high) list.push([at(value), number(value, value)]);
+        }
       }
       return list;
     }

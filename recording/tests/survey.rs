@@ -3,6 +3,9 @@
 use std::f64::consts::TAU;
 
 use nonius_recording::{Ellipse, FitMethod, Overrides, Recording, Survey};
+use rand::SeedableRng;
+use rand::rngs::StdRng;
+use rand_distr::{Distribution, StandardNormal};
 
 const SENSOR: Ellipse = Ellipse {
     a_c: 0.9,
@@ -12,21 +15,6 @@ const SENSOR: Ellipse = Ellipse {
     beta: 0.15,
 };
 
-/// Pseudo-random numbers of unit variance, the same on every machine.
-fn noise() -> impl FnMut() -> f64 {
-    let mut state = 1u64;
-    move || {
-        let mut sum = -6.0;
-        for _ in 0..12 {
-            state = state
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1);
-            sum += (state >> 40) as f64 / 16_777_216.0;
-        }
-        sum
-    }
-}
-
 /// Samples at 10 kHz of a motion given in periods, with white noise in fractions of the amplitude.
 fn survey(
     samples: u32,
@@ -34,7 +22,8 @@ fn survey(
     spoil: impl Fn(u32, &mut (f64, f64)),
     motion: impl Fn(f64) -> f64,
 ) -> Survey {
-    let mut noise = noise();
+    let mut random = StdRng::seed_from_u64(1);
+    let mut noise = || -> f64 { StandardNormal.sample(&mut random) };
     let (mut time, mut cos, mut sin) = (Vec::new(), Vec::new(), Vec::new());
     for k in 0..samples {
         let t = f64::from(k) * 1e-4;

@@ -176,6 +176,7 @@ fn late_bandwidths(speed: &Speed, library: &mut Library) -> Vec<Candidate> {
 fn skew(speed: &Speed) -> Candidate {
     let shape = speed.times(1, &derivatives(speed.beta)[1]);
     Candidate {
+        chip: Chip::Corrects,
         exact: follows(0.0, |delay, library| {
             vec![library.pair(move |block: &Block, c, s| {
                 block.channel(1, &later(block, 1, delay), c, s);

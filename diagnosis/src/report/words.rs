@@ -70,6 +70,9 @@ pub(super) fn chip(finding: &Finding) -> &'static str {
         (_, "spatial_harmonic") if order == Some(2.0) || order == Some(3.0) => {
             "The chip corrects the part of it that is a bend of the channel, with nine parameters on line; design.toml switches them on where phase and design allow it."
         }
+        (Chip::Corrects, "channel_skew") => {
+            "The chip corrects it: it turns the sine back by the speed times this delay, which design.toml tells it."
+        }
         (Chip::Corrects, "offset_drift" | "gain_drift") => {
             "The chip corrects it: the calibration on line follows it."
         }

@@ -15,12 +15,12 @@ pub struct Toy {
 
 impl Toy {
     pub fn new() -> Toy {
-        let folder = tempfile::tempdir().unwrap();
+        let folder = tempfile::tempdir().expect("a scratch folder");
         let from = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/toy");
         for (name, content) in contents(&from) {
             let to = folder.path().join(name);
-            fs::create_dir_all(to.parent().unwrap()).unwrap();
-            fs::write(to, content).unwrap();
+            fs::create_dir_all(to.parent().expect("a folder")).expect("a file");
+            fs::write(to, content).expect("a file");
         }
         Toy { folder }
     }
@@ -30,20 +30,20 @@ impl Toy {
     }
 
     pub fn open(&self) -> ChipDir {
-        ChipDir::open(self.path()).unwrap()
+        ChipDir::open(self.path()).expect("a chip")
     }
 
     /// Replaces a text that must occur exactly once.
     pub fn replace(self, file: &str, old: &str, new: &str) -> Toy {
         let path = self.path().join(file);
-        let text = fs::read_to_string(&path).unwrap();
+        let text = fs::read_to_string(&path).expect("a file");
         assert_eq!(text.matches(old).count(), 1, "{old:?} in {file}");
-        fs::write(path, text.replace(old, new)).unwrap();
+        fs::write(path, text.replace(old, new)).expect("a file");
         self
     }
 
     pub fn write(self, file: &str, text: &str) -> Toy {
-        fs::write(self.path().join(file), text).unwrap();
+        fs::write(self.path().join(file), text).expect("a file");
         self
     }
 
@@ -57,13 +57,13 @@ fn contents(root: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     let mut files = BTreeMap::new();
     let mut folders = vec![root.to_owned()];
     while let Some(folder) = folders.pop() {
-        for entry in fs::read_dir(folder).unwrap() {
-            let path = entry.unwrap().path();
+        for entry in fs::read_dir(folder).expect("a file") {
+            let path = entry.expect("an entry").path();
             if path.is_dir() {
                 folders.push(path);
             } else {
-                let name = path.strip_prefix(root).unwrap().to_owned();
-                files.insert(name, fs::read(&path).unwrap());
+                let name = path.strip_prefix(root).expect("below").to_owned();
+                files.insert(name, fs::read(&path).expect("a file"));
             }
         }
     }

@@ -118,6 +118,8 @@ fn terms(words: &Words, spec: &Spec, tracking: &Loop) -> Vec<Term> {
     // Smallest change of the rate is half its last bit: errors below that die in the integrator.
     let dead_band = exp2(-i64::from(words.phase_bits) - 1) / tracking.ab / 3f64.sqrt();
     let segment = TAU * exp2(-i64::from(words.sine_rows_log2) - 3);
+    // The sine is rounded once more, and the gain that takes the second order off.
+    let skew = rounding(f) * (0.5f64 + 0.125).sqrt();
     let list = [
         ("corrected signals", rounding(f)),
         ("sine table rounding", rounding(f)),
@@ -134,8 +136,11 @@ fn terms(words: &Words, spec: &Spec, tracking: &Loop) -> Vec<Term> {
         ),
         ("phase and its increments", dead_band),
         ("parameter accumulators", accumulator(words, spec)),
+        ("channel skew", skew),
     ];
+    let absent = usize::from(spec.correction.is_none());
     list.iter()
+        .take(list.len() - absent)
         .map(|&(source, radians)| Term {
             source,
             rms_periods: radians / TAU,

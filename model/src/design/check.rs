@@ -35,7 +35,7 @@ pub(super) fn between(
 }
 
 /// Short, whatever its size.
-fn number(value: f64) -> String {
+pub(super) fn number(value: f64) -> String {
     let plain = value.to_string();
     if plain.len() <= 9 {
         return plain;

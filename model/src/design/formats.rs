@@ -2,8 +2,9 @@
 
 use std::f64::consts::TAU;
 
-use super::{Acquisition, DesignError, Loop, Words, normalisation};
+use super::{Acquisition, DesignError, Loop, Words, normalisation, skew};
 use crate::format::{Format, Quantiser, exp2};
+use crate::kernel::skew::Order;
 use crate::kernel::start::PERIODS as START_PERIODS;
 use crate::kernel::{Coefficients, Constant, Formats, Method, Structure};
 use crate::rom::{Column, Rom};
@@ -64,6 +65,13 @@ fn counting_to(last: u32) -> Format {
     Format::unsigned((32 - last.leading_zeros()).max(1), 0)
 }
 
+/// Saturating, as wide as a signal or as `finest` fraction bits need, for values up to `largest` in magnitude.
+fn held(largest: f64, width: u32, finest: u32) -> Quantiser {
+    let power = power_of(largest).max(1 - finest as i32);
+    let fraction = (width as i32 - 1 - power).clamp(1 - power, finest as i32);
+    Quantiser::saturating(Format::signed(bits(1 + power + fraction), bits(fraction)))
+}
+
 fn bits(n: i32) -> u32 {
     u32::try_from(n).unwrap_or(0)
 }
@@ -94,6 +102,7 @@ pub(super) fn structure(
     let start =
         spec.calibration.parameters > 0 && spec.calibration.start == CalibrationStart::LeastSquares;
     let fast = spec.sensor.speed_max_periods_per_s > 0.2 * spec.adc.sample_rate_hz;
+    let top = 1.25 * spec.sensor.speed_max_periods_per_s / spec.adc.sample_rate_hz;
     let formats = Formats {
         adc: if offset_binary {
             Format::unsigned(adc_bits, adc_bits)
@@ -107,6 +116,8 @@ pub(super) fn structure(
         // A quarter of a turn each way, and twice that where the design comes near it.
         rate: Quantiser::saturating(Format::signed(if fast { fp } else { fp - 1 }, fp)),
         rate_high: Quantiser::grid(Format::signed(width, if fast { width } else { width + 1 })),
+        skew_rate: held(top, width, fp),
+        skew: held(2.5 * skew::phase_max(spec), width, f + 6),
         sine_phase: Quantiser::truncating(Format::unsigned(
             words.sine_phase_bits,
             words.sine_phase_bits,
@@ -148,6 +159,7 @@ pub(super) fn structure(
         forgetting: spec.calibration.forgetting,
         completion: (spec.calibration.parameters >= 8 && spec.calibration.completion)
             .then_some(spec.calibration.completion_gamma),
+        skew: (!spec.correction.is_none()).then_some(Order::Second),
         offset_binary,
         formats,
         sine: sine_table(words)?,
@@ -232,7 +244,8 @@ pub(super) fn constants(
             2.0 * s.bend_max
         } else {
             0.0
-        };
+        }
+        + skew::phase_max(spec) / 2.0;
     Coefficients {
         adc_middle: Constant::rounded(0.5, 1),
         loop_a: Constant::normalised(tracking.a, width, 40),
@@ -242,6 +255,12 @@ pub(super) fn constants(
         loop_leak: Constant::normalised(1.0 - tracking.pole, width, 40),
         theta_1_nominal: nominal,
         theta_3_nominal: nominal,
+        skew_delay: Constant::normalised(
+            TAU * spec.correction.channel_skew_s * spec.adc.sample_rate_hz,
+            width,
+            40,
+        ),
+        skew_amplitude: Constant::normalised(normalisation(spec).0, width, 40),
         quarter_turn: corrected(0.25, 2.0 * half_bit, p),
         half_bit: Constant {
             ideal: 0.0,

@@ -5,9 +5,11 @@ mod check;
 mod formats;
 mod keywords;
 mod poles;
+mod skew;
 
 pub use budget::{Budget, Term, Words};
 pub use poles::{Acquisition, Loop};
+pub use skew::{PHASE_MAX, Skew};
 
 use thiserror::Error;
 
@@ -49,6 +51,8 @@ pub struct Design {
     pub words: Words,
     /// What each word costs.
     pub budget: Budget,
+    /// Correction of channel skew, where there is one.
+    pub skew: Option<Skew>,
     /// Structure and formats.
     pub structure: Structure,
     /// The numbers.
@@ -65,10 +69,12 @@ impl Design {
     pub fn new(spec: &Spec) -> Result<Self, DesignError> {
         check::check(spec)?;
         let tracking = Loop::new(spec)?;
+        skew::check(spec, &tracking)?;
         let acquisition = Acquisition::new(spec, &tracking);
         let (words, budget) = budget::choose(spec, &tracking)?;
-        let structure = formats::structure(spec, &tracking, &acquisition, &words)?;
+        let mut structure = formats::structure(spec, &tracking, &acquisition, &words)?;
         let constants = formats::constants(spec, &tracking, &acquisition, &words, &structure);
+        let skew = skew::settle(spec, &budget, &mut structure, &constants);
         let graph = record(&structure, &constants, chip_kernel)?;
         check::apart(&spec.name, &graph)?;
         check::used(spec.chip.multipliers, &graph)?;
@@ -78,6 +84,7 @@ impl Design {
             acquisition,
             words,
             budget,
+            skew,
             structure,
             constants,
             graph,

@@ -95,6 +95,10 @@ coefficients! {
     theta_1_nominal,
     /// Nominal θ3.
     theta_3_nominal,
+    /// Delay of the sine: radians of phase per turn of speed and sample.
+    skew_delay,
+    /// Nominal amplitude of the cosine.
+    skew_amplitude,
     /// A quarter turn, less one bit of the sine phase.
     quarter_turn,
     /// Half a bit of the sine phase: what was cut off, on average.

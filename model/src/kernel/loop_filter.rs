@@ -33,12 +33,7 @@ pub fn rate<S: Signal>(e: S, state: &State<S>, k: &Coefficients<S>, structure: &
             )
         }
     };
-    let before = match structure.method {
-        Method::One => (state.alpha_hat - state.alpha_hat_previous)
-            .quantise(&wrapped(structure))
-            .named("rate_before"),
-        Method::Two | Method::Three => state.rate,
-    };
+    let before = rate_before(state, structure);
     let kept = if structure.filter_type == 2 {
         before
     } else {
@@ -54,6 +49,16 @@ pub fn rate<S: Signal>(e: S, state: &State<S>, k: &Coefficients<S>, structure: &
     let drift = geared(k.loop_ab * state.error_previous, 2 * structure.loop_stride).named("drift");
     // The drift is there long before the kick.
     (kept + drift + kick).quantise(&formats.rate)
+}
+
+/// The position increment of the sample before, in turns: the speed as it is known before this sample.
+pub fn rate_before<S: Signal>(state: &State<S>, structure: &Structure) -> S {
+    match structure.method {
+        Method::One => (state.alpha_hat - state.alpha_hat_previous)
+            .quantise(&wrapped(structure))
+            .named("rate_before"),
+        Method::Two | Method::Three => state.rate,
+    }
 }
 
 /// A difference of two phases is known modulo one turn.

@@ -18,6 +18,7 @@ pub mod position;
 pub mod sample;
 pub mod sensitivity;
 pub mod sine;
+pub mod skew;
 pub mod start;
 pub mod state;
 pub mod sum_of_squares;
@@ -59,6 +60,8 @@ pub struct Structure {
     pub forgetting: u32,
     /// γ = 2^-that of the direction that no radius shows; `None`: it is not learnt.
     pub completion: Option<u32>,
+    /// How far channel skew is corrected; `None`: the sine is sampled with the cosine.
+    pub skew: Option<skew::Order>,
     /// The ADC codes run from 0 (offset binary) instead of around 0.
     pub offset_binary: bool,
     /// Formats of the signals.
@@ -84,10 +87,11 @@ impl Structure {
         matches!(self.parameters, 5 | 9)
     }
 
-    /// Neither bends, nor another gradient than the final form, nor another start than its gears.
+    /// Neither bends, nor skew, nor another gradient than the final form, nor another start than its gears.
     #[must_use]
     pub fn is_plain(&self) -> bool {
-        !self.has_bend() && self.gradient == CalibrationMethod::Final && !self.least_squares_start
+        let searches = self.gradient != CalibrationMethod::Final || self.least_squares_start;
+        !(self.has_bend() || self.skew.is_some() || searches)
     }
 
     /// Gradients are gathered over samples: by the search or by its start.
@@ -130,6 +134,10 @@ pub struct Formats {
     pub rate: Quantiser,
     /// Upper part of the rate, where it is multiplied in two parts (type 1).
     pub rate_high: Quantiser,
+    /// Speed as it is multiplied by the delay of the sine, turns per sample.
+    pub skew_rate: Quantiser,
+    /// Phase by which the sine is sampled later, radians.
+    pub skew: Quantiser,
     /// Phase that addresses the sine table.
     pub sine_phase: Quantiser,
     /// Count of whole periods; the unit is the whole range of the counter.

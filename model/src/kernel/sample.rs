@@ -3,7 +3,7 @@
 use super::{Coefficients, Input, Method, Probes, State, Structure};
 use super::{
     bend, calibration, completion, correction, detector, gears, gradient, lock, loop_filter,
-    position, sine, start, sum_of_squares, travel,
+    position, sine, skew, start, sum_of_squares, travel,
 };
 use crate::format::Quantiser;
 use crate::signal::{Formula, Logic, Signal};
@@ -34,8 +34,8 @@ pub fn advance<S: Signal>(
     k: &Coefficients<S>,
     structure: &Structure,
 ) -> Probes<S> {
-    // The same code twice: where the design has neither bends nor another gradient than the final form, the compiler
-    // leaves them out, which makes the bit-true model faster by two thirds.
+    // The same code twice: where the design has neither bends nor skew nor another gradient than the final form, the
+    // compiler leaves them out, which makes the bit-true model faster by two thirds.
     if structure.is_plain() {
         advance_of::<S, true>(input, state, k, structure)
     } else {
@@ -56,12 +56,18 @@ fn advance_of<S: Signal, const PLAIN: bool>(
     let y_s = correction::normalise(input.adc_sin, k, structure);
     let theta = correction::parameters(state, k, structure);
     let mut bends = None;
-    let (c, s) = if !PLAIN && structure.has_bend() {
+    let (c, mut s) = if !PLAIN && structure.has_bend() {
         let bends = bends.insert(bend::parameters(state, structure));
         correction::correct_bent(y_c, y_s, theta, bends, k, structure)
     } else {
         correction::correct(y_c, y_s, theta, structure)
     };
+    let mut ahead = k.zero;
+    if let (false, Some(order)) = (PLAIN, structure.skew) {
+        ahead = skew::skew(order, state, k, structure);
+        let [theta_1, _, _, _, theta_5] = theta;
+        s = skew::correct((c, s), (order, ahead), (theta_1, theta_5), k, structure);
+    }
 
     let weak = detector::weak(c, s, k);
     let rho = detector::radial_residual(c, s, cos_hat, sin_hat, k, structure);
@@ -186,6 +192,7 @@ fn advance_of<S: Signal, const PLAIN: bool>(
         theta_7: bends.map_or(k.zero, |b| b.theta_7),
         c,
         s,
+        skew: ahead,
         cos_hat,
         sin_hat,
         e,

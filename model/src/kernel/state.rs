@@ -153,6 +153,8 @@ bundle! {
         c,
         /// Corrected sine.
         s,
+        /// Phase by which the sine is sampled later than the cosine, radians.
+        skew,
         /// cos α̂.
         cos_hat,
         /// sin α̂.

@@ -135,7 +135,8 @@ pub fn config(spec: &Spec) -> Result<Config, ReferenceError> {
     let worst = s.offset_max * 1.5
         + s.amplitude_tolerance
         + s.phase_error_max_deg.to_radians()
-        + 5.0 * s.noise_rms;
+        + 5.0 * s.noise_rms
+        + TAU * s.speed_max_periods_per_s * spec.correction.channel_skew_s.abs() / 2.0;
     let equaliser = equaliser(spec, parameters);
     // A loop settles within some multiples of 1/ω0.
     let omega = TAU * spec.tracking.bandwidth_hz / spec.adc.sample_rate_hz;
@@ -149,6 +150,7 @@ pub fn config(spec: &Spec) -> Result<Config, ReferenceError> {
         parameters,
         theta: parameters.nominal(1.0),
         tracking,
+        skew: spec.correction.channel_skew_s,
         search: search(spec),
         gamma: Gamma {
             first: Steps::from_diagonal(&equaliser)

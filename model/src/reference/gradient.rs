@@ -11,7 +11,7 @@
 use nalgebra::{RowSVector, Vector2};
 
 use super::loops::Filter;
-use super::{Jacobian, Parameters, Theta};
+use super::{Jacobian, Parameters, Theta, skew};
 
 /// What one sample shows, given Θ and α̂.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,8 +34,26 @@ impl Observation {
     /// Looks at the sample y with Θ and α̂.
     #[must_use]
     pub fn new(parameters: Parameters, theta: &Theta, y: [f64; 2], alpha_hat: f64) -> Self {
+        Self::skewed(parameters, theta, y, alpha_hat, 0.0)
+    }
+
+    /// The same where the sine's phase runs `kappa` radians ahead because it is sampled later. M stays as it is without: what
+    /// κ changes of it is small, and no fixed point of the search depends on it.
+    #[must_use]
+    pub fn skewed(
+        parameters: Parameters,
+        theta: &Theta,
+        y: [f64; 2],
+        alpha_hat: f64,
+        kappa: f64,
+    ) -> Self {
         let (sin_hat, cos_hat) = alpha_hat.sin_cos();
-        let [c, s] = parameters.corrected(theta, y);
+        let late = parameters.corrected(theta, y);
+        let [c, s] = if kappa == 0.0 {
+            late
+        } else {
+            skew::together(late, kappa, skew::tan_beta(parameters, theta))
+        };
         Self {
             m: parameters.jacobian(theta, y),
             corrected: [c, s],

@@ -67,6 +67,8 @@ pub struct Config {
     pub theta: Theta,
     /// The loop.
     pub tracking: LoopConfig,
+    /// The sine is sampled so much later than the cosine, seconds; 0 in the paper.
+    pub skew: f64,
     /// The search.
     pub search: Search,
     /// γ.
@@ -87,6 +89,7 @@ impl Config {
             parameters,
             theta: parameters.nominal(1.0),
             tracking,
+            skew: 0.0,
             search: Search::Residual(Form::Final),
             gamma: Gamma::constant(gamma),
             gate: Gate::EverySample,
@@ -272,7 +275,16 @@ impl Reference {
 
     fn observe(&self, y: [f64; 2]) -> Observation {
         let (_, phase) = self.tracking.turns_and_phase();
-        Observation::new(self.config.parameters, &self.theta, y, phase)
+        let Config {
+            parameters, skew, ..
+        } = self.config;
+        // Before lock the speed is that of acquisition, not of the scale.
+        let kappa = if self.gate.locked() {
+            skew * self.tracking.speed()
+        } else {
+            0.0
+        };
+        Observation::skewed(parameters, &self.theta, y, phase, kappa)
     }
 
     fn go_on(

@@ -15,6 +15,7 @@
 //! | 5.5, (8) to (11) and the final form | [`gradient`] |
 //! | what the paper lacks: the direction that no radius shows | [`completed`] |
 //! | a start within two periods | [`recursive`] |
+//! | the sine sampled later than the cosine | [`skew`] |
 //! | when to calibrate, how to start | [`gate`], [`start`] |
 //! | all of it together | [`interpolator`] |
 //!
@@ -34,6 +35,7 @@ pub mod loops;
 pub mod poles;
 pub mod recursive;
 pub mod sensor;
+pub mod skew;
 pub mod start;
 pub mod sum_of_squares;
 

@@ -25,6 +25,9 @@ pub struct Spec {
     /// On-line calibration.
     #[serde(default)]
     pub calibration: Calibration,
+    /// What is corrected by a number that is known beforehand.
+    #[serde(default, skip_serializing_if = "Correction::is_none")]
+    pub correction: Correction,
     /// What the chip must reach.
     pub accuracy: Accuracy,
     /// How it is built.
@@ -187,6 +190,23 @@ impl Calibration {
             8 => &[1, 2, 3, 4, 6, 7, 8, 9],
             _ => &[1, 2, 3, 4, 5, 6, 7, 8, 9],
         }
+    }
+}
+
+/// `[correction]`
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Correction {
+    /// sin is sampled so much later than cos, seconds; negative: earlier. 0: at the same instant, and the chip is the one
+    /// without this correction.
+    #[serde(default)]
+    pub channel_skew_s: f64,
+}
+
+impl Correction {
+    /// Nothing to correct.
+    #[must_use]
+    pub fn is_none(&self) -> bool {
+        self.channel_skew_s == 0.0
     }
 }
 

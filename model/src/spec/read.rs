@@ -37,6 +37,7 @@ const TOP: &[&str] = &[
     "adc",
     "loop",
     "calibration",
+    "correction",
     "accuracy",
     "chip",
     "formats",
@@ -69,6 +70,7 @@ fn known(section: &str) -> Option<&'static [&'static str]> {
             "gear_periods",
             "restart_residual",
         ],
+        "correction" => &["channel_skew_s"],
         "accuracy" => &["rms_periods", "arithmetic_share"],
         "chip" => &["multipliers", "clock_hz", "count_bits"],
         "formats" => &[

@@ -91,6 +91,7 @@ fn reference(design: &Design, registers: &State<f64>, position: f64) -> Referenc
         theta: theta(design, registers),
         // They stand at their nominal values where the comparison begins, and may go as far as their words.
         bound: Theta::from_fn(|i, _| design.structure.formats.deviation[i].format.max()),
+        skew: spec.correction.channel_skew_s,
         search: match spec.calibration.parameters {
             0 => Search::None,
             _ => Search::Residual(Form::Final),
@@ -153,13 +154,16 @@ pub(crate) fn compare(
     while spec.sensor.amplitude / spec.adc.full_scale * unit < 0.5 {
         unit *= 2.0;
     }
+    // The sensor that the design is for.
+    let late = spec.correction.channel_skew_s * spec.adc.sample_rate_hz;
     let last_gear = f64::from(design.structure.loop_gears);
     let mut paper: Option<Reference> = None;
     let mut found = Difference::default();
     let mut start = Theta::zeros();
     let mut compared = 0u32;
     for k in 0..SAMPLES {
-        let codes = encoder.codes(motion(f64::from(k)));
+        let k = f64::from(k);
+        let codes = encoder.codes_of([motion(k), motion(k + late)]);
         let before = chip.registers();
         let (fresh, [e, rho]) = chip.step(codes, middle, spec.adc.bits);
         let after = chip.registers();

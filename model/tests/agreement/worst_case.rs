@@ -46,7 +46,11 @@ impl WorstCase {
         let [first, _, fifth] = f.theta.map(|q| half_bit(q.format.fraction) * y);
         let corrected = half_lsb + (first * first + (first + fifth).powi(2)).sqrt();
         // A sum of cos² and sin² shares: no more than √2 of either.
-        let rho = half_lsb + 2f64.sqrt() * (RADIUS * sine + corrected);
+        // What the series that takes channel skew off leaves, and its roundings: of the late sine, of the gain, of κ.
+        let skew = design.skew.map_or(0.0, |skew| {
+            skew.sine_error_max + 2.0 * half_lsb + half_bit(f.skew.format.fraction)
+        });
+        let rho = half_lsb + 2f64.sqrt() * (RADIUS * sine + corrected) + skew;
         // Coefficients of `width` bits; they are multiplied by e, and a and a + b each contribute.
         let width = words.signal_fraction as i32 + 2;
         let coefficients = 2.0 * ERROR * 0.5f64.powi(width - 1);

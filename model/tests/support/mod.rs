@@ -39,16 +39,26 @@ impl Encoder {
     }
 
     pub(crate) fn volts(&self, turns: f64) -> [f64; 2] {
-        let alpha = turns * std::f64::consts::TAU;
+        self.volts_of([turns; 2])
+    }
+
+    /// Each channel at an angle of its own, as where they are sampled one after the other.
+    fn volts_of(&self, turns: [f64; 2]) -> [f64; 2] {
+        let [cos, sin] = turns.map(|turns| turns * std::f64::consts::TAU);
         [
-            self.amplitude[0] * alpha.cos() + self.offset[0],
-            self.amplitude[1] * (alpha - self.beta).sin() + self.offset[1],
+            self.amplitude[0] * cos.cos() + self.offset[0],
+            self.amplitude[1] * (sin - self.beta).sin() + self.offset[1],
         ]
     }
 
     pub(crate) fn codes(&self, turns: f64) -> [i64; 2] {
+        self.codes_of([turns; 2])
+    }
+
+    /// Each channel at an angle of its own.
+    pub(crate) fn codes_of(&self, turns: [f64; 2]) -> [i64; 2] {
         let half = (1i64 << (self.bits - 1)) as f64;
-        self.volts(turns)
+        self.volts_of(turns)
             .map(|v| (v * half).round().clamp(-half, half - 1.0) as i64)
     }
 }
