@@ -129,25 +129,32 @@ impl<'a> Samples<'a> {
         let mut squares = vec![0.0; self.library.atoms.len() - from];
         self.fill(&wanted, 1, &mut |block, splines, i, values| {
             let range = block.start..block.start + block.len();
-            weighted.clear();
-            let pairs = values.iter().zip(&weight[range]);
-            weighted.extend(pairs.map(|(v, w)| v * w));
-            squares[wanted[i] - from] += dot(&weighted, &weighted);
+            let weights = &weight[range];
+            let counted = if weights.iter().all(|w| *w == 1.0) {
+                values
+            } else {
+                weighted.clear();
+                weighted.extend(values.iter().zip(weights).map(|(v, w)| v * w));
+                &weighted
+            };
+            squares[wanted[i] - from] += dot(counted, counted);
             let own = &mut sums[wanted[i] - from];
             match own.len() {
-                1 => own[0] += weighted.iter().sum::<f64>(),
+                1 => own[0] += counted.iter().sum::<f64>(),
                 _ => splines
                     .basis()
                     .into_iter()
-                    .for_each(|b| b.accumulate(&weighted, own)),
+                    .for_each(|b| b.accumulate(counted, own)),
             }
         });
         for (own, atom) in sums.iter_mut().zip(&self.library.atoms[from..]) {
-            match self.projector(atom.row) {
-                Projector::Nothing => {}
-                Projector::Mean(total) => own[0] /= total.max(1.0),
-                Projector::Spline(spline) => spline.solve(own),
+            if let Projector::Mean(total) = self.projector(atom.row) {
+                own[0] /= total.max(1.0);
             }
+        }
+        if let Some(spline) = &self.context.spline {
+            let count = spline.count();
+            spline.solve_all(sums.iter_mut().filter(|s| s.len() == count));
         }
         self.motions.extend(sums);
         self.squares.extend(squares);
