@@ -78,9 +78,15 @@ fn main() {
         "# Speed of the diagnosis\n\n\
          Written by `cargo run --release -p nonius-diagnosis --example speed -- docs`; do not edit. One core; reversing motion,\n\
          14 bits, noise of 0.1 %, without reference, 32 periods per revolution. Time from the recording in memory to findings\n\
-         and positions, by the clock and on the processor: other work on the machine makes the first longer. Memory is the\n\
-         most that the process ever held, recording included.\n\n\
-         | samples | hidden | found | seconds by the clock | on the processor | megabytes |\n|---|---|---|---|---|---|\n",
+         and positions, by the clock and on the processor: other work on the machine makes the first longer, and the second\n\
+         too where it shares the cache. Memory is the most that the process ever held, recording included.\n\n\
+         Memory is bounded by a number of bytes a sample, the last column: each sample has its place in the recording, in the\n\
+         repaired recording, in what shapes are made of (angle, speed, corrected pair …) and in the data of the model, and a\n\
+         spectrum is made of all. Functions are made block by block and only their products are kept. Each finding keeps 12\n\
+         bytes a sample at most for its pictures; while an angle is followed anew, what shapes are made of stands there twice.\n\
+         In recordings of 240000 samples and more, what is large is found in one block of several first; its numbers, and all\n\
+         that is said to be there or not, come from all samples.\n\n\
+         | samples | hidden | found | seconds by the clock | on the processor | megabytes | bytes a sample |\n|---|---|---|---|---|---|---|\n",
     );
     for samples in sizes {
         for (hidden, what) in [
@@ -102,7 +108,9 @@ fn main() {
             if names.is_empty() {
                 names.push("nothing");
             }
-            let memory = peak_megabytes().map_or("unknown".into(), |m| format!("{m:.0}"));
+            let memory = peak_megabytes().map_or("unknown | unknown".into(), |m| {
+                format!("{m:.0} | {:.0}", m * 1024.0 * 1024.0 / samples as f64)
+            });
             let row = format!(
                 "| {samples} | {what} | {} | {seconds:.2} | {own} | {memory} |",
                 names.join(", ")

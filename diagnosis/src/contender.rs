@@ -40,7 +40,7 @@ pub(crate) fn contender(
 ) -> Contender {
     off_the_grid(system, fit, &mut scored);
     let most = scored[0].gain;
-    let large = most > LARGE;
+    let large = most * system.every() as f64 > LARGE;
     let (mut first, mut named): (Option<Contender>, Option<Box<Accepted>>) = (None, None);
     let mut others = vec![];
     let mut tried: Vec<(&'static str, Domain)> = vec![];

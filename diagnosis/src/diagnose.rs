@@ -96,11 +96,12 @@ pub fn diagnose(recording: &Recording) -> Result<Diagnosis, ContextError> {
     let checked = checks::check(recording);
     let repaired = repair(recording, &checked);
     let context = Context::new(&repaired.recording, repaired.weight.clone())?;
-    let found = search(context.clone(), &checked, &repaired, true);
+    let found = search(context, &checked, &repaired, true);
     if !found.findings.iter().any(|f| f.cause == FLICKER) {
         return Ok(found);
     }
     // A cause that is slow looks like such noise before it is known: names that explain it all are preferred.
+    let context = Context::new(&repaired.recording, repaired.weight.clone())?;
     let other = search(context, &checked, &repaired, false);
     let known = |name: &str| found.findings.iter().any(|f| f.cause == name);
     let names_more = other.findings.iter().any(|f| !known(&f.cause));
@@ -126,16 +127,20 @@ fn search(
     loop {
         round += 1;
         last |= round == ROUNDS;
-        let known = {
-            let (mut system, catalogue) = exact::look(&context, &mut carried, recording);
-            if !coloured {
-                system.flicker = None;
-            }
-            let selection = select(&context, &mut system, &catalogue, carried.clone(), last);
-            match exact::best(&context, selection.again.clone(), recording) {
-                Some(known) => known,
-                None => return conclude(&system, &selection, checked, repaired),
-            }
+        let (mut system, catalogue) = exact::look(&context, &mut carried, recording);
+        if !coloured {
+            system.flicker = None;
+        }
+        let selection = select(&context, &mut system, &catalogue, carried.clone(), last);
+        if selection.again.is_empty() {
+            let concluded = conclude(&system, &selection, checked, repaired);
+            drop(system);
+            return concluded(context);
+        }
+        // Its samples are not needed any longer, and the next look has its own.
+        drop(system);
+        let Some(known) = exact::best(&context, selection.again, recording) else {
+            continue;
         };
         // A look that makes it worse has gone astray: the tangents have to do.
         if worse(&known.0, &context) {
@@ -154,13 +159,13 @@ fn worse(new: &Context, old: &Context) -> bool {
     !new.is_finite() || new > CLEARLY * CLEARLY * old
 }
 
-/// Findings, gains and positions of a search that has come to its end.
+/// Findings, gains and positions of a search that has come to its end; the context is its own, and is not kept twice.
 fn conclude(
     system: &System,
     selection: &Selection,
     checked: &Checked,
     repaired: &Repaired,
-) -> Diagnosis {
+) -> impl FnOnce(Context) -> Diagnosis + use<> {
     let context = system.context;
     let notes = repaired.recording.notes.clone();
     let extended = selection.named(system);
@@ -234,19 +239,21 @@ fn conclude(
     let positions = own
         .map(|&k| (context.measured[k] - change[k]) / std::f64::consts::TAU)
         .collect();
-    let mut context = context.clone();
-    context.ellipse = exact::ellipse(&context.ellipse, &extended.fit.solution.x);
-    Diagnosis {
-        simulation,
-        findings,
-        unexplained,
-        extended: model,
-        positions,
-        periods_travelled: context.periods_travelled(),
-        context,
-        residuals,
-        left_motion,
-        notes,
+    let ellipse = exact::ellipse(&context.ellipse, &extended.fit.solution.x);
+    move |mut context| {
+        context.ellipse = ellipse;
+        Diagnosis {
+            simulation,
+            findings,
+            unexplained,
+            extended: model,
+            positions,
+            periods_travelled: context.periods_travelled(),
+            context,
+            residuals,
+            left_motion,
+            notes,
+        }
     }
 }
 

@@ -22,6 +22,8 @@ const FITTED: f64 = 30.0;
 const STEPS: usize = 8;
 /// Small changes that one step may go.
 const REACH: f64 = 12.0;
+/// Samples that are enough to find what is large, and to see the colour of the noise.
+const ENOUGH: usize = 120_000;
 /// Share of its standard error by which a number may still move when its fit ends.
 const AT_REST: f64 = 0.2;
 /// Detection SNR of a remainder from which on a recording is looked at anew before anything else can be named for it.
@@ -229,7 +231,7 @@ fn followed(
     context
 }
 
-/// The functions and sums of a context, the causes that are known among them.
+/// The functions and sums of a context, the causes that are known among them; for a long recording, of a part of it.
 pub(crate) fn look<'a>(
     context: &'a Context,
     carried: &mut [Accepted],
@@ -239,7 +241,8 @@ pub(crate) fn look<'a>(
     let motion = reference.map(|r| above_motion(context, &unwrapped(r.clone())));
     let mut catalogue = Catalogue::new(context, motion.is_some());
     enter(carried, &mut catalogue);
-    let system = System::new(context, motion, &mut catalogue, carried);
+    let every = (context.samples() / ENOUGH).max(1);
+    let system = System::new(context, motion, &mut catalogue, carried, every);
     (system, catalogue)
 }
 
@@ -262,6 +265,7 @@ fn settled(
     for _ in 0..SETTLING {
         let mut carried = start.carried.clone();
         let (mut system, catalogue) = look(&context, &mut carried, recording);
+        system.try_on_all();
         let found = begin(&mut system, &catalogue, carried);
         score = system.halves(&found.fit.shapes).log_likelihood(&found.fit);
         // Free numbers and trials are paid for.

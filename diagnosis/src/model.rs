@@ -15,9 +15,6 @@ use crate::whiten::Whitener;
 /// Share of a function's square below which it is a rounding error.
 const NOTHING: f64 = 1e-18;
 
-/// Samples that are enough to take off what is no noise, for the spectrum of the rest.
-const ENOUGH: usize = 120_000;
-
 /// What the model so far leaves of the recording.
 #[derive(Clone, Debug)]
 pub(crate) struct Residual {
@@ -46,6 +43,10 @@ pub(crate) struct System<'a> {
     pub(crate) samples: Samples<'a>,
     /// Products of all atoms, whitened.
     pub(crate) total: Normal,
+    /// Of so many blocks of samples, one stands in `total`.
+    every: usize,
+    /// Of so many blocks of samples, one is looked at by [`Self::among`].
+    tried: usize,
     /// Flicker noise in what everything that any cause could explain leaves.
     pub(crate) flicker: Option<Flicker>,
 }
@@ -71,12 +72,14 @@ pub(crate) struct Fit {
 
 impl<'a> System<'a> {
     /// Whitens with what is left when everything that any cause could explain is taken off; `motion` is what of a
-    /// reference's motion the spline does not follow.
+    /// reference's motion the spline does not follow. Of `every` blocks of samples one is looked at, until
+    /// [`Self::complete`].
     pub(crate) fn new(
         context: &'a Context,
         motion: Option<Vec<f64>>,
         catalogue: &mut Catalogue,
         carried: &[Accepted],
+        every: usize,
     ) -> Self {
         let data = [
             context.radial(),
@@ -95,6 +98,8 @@ impl<'a> System<'a> {
             context,
             samples,
             total: Normal::new(DMatrix::zeros(0, 0), DVector::zeros(0), 0.0),
+            every,
+            tried: every,
             flicker: None,
         };
         let atoms: Vec<usize> = (0..this.samples.library.atoms.len()).collect();
@@ -102,10 +107,7 @@ impl<'a> System<'a> {
             let power = data.iter().map(|v| v * v).sum::<f64>() / data.len().max(1) as f64;
             whitener.sigma = power.sqrt().max(1e-12);
         }
-        // To see the colour of the noise, a part of a long record is enough.
-        this.samples.sparse = (context.samples() / ENOUGH).max(1);
-        let plain = this.moments(&atoms);
-        let whole = std::mem::replace(&mut this.samples.sparse, 1) == 1;
+        let plain = this.moments(&atoms, every);
         this.total = this.without_nothing(this.normal(&plain, &atoms, true), &atoms);
         let mut broad = catalogue.broad.clone();
         broad.extend(
@@ -136,18 +138,37 @@ impl<'a> System<'a> {
         }
         // White noise changes the scale of a row only.
         let white = this.samples.whiteners.iter().all(Whitener::is_white);
-        let moments = if white && whole {
+        let moments = if white {
             plain
         } else {
-            this.moments(&atoms)
+            this.moments(&atoms, every)
         };
         this.total = this.without_nothing(this.normal(&moments, &atoms, true), &atoms);
         this
     }
 
-    fn moments(&self, atoms: &[usize]) -> Moments {
+    /// Of so many blocks of samples, one is looked at.
+    pub(crate) fn every(&self) -> usize {
+        self.every
+    }
+
+    /// From now on functions are tried on all samples.
+    pub(crate) fn try_on_all(&mut self) {
+        self.tried = 1;
+    }
+
+    /// Looks at all samples.
+    pub(crate) fn complete(&mut self) {
+        (self.every, self.tried) = (1, 1);
+        self.samples.take_motion_off();
+        let atoms: Vec<usize> = (0..self.samples.library.atoms.len()).collect();
+        let moments = self.moments(&atoms, 1);
+        self.total = self.without_nothing(self.normal(&moments, &atoms, true), &atoms);
+    }
+
+    fn moments(&self, atoms: &[usize], every: usize) -> Moments {
         let mut sums = self.empty(atoms);
-        self.samples.pass(atoms, &mut |_, parts| {
+        self.samples.pass(atoms, every, &mut |_, parts| {
             for (part, sum) in parts.iter().zip(&mut sums.0) {
                 part.add_products(true, 0, sum);
             }
@@ -214,7 +235,7 @@ impl<'a> System<'a> {
         self.samples.take_motion_off();
         let fresh = ROWS.map(|row| self.in_row(&atoms[..known], row).count());
         let mut sums = self.empty(&atoms);
-        self.samples.pass(&atoms, &mut |_, parts| {
+        self.samples.pass(&atoms, self.every, &mut |_, parts| {
             for ((part, sum), fresh) in parts.iter().zip(&mut sums.0).zip(fresh) {
                 part.add_products(true, fresh, sum);
             }
@@ -230,7 +251,7 @@ impl<'a> System<'a> {
     /// the new ones in against every function.
     pub(crate) fn among(&mut self, atoms: &[usize]) -> Normal {
         self.samples.take_motion_off();
-        let moments = self.moments(atoms);
+        let moments = self.moments(atoms, self.tried);
         self.without_nothing(self.normal(&moments, atoms, true), atoms)
     }
 
@@ -289,7 +310,7 @@ impl<'a> System<'a> {
         let atoms = atoms_of(shapes);
         let make = || self.empty(&atoms);
         let (mut white, mut plain) = ([make(), make()], [make(), make()]);
-        self.samples.pass(&atoms, &mut |half, parts| {
+        self.samples.pass(&atoms, 1, &mut |half, parts| {
             for (row, part) in parts.iter().enumerate() {
                 part.add_products(true, 0, &mut white[half].0[row]);
                 part.add_products(false, 0, &mut plain[half].0[row]);

@@ -11,7 +11,7 @@ use crate::lines;
 use crate::model::{Residual, System};
 use crate::selection::Unnamed;
 use crate::statistics::{after_trials, log_tail};
-use crate::variance::{Fitted, Squares};
+use crate::variance::{ENOUGH, Fitted, Squares};
 
 /// Global probability below which it is shown.
 const SHOWN: f64 = 1e-3;
@@ -23,8 +23,6 @@ const KNOTS: [usize; 2] = [8, 6];
 const ORDERS: [f64; 3] = [1.0, 2.0, 4.0];
 /// Probability below which the highest line of a spectrum is no noise.
 const A_LINE: f64 = 1e-4;
-/// Samples that are enough to see what noise depends on.
-const ENOUGH: usize = 120_000;
 /// Equal noise of either row, unequal noise of the channels.
 const BASE: usize = 3;
 

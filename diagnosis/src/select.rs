@@ -21,6 +21,8 @@ const MOST: usize = 8;
 const GRID: f64 = 3.0;
 /// Share of what could not be named that a cause has to explain beside it to be named.
 const BEYOND_UNKNOWN: f64 = 0.5;
+/// Gain in log-likelihood (an SNR of 45) from which on a part of a long recording is enough to name a cause.
+const CLEAR: f64 = 1000.0;
 /// Share of the best gain below which another cause is no rival.
 pub(crate) const RIVALS: f64 = 0.6;
 
@@ -182,8 +184,29 @@ pub(crate) fn begin(
 }
 
 /// Accepts causes one after the other, beside those that are known; ends where the tangents do not do, unless this is
-/// the last look.
+/// the last look. In a long recording, what is large is found in a part of it first.
 pub(crate) fn select(
+    context: &Context,
+    system: &mut System,
+    catalogue: &Catalogue,
+    carried: Vec<Accepted>,
+    last: bool,
+) -> Selection {
+    if system.every() == 1 {
+        return search(context, system, catalogue, carried, last);
+    }
+    let found = search(context, system, catalogue, carried, last);
+    if !found.again.is_empty() {
+        return found;
+    }
+    // What was found in a part has its numbers from all of it, and then the rest is looked for there.
+    system.try_on_all();
+    let found = begin(system, catalogue, found.accepted);
+    system.complete();
+    search(context, system, catalogue, found.accepted, last)
+}
+
+fn search(
     context: &Context,
     system: &mut System,
     catalogue: &Catalogue,
@@ -233,7 +256,12 @@ pub(crate) fn select(
         if most < BEYOND_UNKNOWN * unknown {
             break;
         }
+        let partial = system.every() > 1;
+        if partial && most < CLEAR {
+            break;
+        }
         match contender(system, catalogue, &found.fit, scored) {
+            Contender::Unnamed(..) if partial => break,
             // Real motion that is no line is the axis at work, and no error.
             Contender::Unnamed(_, Domain::Motion, _) => closed.push(Domain::Motion),
             Contender::Unnamed(unnamed, domain, shapes) => {
@@ -270,8 +298,10 @@ pub(crate) fn select(
         found.again = vec![exact::start(system, &found.fit, &found.accepted)];
         return found;
     }
-    let left = leftover(system, catalogue, &found.fit, &closed);
-    found.unnamed.extend(left);
+    if system.every() == 1 {
+        let left = leftover(system, catalogue, &found.fit, &closed);
+        found.unnamed.extend(left);
+    }
     keep_used(system, fixed, &mut found);
     found
 }

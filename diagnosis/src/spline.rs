@@ -124,19 +124,48 @@ impl Spline {
 
     /// Sums of products with the B-splines → coefficients.
     pub(crate) fn solve(&self, x: &mut [f64]) {
-        for i in 0..x.len() {
-            for d in 1..4.min(i + 1) {
-                x[i] -= self.factor[i][d] * x[i - d];
+        self.solve_together(x.as_chunks_mut::<1>().0);
+    }
+
+    /// The same of many columns, of as many coefficients each: several at once, for each step waits for the one before.
+    pub(crate) fn solve_all<'a>(&self, columns: impl Iterator<Item = &'a mut Vec<f64>>) {
+        const TOGETHER: usize = 8;
+        let mut columns: Vec<&mut Vec<f64>> = columns.collect();
+        let mut rows = vec![[0.0; TOGETHER]; self.count()];
+        for group in columns.chunks_mut(TOGETHER) {
+            for (i, column) in group.iter().enumerate() {
+                rows.iter_mut()
+                    .zip(column.iter())
+                    .for_each(|(row, v)| row[i] = *v);
             }
-            x[i] /= self.factor[i][0];
+            self.solve_together(&mut rows);
+            for (i, column) in group.iter_mut().enumerate() {
+                column
+                    .iter_mut()
+                    .zip(&rows)
+                    .for_each(|(v, row)| *v = row[i]);
+            }
+        }
+    }
+
+    fn solve_together<const N: usize>(&self, x: &mut [[f64; N]]) {
+        for i in 0..x.len() {
+            let mut now = x[i];
+            for d in 1..4.min(i + 1) {
+                let (by, other) = (self.factor[i][d], x[i - d]);
+                now.iter_mut().zip(other).for_each(|(v, o)| *v -= by * o);
+            }
+            now.iter_mut().for_each(|v| *v /= self.factor[i][0]);
+            x[i] = now;
         }
         for i in (0..x.len()).rev() {
-            for d in 1..4 {
-                if i + d < x.len() {
-                    x[i] -= self.factor[i + d][d] * x[i + d];
-                }
+            let mut now = x[i];
+            for d in 1..4.min(x.len() - i) {
+                let (by, other) = (self.factor[i + d][d], x[i + d]);
+                now.iter_mut().zip(other).for_each(|(v, o)| *v -= by * o);
             }
-            x[i] /= self.factor[i][0];
+            now.iter_mut().for_each(|v| *v /= self.factor[i][0]);
+            x[i] = now;
         }
     }
 
@@ -206,7 +235,7 @@ impl Spline {
                 basis.accumulate(&weighted, sums);
             }
         }
-        sums.iter_mut().for_each(|sums| self.solve(sums));
+        self.solve_all(sums.iter_mut());
         let mut left: Vec<Vec<f64>> = columns.iter().map(|values| values.to_vec()).collect();
         for range in stretches() {
             let basis = self.basis(range.start, range.len(), false);

@@ -1,6 +1,7 @@
 //! One pass over the samples: functions are made block by block, motion is taken off, the rest whitened, and only the
 //! sums of products are kept. So memory does not grow with the number of causes.
 
+use std::cell::OnceCell;
 use std::ops::Range;
 
 use crate::block::{Block, Shared};
@@ -21,8 +22,32 @@ enum Projector<'a> {
     Spline(&'a Spline),
 }
 
+/// Whether a block is looked at where of so many one is: one of each group, and not always the same, for the motion may
+/// repeat itself.
+fn chosen(block: usize, every: usize) -> bool {
+    /// The golden ratio's fraction: its multiples spread evenly over a turn.
+    const SPREAD: f64 = 0.618_033_988_749_894_9;
+    let place = (block / every) as f64 * SPREAD;
+    block % every == (place.fract() * every as f64) as usize
+}
+
+/// The splines of a block, made when they are asked for.
+struct Splines<'a> {
+    spline: Option<&'a Spline>,
+    start: usize,
+    samples: usize,
+    made: OnceCell<Option<Basis>>,
+}
+
+impl Splines<'_> {
+    fn basis(&self) -> Option<&Basis> {
+        let make = || Some(self.spline?.basis(self.start, self.samples, false));
+        self.made.get_or_init(make).as_ref()
+    }
+}
+
 /// Takes a block, the splines of it, which of the atoms asked for, and its values.
-type Visit<'v> = dyn FnMut(&Block, Option<&Basis>, usize, &[f64]) + 'v;
+type Visit<'v> = dyn FnMut(&Block, &Splines, usize, &[f64]) + 'v;
 
 /// Functions, data and noise of a recording: everything that a pass needs.
 pub(crate) struct Samples<'a> {
@@ -33,8 +58,6 @@ pub(crate) struct Samples<'a> {
     pub(crate) whiteners: [Whitener; 3],
     /// What is taken off each atom: coefficients of the motion that follows it.
     motions: Vec<Vec<f64>>,
-    /// Of so many blocks, one is looked at.
-    pub(crate) sparse: usize,
     /// Square of each atom before the motion is taken off; 0 where there is none to take off.
     pub(crate) squares: Vec<f64>,
 }
@@ -47,7 +70,6 @@ impl<'a> Samples<'a> {
             data,
             whiteners: Default::default(),
             motions: vec![],
-            sparse: 1,
             squares: vec![],
         };
         this.take_motion_off();
@@ -62,7 +84,6 @@ impl<'a> Samples<'a> {
             data: Default::default(),
             whiteners: Default::default(),
             motions: vec![],
-            sparse: 1,
             squares: vec![],
         }
     }
@@ -87,11 +108,6 @@ impl<'a> Samples<'a> {
         counts
     }
 
-    fn basis(&self, block: &Block) -> Option<Basis> {
-        let spline = self.context.spline.as_ref()?;
-        Some(spline.basis(block.start, block.len(), false))
-    }
-
     /// Fits the motion to every atom that has none yet.
     pub(crate) fn take_motion_off(&mut self) {
         let from = self.motions.len();
@@ -111,24 +127,34 @@ impl<'a> Samples<'a> {
             .collect();
         let mut weighted = vec![];
         let mut squares = vec![0.0; self.library.atoms.len() - from];
-        self.fill(&wanted, &mut |block, basis, i, values| {
+        self.fill(&wanted, 1, &mut |block, splines, i, values| {
             let range = block.start..block.start + block.len();
-            weighted.clear();
-            let pairs = values.iter().zip(&weight[range]);
-            weighted.extend(pairs.map(|(v, w)| v * w));
-            squares[wanted[i] - from] += dot(&weighted, &weighted);
+            let weights = &weight[range];
+            let counted = if weights.iter().all(|w| *w == 1.0) {
+                values
+            } else {
+                weighted.clear();
+                weighted.extend(values.iter().zip(weights).map(|(v, w)| v * w));
+                &weighted
+            };
+            squares[wanted[i] - from] += dot(counted, counted);
             let own = &mut sums[wanted[i] - from];
-            match (own.len(), basis) {
-                (2.., Some(basis)) => basis.accumulate(&weighted, own),
-                _ => own[0] += weighted.iter().sum::<f64>(),
+            match own.len() {
+                1 => own[0] += counted.iter().sum::<f64>(),
+                _ => splines
+                    .basis()
+                    .into_iter()
+                    .for_each(|b| b.accumulate(counted, own)),
             }
         });
         for (own, atom) in sums.iter_mut().zip(&self.library.atoms[from..]) {
-            match self.projector(atom.row) {
-                Projector::Nothing => {}
-                Projector::Mean(total) => own[0] /= total.max(1.0),
-                Projector::Spline(spline) => spline.solve(own),
+            if let Projector::Mean(total) = self.projector(atom.row) {
+                own[0] /= total.max(1.0);
             }
+        }
+        if let Some(spline) = &self.context.spline {
+            let count = spline.count();
+            spline.solve_all(sums.iter_mut().filter(|s| s.len() == count));
         }
         self.motions.extend(sums);
         self.squares.extend(squares);
@@ -148,8 +174,12 @@ impl<'a> Samples<'a> {
         map
     }
 
-    /// Makes the functions of atoms block by block, as they are: block, splines of it, which of the atoms, values.
-    fn fill(&self, atoms: &[usize], visit: &mut Visit) {
+    /// Makes the functions of atoms block by block, of so many blocks in one, as they are: block, splines of it, which of the
+    /// atoms, values.
+    fn fill(&self, atoms: &[usize], every: usize, visit: &mut Visit) {
+        if atoms.is_empty() {
+            return;
+        }
         let n = self.context.samples();
         // Each group is filled once for all of its atoms.
         let mut groups: Vec<(usize, Vec<usize>)> = vec![];
@@ -165,12 +195,17 @@ impl<'a> Samples<'a> {
         for first in (0..n).step_by(half) {
             let last = (first + half).min(n);
             for start in (first..last).step_by(CHUNK) {
-                if !(start / CHUNK).is_multiple_of(self.sparse) {
+                if !chosen(start / CHUNK, every) {
                     continue;
                 }
                 let range = start..(start + CHUNK).min(last);
                 let block = self.context.block(range, &mut shared);
-                let basis = self.basis(&block);
+                let splines = Splines {
+                    spline: self.context.spline.as_ref(),
+                    start: block.start,
+                    samples: block.len(),
+                    made: OnceCell::new(),
+                };
                 for (group, members) in &groups {
                     let group = &self.library.groups[*group];
                     let (len, count) = (block.len(), group.count);
@@ -183,15 +218,22 @@ impl<'a> Samples<'a> {
                         let atom = self.library.atoms[atoms[*i]];
                         let along = group.way.values() > 1 && atom.row != Row::Radial;
                         let at = (if along { count } else { 0 } + atom.function) * len;
-                        visit(&block, basis.as_ref(), *i, &scratch[at..at + len]);
+                        visit(&block, &splines, *i, &scratch[at..at + len]);
                     }
                 }
             }
         }
     }
 
-    /// Goes through the samples: the half of the blocks that it belongs to, and the three rows.
-    pub(crate) fn pass(&self, atoms: &[usize], visit: &mut dyn FnMut(usize, &[Part; 3])) {
+    /// Goes through the samples, of so many blocks through one: the half of the blocks that it belongs to, and the three
+    /// rows. What whitening takes for the past of a block is the end of the one that was looked at before: for data and
+    /// functions alike, so what is fitted stays right.
+    pub(crate) fn pass(
+        &self,
+        atoms: &[usize],
+        every: usize,
+        visit: &mut dyn FnMut(usize, &[Part; 3]),
+    ) {
         let n = self.context.samples();
         let rows: Vec<usize> = atoms
             .iter()
@@ -244,21 +286,26 @@ impl<'a> Samples<'a> {
             for first in (0..n).step_by(half) {
                 let last = (first + half).min(n);
                 for start in (first..last).step_by(CHUNK) {
-                    finish(start..(start + CHUNK).min(last), &mut parts);
+                    if chosen(start / CHUNK, every) {
+                        finish(start..(start + CHUNK).min(last), &mut parts);
+                    }
                 }
             }
             return;
         }
-        self.fill(atoms, &mut |block, basis, i, values| {
+        self.fill(atoms, every, &mut |block, splines, i, values| {
             let part = &mut parts[rows[i]];
             let from = columns[i] * STRIDE + ORDER;
             let own = &mut part.plain[from..from + block.len()];
             own.copy_from_slice(values);
             let motion = &self.motions[atoms[i]];
-            match (motion.len(), basis) {
-                (0, _) => {}
-                (2.., Some(basis)) => basis.add(motion, -1.0, own),
-                _ => own.iter_mut().for_each(|v| *v -= motion[0]),
+            match motion.len() {
+                0 => {}
+                1 => own.iter_mut().for_each(|v| *v -= motion[0]),
+                _ => splines
+                    .basis()
+                    .into_iter()
+                    .for_each(|b| b.add(motion, -1.0, own)),
             }
             let weights = &weight[block.start..block.start + block.len()];
             if weights.iter().any(|w| *w != 1.0) {
@@ -286,7 +333,7 @@ impl<'a> Samples<'a> {
                 *sum += x * m;
             }
         }
-        self.fill(&atoms, &mut |block, _, i, values| {
+        self.fill(&atoms, 1, &mut |block, _, i, values| {
             let (row, x) = (self.library.atoms[atoms[i]].row as usize, amounts[i].1);
             let own = &mut left[row][block.start..block.start + block.len()];
             for ((l, v), w) in own.iter_mut().zip(values).zip(&weight[block.start..]) {
@@ -321,12 +368,33 @@ impl<'a> Samples<'a> {
             .collect();
         let atoms: Vec<usize> = own.iter().map(|a| a.0).collect();
         let mut sum = vec![0.0; self.context.samples()];
-        self.fill(&atoms, &mut |block, _, i, values| {
+        self.fill(&atoms, 1, &mut |block, _, i, values| {
             let part = &mut sum[block.start..block.start + block.len()];
             part.iter_mut()
                 .zip(values)
                 .for_each(|(s, v)| *s += own[i].1 * v);
         });
         sum
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::chosen;
+
+    #[test]
+    fn one_block_of_each_group_is_chosen_and_not_always_the_same() {
+        for every in [1, 2, 8] {
+            let places: Vec<usize> = (0..100 * every).filter(|b| chosen(*b, every)).collect();
+            let groups: Vec<usize> = places.iter().map(|b| b / every).collect();
+            assert_eq!(groups, (0..100).collect::<Vec<_>>());
+            for place in 0..every {
+                let often = places.iter().filter(|b| *b % every == place).count();
+                assert!(
+                    often.abs_diff(100 / every) <= 3,
+                    "{place} of {every}: {often}"
+                );
+            }
+        }
     }
 }

@@ -6,6 +6,10 @@ use crate::solve::Normal;
 
 /// Steps of the scoring iteration; each is a regression on the squares, weighted with the variances of the one before.
 const STEPS: usize = 6;
+/// So many of them look at every sample.
+const LAST: usize = 2;
+/// Samples that are enough to see what noise depends on.
+pub(crate) const ENOUGH: usize = 120_000;
 /// Least variance, as a share of the mean.
 const LEAST: f64 = 0.02;
 /// A single sample further out (square over variance) is a glitch, no noise that depends on something.
@@ -39,11 +43,11 @@ fn variance(x: &[f64], shapes: &[f64]) -> f64 {
 }
 
 impl Squares<'_> {
-    /// Visits row and index of every sample that counts.
-    fn each(&self, mut visit: impl FnMut(usize, usize)) {
+    /// Visits row and index of every sample that counts, in one of so many blocks.
+    fn each(&self, every: usize, mut visit: impl FnMut(usize, usize)) {
         const BLOCK: usize = 1024;
         for row in 0..2 {
-            for start in (0..self.weight.len()).step_by(BLOCK * self.every) {
+            for start in (0..self.weight.len()).step_by(BLOCK * every) {
                 for k in start..(start + BLOCK).min(self.weight.len()) {
                     if self.weight[k] > 0.0 {
                         visit(row, k);
@@ -69,9 +73,16 @@ impl Squares<'_> {
         let count = start.len();
         let (mut x, mut h) = (start, vec![0.0; count]);
         let mut last = None;
-        for _ in 0..STEPS {
+        // The first steps only lead to where the last ones start.
+        let coarse = self.every.max(self.weight.len().div_ceil(ENOUGH));
+        for step in 0..STEPS {
+            let every = if step + LAST < STEPS {
+                coarse
+            } else {
+                self.every
+            };
             let (mut gram, mut right) = (DMatrix::zeros(count, count), DVector::zeros(count));
-            self.each(|row, k| {
+            self.each(every, |row, k| {
                 shapes(row, k, &mut h);
                 let v = variance(&x, &h);
                 let square = self.rows[row][k].min(FAR * v);
@@ -102,7 +113,7 @@ impl Squares<'_> {
 
     fn likelihood(&self, x: &[f64], shapes: &Shapes) -> f64 {
         let (mut sum, mut h) = (0.0, vec![0.0; x.len()]);
-        self.each(|row, k| {
+        self.each(self.every, |row, k| {
             shapes(row, k, &mut h);
             let v = variance(x, &h);
             sum -= 0.5 * (v.ln() + self.rows[row][k] / v);
@@ -122,7 +133,7 @@ impl Squares<'_> {
             let length = n.div_ceil(blocks).max(1);
             let mut sums = vec![0.0; blocks];
             let mut h = vec![0.0; count];
-            self.each(|row, k| {
+            self.each(self.every, |row, k| {
                 shapes(row, k, &mut h);
                 let v = variance(&fitted.x, &h);
                 let along: f64 = share.iter().zip(&h).map(|(s, h)| s * h).sum();

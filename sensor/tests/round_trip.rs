@@ -166,7 +166,7 @@ fn bad_files_are_refused_with_their_place() {
     );
     refused(
         &PLAIN.replace("lsb", "lbs"),
-        &["s.toml:11:1", "lbs", "did you mean `lsb`?"],
+        &["s.toml:10:1", "lbs", "did you mean `lsb`?"],
     );
     refused(
         &format!("{PLAIN}[[cause]]\nname = \"channel_skew\"\ndelay_s = nan\n"),

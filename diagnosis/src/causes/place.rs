@@ -10,6 +10,7 @@ use crate::context::Context;
 use crate::finding::{Chip, Parameter};
 use crate::library::{Library, Shape, Use};
 use crate::model::Residual;
+use crate::solve::total;
 
 /// Orders of the revolution that are tried for cogging.
 const ORDERS: usize = 128;
@@ -47,8 +48,8 @@ pub(crate) fn orders(phi: &[f64], values: &[f64]) -> Vec<[f64; 2]> {
         let turn: Vec<(f64, f64)> = phi.iter().map(|p| p.sin_cos()).collect();
         let (mut c, mut s) = (values.to_vec(), vec![0.0; values.len()]);
         for sum in &mut sums {
-            sum[0] += c.iter().sum::<f64>();
-            sum[1] += s.iter().sum::<f64>();
+            sum[0] += total(&c);
+            sum[1] += total(&s);
             for ((c, s), (sin, cos)) in c.iter_mut().zip(&mut s).zip(&turn) {
                 (*c, *s) = (*c * cos - *s * sin, *s * cos + *c * sin);
             }

@@ -2,12 +2,14 @@
 
 use std::f64::consts::TAU;
 
-use nonius_diagnosis::{Diagnosis, diagnose};
+use nonius_diagnosis::{Diagnosis, Finding, diagnose};
 use nonius_recording::{Overrides, Recording};
 use rand::{Rng, SeedableRng, rngs::StdRng};
 use rand_distr::{Distribution, StandardNormal};
 
 const SAMPLES: usize = 20_000;
+/// Enough for what is large to be found in a part of them first.
+const LONG: usize = 250_000;
 const RATE: f64 = 50e3;
 pub(crate) const NOISE: f64 = 0.001;
 /// Scale periods of a revolution.
@@ -124,14 +126,14 @@ fn moment(case: &Case, drive: &Drive, t: f64) -> Moment {
 /// Time, cos, sin, reference.
 pub(crate) type Rows = Vec<[f64; 4]>;
 
-fn simulated(case: &Case, drive: &Drive, random: &mut StdRng) -> Rows {
+fn simulated(case: &Case, drive: &Drive, samples: usize, random: &mut StdRng) -> Rows {
     let mut normal = || -> f64 { StandardNormal.sample(random) };
     let filters = case.tau.iter().any(|tau| *tau > 0.0);
     let first = if filters { -SETTLING } else { 0 };
     let mut filtered = moment(case, drive, first as f64 / RATE).channels;
     let step = 1.0 / RATE / FINE as f64;
     let mut rows = vec![];
-    for k in first..SAMPLES as i64 {
+    for k in first..samples as i64 {
         let t = k as f64 / RATE;
         let now = moment(case, drive, t);
         if filters {
@@ -188,11 +190,17 @@ fn recording(case: &Case, rows: &Rows) -> Recording {
         .expect("a recording that can be read")
 }
 
+/// A long recording, motion and parameters known.
+pub(crate) fn long(case: &Case) -> Diagnosis {
+    let mut random = StdRng::seed_from_u64(13);
+    of_rows(case, &simulated(case, &Drive::known(), LONG, &mut random))
+}
+
 fn of_rows(case: &Case, rows: &Rows) -> Diagnosis {
     diagnose(&recording(case, rows)).expect("signals that draw an ellipse")
 }
 
-fn names(found: &Diagnosis) -> Vec<&str> {
+pub(crate) fn names(found: &Diagnosis) -> Vec<&str> {
     found.findings.iter().map(|f| f.cause.as_str()).collect()
 }
 
@@ -200,7 +208,7 @@ fn names(found: &Diagnosis) -> Vec<&str> {
 pub(crate) fn diagnosed(case: &Case, seed: u64) -> Diagnosis {
     let mut random = StdRng::seed_from_u64(seed);
     let drive = Drive::drawn(&mut random);
-    of_rows(case, &simulated(case, &drive, &mut random))
+    of_rows(case, &simulated(case, &drive, SAMPLES, &mut random))
 }
 
 /// Nothing is named and nothing is left unexplained.
@@ -228,7 +236,10 @@ pub(crate) fn finds(name: &str, case: &Case) -> Diagnosis {
 /// given another name. Nothing but the cause is named, nothing is left unexplained, and the residue is the noise.
 pub(crate) fn alone(name: &str, case: &Case) -> Diagnosis {
     let mut random = StdRng::seed_from_u64(11);
-    let found = of_rows(case, &simulated(case, &Drive::known(), &mut random));
+    let found = of_rows(
+        case,
+        &simulated(case, &Drive::known(), SAMPLES, &mut random),
+    );
     let left = &found.unexplained;
     assert_eq!(names(&found), [name], "{name}: {}", left.signature);
     assert!(!left.significant, "{name}: {}", left.signature);
@@ -242,16 +253,16 @@ pub(crate) fn alone(name: &str, case: &Case) -> Diagnosis {
 pub(crate) fn shows(name: &str, damage: impl Fn(&mut Rows)) {
     let mut random = StdRng::seed_from_u64(3);
     let drive = Drive::drawn(&mut random);
-    let mut rows = simulated(&PLAIN, &drive, &mut random);
+    let mut rows = simulated(&PLAIN, &drive, SAMPLES, &mut random);
     damage(&mut rows);
     let found = of_rows(&PLAIN, &rows);
     assert_eq!(names(&found), [name], "{}", found.unexplained.signature);
     assert_eq!(found.positions.len(), rows.len());
 }
 
-fn off(found: &Diagnosis, parameter: &str, value: f64) -> f64 {
-    let first = found.findings.first().expect("a finding");
-    let p = first.parameters.iter().find(|p| p.name == parameter);
+/// Standard error of a parameter of a finding, which is within four of them of what it truly is.
+fn off(of: &Finding, parameter: &str, value: f64) -> f64 {
+    let p = of.parameters.iter().find(|p| p.name == parameter);
     let p = p.expect("a parameter of that name");
     let off = (p.value - value).abs();
     assert!(
@@ -263,13 +274,19 @@ fn off(found: &Diagnosis, parameter: &str, value: f64) -> f64 {
     p.std_error
 }
 
+/// A parameter of a cause is within four standard errors of what it truly is.
+pub(crate) fn of_cause(found: &Diagnosis, cause: &str, parameter: &str, value: f64) {
+    let own = found.findings.iter().find(|f| f.cause == cause);
+    off(own.expect("the cause is found"), parameter, value);
+}
+
 /// A parameter of the first finding is within four standard errors of what it truly is.
 pub(crate) fn within_errors(found: &Diagnosis, parameter: &str, value: f64) {
-    off(found, parameter, value);
+    off(&found.findings[0], parameter, value);
 }
 
 /// The same, and the standard error says something.
 pub(crate) fn near(found: &Diagnosis, parameter: &str, value: f64) {
-    let error = off(found, parameter, value);
+    let error = off(&found.findings[0], parameter, value);
     assert!(error < 0.3 * value.abs(), "{parameter} +/- {error}");
 }
