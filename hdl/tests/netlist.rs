@@ -10,7 +10,8 @@ use std::time::Duration;
 
 use chip::shipped;
 use nonius_hdl::tools::{Tool, require};
-use nonius_hdl::{ChipDir, Run, icarus};
+use nonius_hdl::verilator::{Effort, simulate};
+use nonius_hdl::{ChipDir, Run};
 use nonius_model::spec::{CalibrationStart, Multipliers, Spec};
 
 /// Samples of each stimulus: enough to lock and to calibrate.
@@ -76,7 +77,13 @@ fn synthesised(spec: &Spec, change: impl Fn(&Path)) -> Run {
     ports_only(dir.path());
     let chip = ChipDir::open(dir.path()).expect("a chip");
     let limit = Duration::from_secs(900);
-    let run = icarus::simulate(&chip, limit, &[], &nonius_hdl::progress::silent);
+    let run = simulate(
+        &chip,
+        Effort::QuickBuild,
+        limit,
+        &[],
+        &nonius_hdl::progress::silent,
+    );
     run.unwrap_or_else(|e| panic!("{e}"))
 }
 

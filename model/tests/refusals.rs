@@ -69,7 +69,7 @@ fn numbers_in_messages_are_short() {
 #[test]
 fn what_cannot_work_names_the_field() {
     type Change = fn(&mut Spec);
-    let cases: [(&str, Change); 14] = [
+    let cases: [(&str, Change); 16] = [
         ("loop.type", |s| s.tracking.method = 2),
         ("loop.method", |s| s.tracking.method = 4),
         ("loop.bandwidth_hz", |s| s.tracking.bandwidth_hz = 4e5),
@@ -106,6 +106,8 @@ fn what_cannot_work_names_the_field() {
             s.chip.multipliers = Multipliers::Count(17)
         }),
         ("sensor.amplitude", |s| s.sensor.amplitude = f64::NAN),
+        ("sensor.amplitude", |s| s.sensor.amplitude_tolerance = 0.6),
+        ("description", |s| s.description = "a\0b".into()),
     ];
     for (expected, change) in cases {
         let mut spec = optical();

@@ -61,6 +61,14 @@ pub(super) fn check(spec: &Spec) -> Result<(), DesignError> {
             "it names Verilog modules",
         );
     }
+    if spec.description.chars().any(char::is_control) {
+        return refuse(
+            "description",
+            format!("{:?}", spec.description),
+            "one line without control characters",
+            "it stands in the Verilog and in the report",
+        );
+    }
     let name = spec.name.as_str();
     if KEYWORDS.contains(&name) || SYSTEM_KEYWORDS.contains(&name) || name == "chip_tb" {
         return refuse(
