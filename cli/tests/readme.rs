@@ -74,22 +74,24 @@ fn files_that_are_named_are_there() {
     let mut named = 0;
     for page in ["README.md", "ARCHITECTURE.md"] {
         let text = fs::read_to_string(root.join(page)).expect("a page");
-        let mut folder = String::new();
+        let mut last = String::new();
         for word in text.split('`').skip(1).step_by(2) {
             if !word.ends_with(".rs") && !word.ends_with('/') || word.contains(char::is_whitespace)
             {
                 continue;
             }
-            // `codegen/src/schedule.rs`, `settle.rs`: the second lies where the first does, or below a folder just named.
-            let near = format!("{folder}{word}");
-            let found = [word, &near]
-                .into_iter()
-                .find(|path| root.join(path).exists());
+            // `codegen/src/schedule.rs`, `settle.rs`: the second lies beside the first or in it.
+            let beside = Path::new(&last).parent().unwrap_or(Path::new(""));
+            let inside = Path::new(&last);
+            let places = [
+                Path::new(word).to_owned(),
+                beside.join(word),
+                inside.join(word),
+                inside.join("src").join(word),
+            ];
+            let found = places.into_iter().find(|path| root.join(path).exists());
             let found = found.unwrap_or_else(|| panic!("{page}: {word} is not there"));
-            if word.contains('/') {
-                let end = found.rfind('/').map_or(0, |end| end + 1);
-                folder = found[..end].to_owned();
-            }
+            last = found.to_string_lossy().into_owned();
             named += 1;
         }
     }
