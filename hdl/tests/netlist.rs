@@ -12,7 +12,7 @@ use chip::shipped;
 use nonius_hdl::tools::{Tool, require};
 use nonius_hdl::verilator::{Effort, simulate};
 use nonius_hdl::{ChipDir, Run};
-use nonius_model::spec::{CalibrationStart, Multipliers, Spec};
+use nonius_model::spec::Spec;
 
 /// Samples of each stimulus: enough to lock and to calibrate.
 const ROWS: usize = 140;
@@ -89,22 +89,7 @@ fn synthesised(spec: &Spec, change: impl Fn(&Path)) -> Run {
 
 #[test]
 fn shipped_designs_as_netlists() {
-    let started = {
-        let mut spec = shipped::optical();
-        spec.calibration.start = CalibrationStart::LeastSquares;
-        spec.chip.multipliers = Multipliers::Count(2);
-        spec
-    };
-    let nine = {
-        let mut spec = shipped::optical();
-        spec.calibration.parameters = 9;
-        spec
-    };
-    for spec in shipped::NAMES
-        .map(shipped::spec)
-        .into_iter()
-        .chain([started, nine])
-    {
+    for spec in shipped::NAMES.map(shipped::spec) {
         let run = synthesised(&spec, |_| ());
         assert!(run.passed, "{}: {run:#?}", spec.name);
     }
