@@ -2,9 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Result, bail};
 use clap::Args;
-use nonius_model::design::Design;
 use nonius_package::{DesignJson, ROWS, package_with, write};
 use nonius_testvectors::stimulus;
 
@@ -34,9 +33,8 @@ pub(crate) struct Build {
 
 /// Whether the chip reaches the accuracy that was asked for.
 pub(crate) fn run(args: &Build) -> Result<bool> {
-    let spec = crate::design_file::read(&args.design)?;
-    let design =
-        Design::new(&spec).with_context(|| format!("{} cannot work", args.design.display()))?;
+    let design = crate::design_file::read(&args.design)?;
+    let spec = &design.spec;
     let mut stimuli = stimulus::named(&design, ROWS);
     let shown = match (&args.play, &args.sensor) {
         (Some(_), _) => "recording",
@@ -47,8 +45,8 @@ pub(crate) fn run(args: &Build) -> Result<bool> {
         let overrides = args.recording_args.overrides();
         let (recording, path) =
             play::source(args.play.as_deref(), args.sensor.as_deref(), &overrides)?;
-        play::check(&spec, &recording, &path, args.repeat)?;
-        stimuli.push(play::stimulus(shown, &spec, &recording, args.repeat));
+        play::check(spec, &recording, &path, args.repeat)?;
+        stimuli.push(play::stimulus(shown, spec, &recording, args.repeat));
     }
     let package = package_with(&design, stimuli, shown)?;
     let needed = package.json.latency.clock_hz_min;

@@ -4,20 +4,33 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-use anyhow::{Context, Result, bail};
-use nonius_model::spec::Spec;
+use anyhow::{Context, Result, anyhow, bail};
+use nonius_model::design::{Design, DesignError};
+use nonius_model::spec::{Spec, line_of_field};
 
 /// A design is a page of text; what is longer is something else.
 const LONGEST: u64 = 1 << 20;
 
-/// The design in a file.
-pub(crate) fn read(path: &Path) -> Result<Spec> {
+/// The design in a file, quantised; an error names the line of the field that cannot be.
+pub(crate) fn read(path: &Path) -> Result<Design> {
     let file = path.display().to_string();
+    let text = text(path, &file)?;
+    Design::new(&Spec::from_toml(&text, &file)?).map_err(|error| {
+        let place = match &error {
+            DesignError::Field { field, .. } => line_of_field(&text, field),
+            DesignError::Range(_) => None,
+        };
+        let place = place.map_or(String::new(), |line| format!(":{line}:1"));
+        anyhow!("{file}{place}: {error}")
+    })
+}
+
+fn text(path: &Path, file: &str) -> Result<String> {
     let mut text = String::new();
     let opened = File::open(path).with_context(|| format!("cannot read {file}"))?;
     let length = opened.take(LONGEST + 1).read_to_string(&mut text);
     if length.with_context(|| format!("cannot read {file}"))? as u64 > LONGEST {
         bail!("{file} is longer than {LONGEST} bytes: it is no design");
     }
-    Ok(Spec::from_toml(&text, &file)?)
+    Ok(text)
 }

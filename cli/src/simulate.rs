@@ -157,14 +157,14 @@ fn exact(raw: i128, fraction: u32) -> String {
 pub(crate) fn run(args: &Simulate) -> Result<()> {
     apart(args)?;
     let file = args.design.display().to_string();
-    let spec = crate::design_file::read(&args.design)?;
-    let design = Design::new(&spec).with_context(|| format!("{file} cannot work"))?;
+    let design = crate::design_file::read(&args.design)?;
+    let spec = &design.spec;
     let (recording, path) = play::source(
         args.recording.as_deref(),
         args.sensor.as_deref(),
         &args.recording_args.overrides(),
     )?;
-    play::check(&spec, &recording, &path, args.repeat)?;
+    play::check(spec, &recording, &path, args.repeat)?;
     let thetas = spec.calibration.thetas();
     let mut interpolator: Box<dyn Interpolator> = if args.reference {
         Box::new(Paper {
@@ -175,7 +175,7 @@ pub(crate) fn run(args: &Simulate) -> Result<()> {
         Box::new(BitTrue {
             design: &design,
             chip: Chip::bit_true(&design),
-            converter: Converter::of(&spec),
+            converter: Converter::of(spec),
             speed: 0.0,
             waves: args
                 .vcd
@@ -185,7 +185,7 @@ pub(crate) fn run(args: &Simulate) -> Result<()> {
         })
     };
     let units = if args.physical {
-        units(&spec).with_context(|| file.clone())?
+        units(spec).with_context(|| file.clone())?
     } else {
         vec![]
     };

@@ -37,7 +37,10 @@ fn build_refuses_before_anything_is_written() {
         (
             "bandwidth_hz = 10e3",
             "bandwidth_hz = 900e3",
-            &["loop.bandwidth_hz", "limit"][..],
+            &[
+                "d.toml:22:1: loop.bandwidth_hz",
+                "limit: 79.578 … 159150 Hz",
+            ][..],
         ),
         ("method = 3", "method = 2", &["Method 2", "type 2"]),
         ("bits = 12", "bitz = 12", &["bitz", "bits"]),
@@ -248,7 +251,7 @@ fn designs_that_no_chip_can_have_are_refused() {
         (
             "name = \"optical\"",
             "name = \"module\"",
-            ["name", "keyword"],
+            ["d.toml:2:1: name", "keyword"],
         ),
         (
             "name = \"optical\"",

@@ -30,8 +30,20 @@ pub(super) fn between(
     if value.is_finite() && value >= low && value <= high {
         return Ok(());
     }
-    let limit = format!("{} … {}", number(low), number(high));
-    refuse(field, number(value), limit, reason)
+    refuse(field, number(value), limits(low, high), reason)
+}
+
+/// Both ends in short, rounded to what is allowed.
+pub(super) fn limits(low: f64, high: f64) -> String {
+    let inwards = |end: f64, up: bool| {
+        let short = number(end).parse().unwrap_or(end);
+        if short == end || (short > end) == up {
+            return number(end);
+        }
+        let last = 10f64.powf(end.abs().log10().floor() - 4.0);
+        number(if up { short + last } else { short - last })
+    };
+    format!("{} … {}", inwards(low, true), inwards(high, false))
 }
 
 /// Short, whatever its size.

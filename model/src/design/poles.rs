@@ -90,7 +90,7 @@ impl Loop {
             return refuse(
                 "loop.bandwidth_hz",
                 t.bandwidth_hz,
-                format!("{} … {} Hz", 5e-4 * rate, rate),
+                format!("{} Hz", super::check::limits(5e-4 * rate, rate)),
                 "poles too fast for the sample rate, or so slow that the loop never locks",
             );
         }

@@ -2,7 +2,7 @@
 
 mod read;
 
-pub use read::SpecError;
+pub use read::{SpecError, line_of_field};
 
 use serde::{Deserialize, Serialize};
 

@@ -177,6 +177,18 @@ fn check<'a>(
     })
 }
 
+/// The line of a `design.toml`, counted from 1, that gives `field` (`loop.type`, say); `None` where none does.
+#[must_use]
+pub fn line_of_field(text: &str, field: &str) -> Option<usize> {
+    let (section, key) = match field.split_once('.') {
+        Some((section, key)) => (Some(section), key),
+        None => (None, field),
+    };
+    let line = line_of(text, section, key);
+    let there = text.lines().nth(line - 1)?.trim();
+    there.starts_with(key).then_some(line)
+}
+
 /// The line that defines `key` in `section`; 1 if it cannot be told (a dotted key, say).
 fn line_of(text: &str, section: Option<&str>, key: &str) -> usize {
     let mut current: Option<String> = None;
