@@ -199,8 +199,13 @@ pub(super) fn choose(spec: &Spec, tracking: &Loop) -> Result<(Words, Budget), De
         Some(n) => Err(DesignError::Field {
             field,
             value: n.to_string(),
-            limit: format!("{low} … {high}"),
-            reason: "outside what the chip can be built with".into(),
+            // The other end depends on the other words.
+            limit: if n > high {
+                format!("at most {high}")
+            } else {
+                format!("at least {low}")
+            },
+            reason: "the chip cannot be built with it".into(),
         }),
         None => {
             let enough = if *o == Overrides::default() {
