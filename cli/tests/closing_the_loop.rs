@@ -160,6 +160,9 @@ fn closed(recording: &str, simulated: bool) -> Closed {
     }
 }
 
+const BENDS: [[f64; 2]; 2] = [[0.04, 0.02], [0.03, -0.03]];
+const DELAYS: [f64; 3] = [10e-6, -6e-6, 0.0];
+
 #[test]
 fn what_is_found_is_corrected_by_the_chip() {
     let mut table = String::from(
@@ -172,13 +175,22 @@ fn what_is_found_is_corrected_by_the_chip() {
          ## Bent channels\n\n\
          | bends y + k y³ (cos, sin) | named | chip of `new --from` | chip of the diagnosis |\n|---|---|---|---|\n",
     );
-    for bends in [[0.04, 0.02], [0.03, -0.03]] {
+    // Simulators run side by side.
+    let (bent, skewed) = std::thread::scope(|scope| {
+        let bent = BENDS.map(|b| scope.spawn(move || closed(&bent_encoder(b), b[0] == 0.04)));
+        let skewed = DELAYS.map(|d| scope.spawn(move || closed(&skewed_encoder(d), d == 10e-6)));
+        (
+            bent.map(|it| it.join().expect("it closes")),
+            skewed.map(|it| it.join().expect("it closes")),
+        )
+    });
+    for (bends, closed) in BENDS.into_iter().zip(bent) {
         let Closed {
             said,
             findings,
             before,
             after,
-        } = closed(&bent_encoder(bends), bends[0] == 0.04);
+        } = closed;
         assert!(
             said.contains("nine parameters"),
             "{said} {:#}",
@@ -198,13 +210,13 @@ fn what_is_found_is_corrected_by_the_chip() {
          Up to 550 periods a second in both directions, a sample each 20 µs. At constant speed the calibration on line would hide\n\
          the skew in its phase parameter; where the speed changes nothing does.\n\n\
          | delay | named | measured | chip of `new --from` | chip of the diagnosis |\n|---|---|---|---|---|\n";
-    for delay in [10e-6, -6e-6, 0.0] {
+    for (delay, closed) in DELAYS.into_iter().zip(skewed) {
         let Closed {
             said,
             findings,
             before,
             after,
-        } = closed(&skewed_encoder(delay), delay == 10e-6);
+        } = closed;
         let found = &findings["findings"][0];
         println!("{delay:e}: {before:.3} -> {after:.3} mrad, {found:#}");
         if delay == 0.0 {
