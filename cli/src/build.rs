@@ -61,12 +61,7 @@ pub(crate) fn run(args: &Build) -> Result<bool> {
     }
     write(&package.files, &args.output)?;
     summary(&package.json, &args.output, shown);
-    Ok(!missed(&package.json))
-}
-
-/// It is simulated worse than what was asked for.
-fn missed(j: &DesignJson) -> bool {
-    j.simulated.rms_periods > j.budget.asked || !j.simulated.locked
+    Ok(!package.json.misses())
 }
 
 fn summary(j: &DesignJson, output: &Path, shown: &str) {
@@ -106,8 +101,7 @@ fn summary(j: &DesignJson, output: &Path, shown: &str) {
         j.tracking.speed_max_periods_per_s
     );
     say!("  position    {}", position(j));
-    let s = &j.spec.sensor;
-    let peak = s.amplitude * (1.0 + s.amplitude_tolerance + s.offset_max) / j.spec.adc.full_scale;
+    let peak = j.spec.sensor.amplitude * j.spec.sensor.reach() / j.spec.adc.full_scale;
     if peak > 1.0 {
         say!(
             "  note        the sensor that the design promises reaches {peak:.3} of the ADC's range at its worst: it clips"
@@ -129,7 +123,7 @@ fn summary(j: &DesignJson, output: &Path, shown: &str) {
         );
     }
     // With short words of the user's it is said above.
-    if missed(j)
+    if j.misses()
         && j.budget.arithmetic <= j.budget.arithmetic_allowed
         && j.budget.uncorrected <= j.budget.asked
     {

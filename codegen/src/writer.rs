@@ -182,12 +182,12 @@ impl<'a> Writer<'a> {
                 let right = self.signed(&b, fraction, wide);
                 match (&a.source, &b.source) {
                     (_, Source::Constant(limit)) if *limit < 0 => {
-                        below_negative(&format!("~{left}"), limit << (fraction - b.fraction), wide)
+                        let limit = limit << (fraction - b.fraction);
+                        format!("~{}", at_least(&format!("~{left}"), limit, wide))
                     }
-                    // The same from the other side: −m < x is ~x < m − 1.
                     (Source::Constant(limit), _) if *limit < 0 => {
                         let limit = limit << (fraction - a.fraction);
-                        format!("(~{right} < {})", literal(-limit - 1, wide))
+                        at_least(&format!("~{right}"), limit + 1, wide)
                     }
                     _ => format!("({left} < {right})"),
                 }
@@ -234,7 +234,8 @@ impl<'a> Writer<'a> {
             upper
         };
         if limit < 0 {
-            return Some(below_negative(&format!("$signed(~{upper})"), limit, bits));
+            let not_below = at_least(&format!("$signed(~{upper})"), limit, bits);
+            return Some(format!("~{not_below}"));
         }
         Some(format!("($signed({upper}) < {})", literal(limit, bits)))
     }
@@ -379,9 +380,9 @@ pub(crate) fn range(graph: &Graph, id: NodeId) -> String {
     }
 }
 
-/// x < −m, given ~x: it is not (~x < m). Yosys 0.23 gets wrong what compares four bits or fewer with a negative number
-/// (`hdl/tests/netlist.rs` sees it).
-fn below_negative(complement: &str, limit: i128, bits: u32) -> String {
+/// x ≥ `limit`, which is not above 0, given ~x: ~x < −limit. Yosys 0.23 gets wrong what compares four bits or fewer with a
+/// negative number (`hdl/tests/netlist.rs` sees it).
+fn at_least(complement: &str, limit: i128, bits: u32) -> String {
     let bits = bits.max(crate::quantise::covering(limit, -limit));
-    format!("~({complement} < {})", literal(-limit, bits))
+    format!("({complement} < {})", literal(-limit, bits))
 }

@@ -1,15 +1,19 @@
 //! Everything that `nonius build` writes, and writing it whole or not at all.
 
+mod channel_skew;
+mod coefficient;
 mod curves;
 mod design_json;
 mod diagram;
 mod measure;
 mod report;
-mod why;
+mod signals;
+mod tracking;
 mod write;
 
 pub use design_json::DesignJson;
 pub use measure::{Accuracy, SineError, accuracy, sine_error};
+pub use signals::{Signal, signals};
 pub use write::{WriteError, write};
 
 use nonius_model::chip::Chip;

@@ -53,11 +53,10 @@ fn engineering(value: f64, unit: &str) -> String {
 }
 
 fn facts(design: &Design, j: &DesignJson) -> Vec<Fact> {
-    let asked = j.budget.asked;
     let fact = |(name, value, note): (&'static str, String, String)| Fact {
         missed: match name {
-            PREDICTED => j.budget.total > asked,
-            SIMULATED => j.simulated.rms_periods > asked || !j.simulated.locked,
+            PREDICTED => j.budget.total > j.budget.asked,
+            SIMULATED => j.misses(),
             _ => false,
         },
         name,

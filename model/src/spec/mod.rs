@@ -69,6 +69,14 @@ fn bend_max() -> f64 {
     0.05
 }
 
+impl Sensor {
+    /// Largest value that either signal may take with what is promised here, in amplitudes.
+    #[must_use]
+    pub fn reach(&self) -> f64 {
+        1.0 + self.amplitude_tolerance + self.offset_max
+    }
+}
+
 /// `[adc]`
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Adc {
