@@ -9,11 +9,12 @@ use std::fmt::Write;
 use std::fs;
 use std::time::Duration;
 
-use chip::shipped;
+use chip::shipped::variants::kinds;
 use nonius_hdl::{ChipDir, icarus};
 use nonius_model::design::Design;
 use nonius_model::graph::Evaluation;
 use rand::{Rng, SeedableRng, rngs::StdRng};
+use rayon::prelude::*;
 
 const ROWS: usize = 1000;
 
@@ -178,8 +179,8 @@ fn goes_on(kind: &str, design: &Design, random: &mut StdRng) {
 
 #[test]
 fn from_any_state_the_verilog_goes_on_as_the_graph() {
-    let mut random = StdRng::seed_from_u64(11);
-    for (kind, design) in shipped::kinds() {
-        goes_on(&kind, &design, &mut random);
-    }
+    kinds().par_iter().for_each(|kind| {
+        let mut random = StdRng::seed_from_u64(11);
+        goes_on(&kind.what, &kind.design(), &mut random);
+    });
 }

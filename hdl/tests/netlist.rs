@@ -13,6 +13,7 @@ use nonius_hdl::tools::{Tool, require};
 use nonius_hdl::verilator::{Effort, simulate};
 use nonius_hdl::{ChipDir, Run};
 use nonius_model::spec::Spec;
+use rayon::prelude::*;
 
 /// Samples of each stimulus: enough to lock and to calibrate.
 const ROWS: usize = 140;
@@ -89,10 +90,10 @@ fn synthesised(spec: &Spec, change: impl Fn(&Path)) -> Run {
 
 #[test]
 fn shipped_designs_as_netlists() {
-    for spec in shipped::NAMES.map(shipped::spec) {
-        let run = synthesised(&spec, |_| ());
-        assert!(run.passed, "{}: {run:#?}", spec.name);
-    }
+    shipped::NAMES.par_iter().for_each(|name| {
+        let run = synthesised(&shipped::spec(name), |_| ());
+        assert!(run.passed, "{name}: {run:#?}");
+    });
 }
 
 /// Yosys 0.23 gets this wrong, and the vectors see it at the ports.

@@ -16,6 +16,7 @@ use nonius_testvectors::read_vectors::{Row, rows};
 use nonius_testvectors::waves::{Waves, gtkw};
 use nonius_testvectors::{stimulus, vectors};
 use proptest::prelude::*;
+use shipped::variants::kinds;
 
 const ROWS: usize = 120;
 
@@ -41,8 +42,8 @@ fn integer(word: u64, bits: u32, unsigned: bool) -> i128 {
 /// schedule on one and on three multipliers, give what the row says.
 #[test]
 fn vectors_replay_through_recorded_and_scheduled_graph() {
-    for (kind, design) in shipped::kinds() {
-        replays(&kind, &design);
+    for kind in kinds() {
+        replays(&kind.what, &kind.design());
     }
 }
 
@@ -93,8 +94,8 @@ fn replays(kind: &str, design: &Design) {
 
 #[test]
 fn waves_read_back_as_the_chip() {
-    for (kind, design) in shipped::kinds() {
-        waves_read_back(&kind, &design);
+    for kind in kinds() {
+        waves_read_back(&kind.what, &kind.design());
     }
 }
 
