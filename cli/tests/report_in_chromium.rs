@@ -130,7 +130,7 @@ fn the_report_of_a_design_is_whole() {
         let verdict = look(&html, width, scratch.path());
         assert_eq!(verdict.width, width);
         assert_eq!(verdict.faults, [""; 0], "{width} px");
-        assert_eq!(verdict.plots, 1);
+        assert_eq!(verdict.plots, 3);
     }
 }
 

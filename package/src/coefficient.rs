@@ -61,7 +61,8 @@ impl Coefficient {
                 relative_error: if real == 0.0 {
                     0.0
                 } else {
-                    (quantised - real) / real
+                    // No negative zero.
+                    (quantised - real) / real + 0.0
                 },
             });
         });

@@ -7,8 +7,9 @@ use serde::Serialize;
 
 use crate::channel_skew::ChannelSkew;
 use crate::coefficient::Coefficient;
-use crate::measure::{Accuracy, SineError, accuracy, sine_error};
 use crate::signals::Signal;
+use crate::simulation::Accuracy;
+use crate::sine::{SineError, sine_error};
 use crate::tracking::Tracking;
 
 /// The whole file.
@@ -150,9 +151,9 @@ impl DesignJson {
         self.simulated.rms_periods > self.budget.asked || !self.simulated.locked
     }
 
-    /// All of it; measures the sine and the accuracy.
+    /// All of it; measures the sine.
     #[must_use]
-    pub fn of(design: &Design, hash: &str, clocks: usize) -> Self {
+    pub fn of(design: &Design, hash: &str, clocks: usize, simulated: Accuracy) -> Self {
         let (spec, b) = (&design.spec, &design.budget);
         let (rate, products) = (spec.adc.sample_rate_hz, design.graph.products());
         let clock = rate * clocks as f64;
@@ -199,7 +200,7 @@ impl DesignJson {
                     })
                     .collect(),
             },
-            simulated: accuracy(design),
+            simulated,
             spec: spec.clone(),
         }
     }

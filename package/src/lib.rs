@@ -5,15 +5,17 @@ mod coefficient;
 mod curves;
 mod design_json;
 mod diagram;
-mod measure;
 mod report;
 mod signals;
+mod simulation;
+mod sine;
 mod tracking;
 mod write;
 
 pub use design_json::DesignJson;
-pub use measure::{Accuracy, SineError, accuracy, sine_error};
 pub use signals::{Signal, signals};
+pub use simulation::{Accuracy, Simulation, simulate};
+pub use sine::{SineError, sine_error};
 pub use write::{WriteError, write};
 
 use nonius_model::chip::Chip;
@@ -70,7 +72,8 @@ pub fn package_with(
         .collect();
     let hash = nonius_codegen::hash(design);
     let chip = nonius_codegen::generate(design, &hash, &names)?;
-    let json = DesignJson::of(design, &hash, chip.clocks);
+    let simulation = simulate(design);
+    let json = DesignJson::of(design, &hash, chip.clocks, simulation.accuracy);
     let mut files: Vec<(String, Vec<u8>)> = chip
         .files
         .into_iter()
@@ -96,7 +99,7 @@ pub fn package_with(
     }
     let text = serde_json::to_string_pretty(&json)? + "\n";
     files.push(("design.json".into(), text.into_bytes()));
-    let page = report::page(design, &json, &files)?;
+    let page = report::page(design, &json, &simulation, &files)?;
     files.push(("report.html".into(), page.into_bytes()));
     Ok(Package { files, json })
 }

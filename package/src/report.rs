@@ -8,6 +8,7 @@ use nonius_plot::{Axis, Look, Mark, Plot, Series};
 use crate::curves;
 use crate::design_json::DesignJson;
 use crate::diagram::Diagram;
+use crate::simulation::Simulation;
 
 #[derive(Template)]
 #[template(path = "report.html")]
@@ -16,6 +17,7 @@ struct Page<'a> {
     facts: Vec<Fact>,
     diagram: Diagram,
     bode: String,
+    simulated: [String; 2],
     style: &'static str,
     script: &'static str,
     bars: Vec<Bar>,
@@ -205,6 +207,41 @@ fn bode(design: &Design) -> Plot {
     }
 }
 
+/// The angle error from power-up on, and along a period in the end.
+fn simulated(simulation: &Simulation) -> [Plot; 2] {
+    let course = &simulation.course;
+    let raw = simulation.raw_rms_periods;
+    let ends = [course.first(), course.last()];
+    let raw_line = ends.into_iter().flatten().map(|p| [p[0], raw]).collect();
+    let errors = course.iter().map(|p| p[1]);
+    let along = &simulation.along;
+    [
+        Plot {
+            title: "From power-up, rms over the last period of travel".into(),
+            x: Axis::logarithmic("periods travelled", course.iter().map(|p| p[0])),
+            y: Axis::logarithmic("angle error, periods", errors.chain([raw])),
+            series: vec![
+                Series::new(
+                    "arctangent of the signals as they are",
+                    Look::BeforeLine,
+                    raw_line,
+                ),
+                Series::new("chip", Look::AfterLine, course.clone()),
+            ],
+            marks: vec![],
+            round: false,
+        },
+        Plot {
+            title: "Along a period, calibrated, mean of many samples at each place".into(),
+            x: Axis::linear("place in the period, periods", [0.0, 1.0]),
+            y: Axis::fitted("angle error, periods", along.iter().map(|p| p[1])),
+            series: vec![Series::new("chip", Look::Model, along.clone())],
+            marks: vec![],
+            round: false,
+        },
+    ]
+}
+
 fn bars(j: &DesignJson) -> Vec<Bar> {
     let mut list = vec![
         (
@@ -267,6 +304,7 @@ fn files(files: &[(String, Vec<u8>)]) -> Vec<(String, String)> {
 pub(crate) fn page(
     design: &Design,
     j: &DesignJson,
+    simulation: &Simulation,
     written: &[(String, Vec<u8>)],
 ) -> Result<String, askama::Error> {
     Page {
@@ -274,6 +312,7 @@ pub(crate) fn page(
         facts: facts(design, j),
         diagram: Diagram::of(&design.spec),
         bode: bode(design).html(),
+        simulated: simulated(simulation).map(|plot| plot.html()),
         style: nonius_plot::STYLE,
         script: nonius_plot::SCRIPT,
         bars: bars(j),

@@ -4,7 +4,7 @@
 mod shipped;
 
 use nonius_model::design::Design;
-use nonius_package::accuracy;
+use nonius_package::simulate;
 
 /// Whatever a chip is built with, nothing is as wide as it is for no reason.
 #[test]
@@ -23,7 +23,7 @@ fn every_format_has_a_reason() {
 fn shipped_designs_reach_the_accuracy_they_ask_for() {
     for name in shipped::NAMES {
         let (design, spec) = (shipped::design(name), shipped::spec(name));
-        let found = accuracy(&design);
+        let found = simulate(&design).accuracy;
         let asked = spec.accuracy.rms_periods;
         println!(
             "{name}: {:.2e} periods rms, {asked:.2e} asked",
@@ -45,7 +45,10 @@ fn the_budget_predicts_what_is_simulated() {
         for gamma_last in [5, spec.calibration.gamma_last] {
             spec.calibration.gamma_last = gamma_last;
             let design = Design::new(&spec).expect("a shipped design");
-            let (predicted, found) = (design.budget.total(), accuracy(&design).rms_periods);
+            let (predicted, found) = (
+                design.budget.total(),
+                simulate(&design).accuracy.rms_periods,
+            );
             println!("{name}: {predicted:.2e} predicted, {found:.2e} periods rms simulated");
             assert!(
                 (0.75..1.1).contains(&(found / predicted)),
