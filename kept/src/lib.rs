@@ -1,6 +1,10 @@
 //! For tests: files that are kept in the repository are compared with what is made now, and written anew where
 //! `NONIUS_BLESS` is set.
 
+mod figures;
+
+pub use figures::figure;
+
 use std::fs;
 use std::path::Path;
 
