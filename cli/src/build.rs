@@ -141,7 +141,7 @@ fn summary(j: &DesignJson, output: &Path, shown: &str) {
         "  written     {folder}/: rtl, tb, vectors, waves, coefficients, design.json, report.html"
     );
     say!("next: nonius verify {folder}");
-    say!("      gtkwave {folder}/waves/{shown}.gtkw");
+    say!("      gtkwave {folder}/waves/{shown}.vcd {folder}/waves/{shown}.gtkw");
 }
 
 /// The position at the output in the units that the design has for it.

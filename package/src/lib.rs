@@ -93,7 +93,7 @@ pub fn package_with(
             waves.sample(s, &probes, &model)?;
         }
         waves.finish()?;
-        let save = gtkw(&format!("{name}.vcd"), design, &chip.columns, chip.clocks);
+        let save = gtkw(name, design, &chip.columns, chip.clocks);
         files.push((format!("waves/{name}.vcd"), bytes));
         files.push((format!("waves/{name}.gtkw"), save.into_bytes()));
     }

@@ -21,7 +21,7 @@ struct Page<'a> {
     style: &'static str,
     script: &'static str,
     bars: Vec<Bar>,
-    /// The save file of the waves that were written.
+    /// The waves that were written, without the ending.
     waves: &'a str,
     files: Vec<(String, String)>,
 }
@@ -318,8 +318,8 @@ pub(crate) fn page(
         bars: bars(j),
         waves: written
             .iter()
-            .find(|(path, _)| path.ends_with(".gtkw"))
-            .map_or("", |(path, _)| path),
+            .find_map(|(path, _)| path.strip_suffix(".gtkw"))
+            .unwrap_or_default(),
         files: files(written),
     }
     .render()
