@@ -4,7 +4,7 @@
 mod support;
 
 use std::f64::consts::TAU;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use support::done;
 

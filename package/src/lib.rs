@@ -5,6 +5,7 @@ mod coefficient;
 mod curves;
 mod design_json;
 mod diagram;
+mod engineering;
 mod report;
 mod signals;
 mod simulation;
@@ -13,6 +14,7 @@ mod tracking;
 mod write;
 
 pub use design_json::DesignJson;
+pub use engineering::engineering;
 pub use signals::{Signal, signals};
 pub use simulation::{Accuracy, Simulation, simulate};
 pub use sine::{SineError, sine_error};
