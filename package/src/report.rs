@@ -17,7 +17,7 @@ struct Page<'a> {
     diagram: Diagram,
     bode: String,
     style: &'static str,
-    script: &'static str,
+    script: String,
     bars: Vec<Bar>,
     /// The save file of the waves that were written.
     waves: &'a str,
@@ -276,7 +276,7 @@ pub(crate) fn page(
         diagram: Diagram::of(&design.spec),
         bode: bode(design).html(),
         style: nonius_plot::STYLE,
-        script: nonius_plot::SCRIPT,
+        script: nonius_plot::script(),
         bars: bars(j),
         waves: written
             .iter()
