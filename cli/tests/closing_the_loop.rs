@@ -111,10 +111,22 @@ fn error(dir: &Path, design: &str) -> f64 {
 struct Closed {
     /// What the diagnosis says on the terminal.
     said: String,
-    findings: serde_json::Value,
+    /// What the diagnosis finds first.
+    first: serde_json::Value,
     /// Angle error of the chip that knows nothing, and of that of the diagnosis.
     before: f64,
     after: f64,
+}
+
+impl Closed {
+    /// Share of the angle error that the chip of the diagnosis leaves.
+    fn left(&self) -> f64 {
+        self.after / self.before
+    }
+
+    fn errors(&self) -> String {
+        format!("{:.3} -> {:.3} mrad", self.before, self.after)
+    }
 }
 
 /// From the recording to the chip, in the simulators too where that is asked for.
@@ -143,9 +155,10 @@ fn closed(recording: &str, simulated: bool) -> Closed {
             PLAYED
         );
     }
+    let findings: serde_json::Value = serde_json::from_str(&json).expect("JSON");
     Closed {
         said,
-        findings: serde_json::from_str(&json).expect("JSON"),
+        first: findings["findings"][0].clone(),
         before: error(dir, "plain.toml"),
         after: error(dir, design),
     }
@@ -176,47 +189,42 @@ fn what_is_found_is_corrected_by_the_chip() {
         )
     });
     for (bends, closed) in BENDS.into_iter().zip(bent) {
-        let Closed {
-            said,
-            findings,
-            before,
-            after,
-        } = closed;
+        let said = &closed.said;
         assert!(
             said.contains("nine parameters"),
             "{said} {:#}",
-            findings["findings"]
+            closed.first
         );
-        let name = findings["findings"][0]["cause"].as_str().expect("a name");
-        println!("{bends:?}: {name}, {before:.3} -> {after:.3} mrad");
+        let name = closed.first["cause"].as_str().expect("a name");
+        println!("{bends:?}: {name}, {}", closed.errors());
         let _ = writeln!(
             table,
-            "| {:.1} %, {:.1} % | `{name}` | {before:.2} | {after:.2} |",
+            "| {:.1} %, {:.1} % | `{name}` | {:.2} | {:.2} |",
             100.0 * bends[0],
-            100.0 * bends[1]
+            100.0 * bends[1],
+            closed.before,
+            closed.after
         );
-        assert!(after < 0.5 * before, "{before} -> {after} mrad");
+        assert!(closed.left() < 0.5, "{}", closed.errors());
     }
     table += "\n## A sine that is sampled later than the cosine\n\n\
          Up to 550 periods a second in both directions, a sample each 20 µs. At constant speed the calibration on line would hide\n\
          the skew in its phase parameter; where the speed changes nothing does.\n\n\
          | delay | named | measured | chip of `new --from` | chip of the diagnosis |\n|---|---|---|---|---|\n";
     for (delay, closed) in DELAYS.into_iter().zip(skewed) {
-        let Closed {
-            said,
-            findings,
-            before,
-            after,
-        } = closed;
-        let found = &findings["findings"][0];
-        println!("{delay:e}: {before:.3} -> {after:.3} mrad, {found:#}");
+        let found = &closed.first;
+        println!("{delay:e}: {}, {found:#}", closed.errors());
         if delay == 0.0 {
             // What the chips of the others should come to.
             assert!(found.is_null(), "{found}");
-            let _ = writeln!(table, "| none | nothing | – | {before:.2} | {after:.2} |");
+            let _ = writeln!(
+                table,
+                "| none | nothing | – | {:.2} | {:.2} |",
+                closed.before, closed.after
+            );
             continue;
         }
-        assert!(said.contains("corrects a sine"), "{said}");
+        assert!(closed.said.contains("corrects a sine"), "{}", closed.said);
         assert_eq!(found["cause"], "channel_skew");
         assert_eq!(found["chip"], "corrects");
         let parameter = &found["parameters"][0];
@@ -224,16 +232,18 @@ fn what_is_found_is_corrected_by_the_chip() {
         let (value, std_error) = (number("value"), number("std_error"));
         let _ = writeln!(
             table,
-            "| {:.2} µs | `channel_skew` | {:.3} ± {:.3} µs | {before:.2} | {after:.2} |",
+            "| {:.2} µs | `channel_skew` | {:.3} ± {:.3} µs | {:.2} | {:.2} |",
             1e6 * delay,
             1e6 * value,
-            1e6 * std_error
+            1e6 * std_error,
+            closed.before,
+            closed.after
         );
         assert!(
             (value - delay).abs() < 5.0 * std_error,
             "{value} ± {std_error}"
         );
-        assert!(after < 0.1 * before, "{before} -> {after} mrad");
+        assert!(closed.left() < 0.1, "{}", closed.errors());
     }
     nonius_kept::same(
         Path::new(KEPT),

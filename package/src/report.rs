@@ -20,7 +20,7 @@ struct Page<'a> {
     bode: String,
     simulated: [String; 2],
     style: &'static str,
-    script: &'static str,
+    script: String,
     bars: Vec<Bar>,
     /// The waves that were written, without the ending.
     waves: &'a str,
@@ -303,7 +303,7 @@ pub(crate) fn page(
         bode: bode(design).html(),
         simulated: simulated(simulation).map(|plot| plot.html()),
         style: nonius_plot::STYLE,
-        script: nonius_plot::SCRIPT,
+        script: nonius_plot::script(),
         bars: bars(j),
         waves: written
             .iter()
