@@ -9,7 +9,7 @@ use crate::rom::Rom;
 /// A value that does not fit, with the operands that lead there.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error(
-    "{signal} does not fit {limit}: it reaches {low} … {high} in steps of 2^-{fraction} when {worst_case}; shorter words in \
+    "{signal} does not fit {limit}: it reaches {reach} when {worst_case}; shorter words in \
      [formats] would help"
 )]
 pub struct RangeError {
@@ -17,12 +17,8 @@ pub struct RangeError {
     pub signal: String,
     /// What it should fit.
     pub limit: String,
-    /// Smallest value.
-    pub low: String,
-    /// Largest value.
-    pub high: String,
-    /// Its fraction bits.
-    pub fraction: u32,
+    /// Smallest and largest value, and its steps.
+    pub reach: String,
     /// The operands' ranges that lead there.
     pub worst_case: String,
 }
@@ -245,9 +241,11 @@ fn outside(
     RangeError {
         signal: "a signal".into(),
         limit: limit.to_string(),
-        low: real(range.0, fraction),
-        high: real(range.1, fraction),
-        fraction,
+        reach: format!(
+            "{} … {} in steps of 2^-{fraction}",
+            real(range.0, fraction),
+            real(range.1, fraction)
+        ),
         worst_case: operands.join(" and "),
     }
 }
