@@ -67,6 +67,9 @@ fn structures() -> Vec<(String, Spec)> {
     binary.adc.bits = 14;
     binary.sensor.amplitude = 0.3;
     list.push(("offset binary, 14 bits, amplitude 0.3".into(), binary));
+    for name in ["magnetic", "interferometer"] {
+        list.push((name.into(), support::shipped::spec(name)));
+    }
     list
 }
 
