@@ -69,6 +69,7 @@ fn known(section: &str) -> Option<&'static [&'static str]> {
             "gamma_last",
             "gear_periods",
             "restart_residual",
+            "hold_residual",
         ],
         "correction" => &["channel_skew_s"],
         "accuracy" => &["rms_periods", "arithmetic_share"],
