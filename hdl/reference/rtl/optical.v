@@ -18,32 +18,32 @@
 // and samples never overlap. Outputs are those of the last sample from `valid` until the next `sample_valid`; before
 // the first `valid` those that are not registers of the chip are undefined.
 //
-// step | in the multiplier            | computed from it
-// -----+------------------------------+------------------------------------------------------------------------
-//    0 | -                            | sine_phase upper_half odd_quadrant quarter_phase quarter_phase_mirrored
-//      |                              | sin_address sin_inside cos_address cos_inside theta_1 theta_3 theta_5
-//      |                              | last_gear periods_modulo_4 sector sector_relative sector_ahead
-//      |                              | sector_behind gamma_settled nominal
-//    1 | loop_ab * error_previous     | sin_value sin_slope y_c y_s counting whole_period travel_clear
-//    2 | theta_1 * y_c                | cos_value cos_slope drift
-//    3 | cos_slope * cos_inside       | c_exact c
-//    4 | theta_3 * y_s                | cos_magnitude cos_hat c_weak
-//    5 | sin_slope * sin_inside       |
-//    6 | theta_5 * y_c                | sin_magnitude sin_hat
-//    7 | c * cos_hat                  | s_exact s
-//    8 | s * sin_hat                  | s_weak
-//    9 | s * cos_hat                  | rho_exact rho flip rho_limited
-//   10 | c * sin_hat                  | alpha_hat_turned
-//   11 | cos_hat * rho_limited        | e_exact e_seen e
-//   12 | sin_hat * rho_limited        | in_window e_change counted residual_large radius_large rho_c period_tick
-//      |                              | gamma_restart gamma_shift
-//   13 | loop_a * e_change            | level_moved level_full level_empty narrower hold fresh rho_s gradient_2
-//      |                              | step_2 gear_periods_again
-//   14 | y_c * rho_c                  | kick gradient_4 step_4
-//   15 | y_s * rho_s                  | speed gradient_1 step_1
-//   16 | y_c * rho_s                  | alpha_hat_sum carry gradient_3 step_3
-//   17 | -                            | gradient_5 step_5
-//   18 | -                            |
+// step | in the multiplier        | computed from it
+// -----+--------------------------+-------------------------------------------------------------------------------
+//    0 | -                        | sine_phase upper_half odd_quadrant quarter_phase quarter_phase_mirrored
+//      |                          | sin_address sin_inside cos_address cos_inside theta_1 theta_3 theta_5
+//      |                          | last_gear periods_modulo_4 sector sector_relative sector_ahead sector_behind
+//      |                          | gamma_settled nominal
+//    1 | loop_ab * error_previous | sin_value sin_slope y_c y_s counting whole_period travel_clear
+//    2 | theta_1 * y_c            | cos_value cos_slope drift
+//    3 | cos_slope * cos_inside   | c_exact c
+//    4 | theta_3 * y_s            | cos_magnitude cos_hat c_weak
+//    5 | sin_slope * sin_inside   |
+//    6 | theta_5 * y_c            | sin_magnitude sin_hat
+//    7 | c * cos_hat              | s_exact s
+//    8 | s * sin_hat              | s_weak
+//    9 | s * cos_hat              | rho_exact rho flip rho_limited
+//   10 | c * sin_hat              | alpha_hat_turned
+//   11 | cos_hat * rho_limited    | e_exact e_seen e
+//   12 | sin_hat * rho_limited    | in_window e_change counted residual_large radius_large rho_c period_tick
+//      |                          | gamma_restart gamma_shift
+//   13 | loop_a * e_change        | level_moved level_full level_empty narrower hold fresh rho_s gradient_2 step_2
+//      |                          | gear_periods_again
+//   14 | y_c * rho_c              | kick gradient_4 step_4
+//   15 | y_s * rho_s              | speed gradient_1 step_1
+//   16 | y_c * rho_s              | alpha_hat_sum carry gradient_3 step_3
+//   17 | -                        | gradient_5 step_5
+//   18 | -                        |
 //
 // Coefficients, by name in the comments below:
 //     loop_a             0.014132976531982422    Loop coefficient a, turns per radian.
@@ -283,11 +283,11 @@ module optical (
     wire signed [17:0] odd_quadrant_bits = {1'b0, sine_phase[16:0]}; // u17.18, step 0
     wire odd_quadrant = ~($signed(odd_quadrant_bits[17:16]) < 2'sd1); // step 0
     wire signed [16:0] quarter_phase = {1'b0, sine_phase[15:0]}; // u16.18, step 0
-    wire signed [16:0] quarter_phase_mirrored = {1'b0, ~quarter_phase[15:0]}; // s17.18, step 0
+    wire signed [16:0] quarter_phase_mirrored = {1'b0, ~quarter_phase[15:0]}; // s17.18, step 0, with quarter_turn
     wire signed [16:0] sin_address = odd_quadrant ? quarter_phase_mirrored : quarter_phase; // s17.18, step 0
     wire signed [10:0] sin_inside_bits = {1'b0, sin_address[9:0]}; // u10.18, step 0
-    wire signed [11:0] sin_inside_sum = {sin_inside_bits, 1'h1}; // s12.19, step 0
-    wire signed [10:0] sin_inside_now = sin_inside_sum[10:0] - 11'sh400; // s11.19, step 0
+    wire signed [11:0] sin_inside_sum = {sin_inside_bits, 1'h1}; // s12.19, step 0, with half_bit
+    wire signed [10:0] sin_inside_now = sin_inside_sum[10:0] - 11'sh400; // s11.19, step 0, with half_segment
     wire signed [19:0] sin_value_now = {1'b0, sine_table_row[32:14]}; // u19.18, step 1
     wire signed [14:0] sin_slope_now = {1'b0, sine_table_row[13:0]}; // u14.11, step 1
     wire signed [24:0] sin_slope_times_sin_inside = product_0[24:0]; // s25.30, step 6
@@ -295,8 +295,8 @@ module optical (
     wire signed [17:0] sin_magnitude = sin_magnitude_sum[31:14]; // s18.16, step 6
     wire signed [16:0] cos_address_now = odd_quadrant ? quarter_phase : quarter_phase_mirrored; // s17.18, step 0
     wire signed [10:0] cos_inside_bits = {1'b0, cos_address_now[9:0]}; // u10.18, step 0
-    wire signed [11:0] cos_inside_sum = {cos_inside_bits, 1'h1}; // s12.19, step 0
-    wire signed [10:0] cos_inside_now = cos_inside_sum[10:0] - 11'sh400; // s11.19, step 0
+    wire signed [11:0] cos_inside_sum = {cos_inside_bits, 1'h1}; // s12.19, step 0, with half_bit
+    wire signed [10:0] cos_inside_now = cos_inside_sum[10:0] - 11'sh400; // s11.19, step 0, with half_segment
     wire signed [19:0] cos_value_now = {1'b0, sine_table_row[32:14]}; // u19.18, step 2
     wire signed [14:0] cos_slope = {1'b0, sine_table_row[13:0]}; // u14.11, step 2
     wire signed [24:0] cos_slope_times_cos_inside = product_0[24:0]; // s25.30, step 4
@@ -318,9 +318,9 @@ module optical (
     //   theta = nominal + deviation, rounded to the width of the signals
     //   (paper section 5.3)
     wire signed [27:0] theta_1_rounded = 28'sh5000200 + {{2{theta_1_deviation[25]}}, theta_1_deviation};
-    wire signed [17:0] theta_1_now = theta_1_rounded[27:10]; // s18.16, step 0
+    wire signed [17:0] theta_1_now = theta_1_rounded[27:10]; // s18.16, step 0, with theta_1_nominal
     wire signed [27:0] theta_3_rounded = 28'sh5000200 + {{2{theta_3_deviation[25]}}, theta_3_deviation};
-    wire signed [17:0] theta_3_now = theta_3_rounded[27:10]; // s18.16, step 0
+    wire signed [17:0] theta_3_now = theta_3_rounded[27:10]; // s18.16, step 0, with theta_3_nominal
     wire signed [18:0] theta_5_rounded = {theta_5_deviation[24], theta_5_deviation[24:7]} + {18'b0, theta_5_deviation[6]};
     wire signed [17:0] theta_5_now = ((&theta_5_rounded[18:17]) | ~(|theta_5_rounded[18:17])) ? theta_5_rounded[17:0] : {theta_5_rounded[18], {17{~theta_5_rounded[18]}}}; // s18.19, step 0
 
@@ -340,11 +340,11 @@ module optical (
 
     // Loss of signal
     //   |c| and |s| both below the threshold
-    wire c_below_weak_signal_now = $signed(c_now[17:14]) < 4'sd1; // step 3
-    wire c_below_minus_weak_signal_now = ~($signed(~c_now[17:14]) < 4'sd1); // step 3
+    wire c_below_weak_signal_now = $signed(c_now[17:14]) < 4'sd1; // step 3, with weak_signal
+    wire c_below_minus_weak_signal_now = ~($signed(~c_now[17:14]) < 4'sd1); // step 3, with minus_weak_signal
     wire c_weak_now = c_below_weak_signal & ~c_below_minus_weak_signal; // step 4
-    wire s_below_weak_signal_now = $signed(s_now[17:14]) < 4'sd1; // step 7
-    wire s_below_minus_weak_signal_now = ~($signed(~s_now[17:14]) < 4'sd1); // step 7
+    wire s_below_weak_signal_now = $signed(s_now[17:14]) < 4'sd1; // step 7, with weak_signal
+    wire s_below_minus_weak_signal_now = ~($signed(~s_now[17:14]) < 4'sd1); // step 7, with minus_weak_signal
     wire s_weak = s_below_weak_signal & ~s_below_minus_weak_signal; // step 8
     wire signal_lost_next_now = c_weak & s_weak; // step 8
 
@@ -352,7 +352,7 @@ module optical (
     //   rho = c cos(alpha_hat) + s sin(alpha_hat) - 1, the half bit of rounding in the 1
     //   (paper section 5.5.1, n^T r)
     wire signed [34:0] c_times_cos_hat = product_0[34:0]; // s35.32, step 8
-    wire signed [34:0] rho_exact_difference_now = c_times_cos_hat - 35'shffff8000; // s35.32, step 8
+    wire signed [34:0] rho_exact_difference_now = c_times_cos_hat - 35'shffff8000; // s35.32, step 8, with unit_radius
     wire signed [34:0] s_times_sin_hat = product_0[34:0]; // s35.32, step 9
     wire signed [35:0] rho_exact = {rho_exact_difference[34], rho_exact_difference} + {s_times_sin_hat[34], s_times_sin_hat}; // s36.32, step 9
     wire signed [17:0] rho_now = ((&rho_exact[35:33]) | ~(|rho_exact[35:33])) ? rho_exact[33:16] : {rho_exact[35], {17{~rho_exact[35]}}}; // s18.16, step 9
@@ -370,28 +370,28 @@ module optical (
     // Lock window
     //   |e| and -rho below their limits, signal present
     //   (calibration needs lock: the update would otherwise drive the gains to zero)
-    wire in_window_condition_3_now = $signed(~rho_now[17:15]) < 3'sd1; // step 9
+    wire in_window_condition_3_now = $signed(~rho_now[17:15]) < 3'sd1; // step 9, with minus_lock_residual
     wire in_window_condition_now = ~signal_lost_next_now; // step 8
-    wire in_window_now = ((($signed(e[17:13]) < 5'sd3) & ($signed(~e[17:13]) < 5'sd3)) & in_window_condition_3) & in_window_condition; // step 12
+    wire in_window_now = ((($signed(e[17:13]) < 5'sd3) & ($signed(~e[17:13]) < 5'sd3)) & in_window_condition_3) & in_window_condition; // step 12, with lock_error, minus_lock_error
     wire flip_condition_now = ~(locked | signal_lost_next_now); // step 8
     wire flip = ~($signed(~rho_now[17:16]) < 2'sd1) & flip_condition; // step 9
 
     // Lock level and loop gear
     //   level' = level + 1 if good, else level - 8; full: narrower loop, empty: widest loop
-    wire signed [3:0] level_moved_chosen = in_window_now ? 4'sd1 : 4'sh8; // s4.0, step 12
+    wire signed [3:0] level_moved_chosen = in_window_now ? 4'sd1 : 4'sh8; // s4.0, step 12, with lock_down
     wire signed [7:0] level_moved_sum_now = {lock_level[6], lock_level} + {{4{level_moved_chosen[3]}}, level_moved_chosen}; // s8.0, step 12
     wire signed [6:0] level_moved = level_moved_sum[7] ? 7'sd0 : (level_moved_sum[6] ? {1'b0, {6{1'b1}}} : {1'b0, level_moved_sum[5:0]}); // u6.0, step 13
-    wire level_moved_below_lock_full = level_moved < 7'sh3f; // step 13
+    wire level_moved_below_lock_full = level_moved < 7'sh3f; // step 13, with lock_full
     wire level_full = ~level_moved_below_lock_full; // step 13
     wire level_empty_now = level_moved < 7'sd1; // step 13
-    wire loop_gear_below_loop_gear_last_now = loop_gear < 3'sd3; // step 0
+    wire loop_gear_below_loop_gear_last_now = loop_gear < 3'sd3; // step 0, with loop_gear_last
     wire last_gear_now = ~loop_gear_below_loop_gear_last_now; // step 0
     wire narrower = level_full & loop_gear_below_loop_gear_last; // step 13
     wire signed [1:0] loop_gear_next_chosen_2 = narrower ? 2'sd1 : 2'sd0; // s2.0, step 13
     wire signed [3:0] loop_gear_next_sum = {loop_gear[2], loop_gear} + {{2{loop_gear_next_chosen_2[1]}}, loop_gear_next_chosen_2}; // s4.0, step 13
     wire signed [2:0] loop_gear_next_bits_now = {1'b0, loop_gear_next_sum[1:0]}; // u2.0, step 13
     wire signed [2:0] loop_gear_next_chosen = level_empty ? 3'sd0 : loop_gear_next_bits; // s3.0, step 14
-    wire signed [6:0] lock_level_next_chosen = narrower ? 7'sh1f : level_moved; // s7.0, step 13
+    wire signed [6:0] lock_level_next_chosen = narrower ? 7'sh1f : level_moved; // s7.0, step 13, with lock_restart
     wire locked_next_now = (locked | (level_full & last_gear)) & ~level_empty_now; // step 13
     wire signed [6:0] lock_level_next_now = lock_level_next_chosen; // u6.0, step 13
     wire signed [2:0] loop_gear_next_now = loop_gear_next_chosen; // u2.0, step 14
@@ -432,8 +432,8 @@ module optical (
 
     // Direction
     //   sign of the rate, with a dead band
-    wire speed_below_minus_direction_rate_now = ~($signed(~speed_now[25:11]) < 15'sd1); // step 15
-    wire speed_below_direction_rate_now = $signed(speed_now[25:11]) < 15'sd1; // step 15
+    wire speed_below_minus_direction_rate_now = ~($signed(~speed_now[25:11]) < 15'sd1); // step 15, with minus_direction_rate
+    wire speed_below_direction_rate_now = $signed(speed_now[25:11]) < 15'sd1; // step 15, with direction_rate
     wire direction_next_now = speed_below_minus_direction_rate | (direction & speed_below_direction_rate); // step 16
 
     // Travel
@@ -464,11 +464,11 @@ module optical (
 
     // Hold
     //   once gamma has settled a residual that is not small, and all until the end of a period without one, moves no parameter
-    wire gamma_gear_below_gamma_gear_settled = $signed(gamma_gear[3:2]) < 2'sd1; // step 0
+    wire gamma_gear_below_gamma_gear_settled = $signed(gamma_gear[3:2]) < 2'sd1; // step 0, with gamma_gear_settled
     wire gamma_settled_now = ~gamma_gear_below_gamma_gear_settled; // step 0
-    wire residual_large_condition_7_now = ~($signed(rho_now[17:14]) < 4'sd1); // step 9
-    wire residual_large_condition_6_now = residual_large_condition_7_now | ~($signed(~rho_now[17:14]) < 4'sd1); // step 9
-    wire residual_large_condition_3_now = ~(($signed(rho_now[17:12]) < 6'sd1) & ($signed(~rho_now[17:12]) < 6'sd1)); // step 9
+    wire residual_large_condition_7_now = ~($signed(rho_now[17:14]) < 4'sd1); // step 9, with restart_residual
+    wire residual_large_condition_6_now = residual_large_condition_7_now | ~($signed(~rho_now[17:14]) < 4'sd1); // step 9, with minus_restart_residual
+    wire residual_large_condition_3_now = ~(($signed(rho_now[17:12]) < 6'sd1) & ($signed(~rho_now[17:12]) < 6'sd1)); // step 9, with hold_residual, minus_hold_residual
     wire residual_large_condition_now = residual_large_condition_6 | (gamma_settled & residual_large_condition_3); // step 10
     wire residual_large_now = residual_large_condition & counted_now; // step 12
     wire hold_condition_2_now = (residual_large_now | disturbed) | held; // step 12
@@ -528,10 +528,10 @@ module optical (
     // Gears of gamma
     //   gamma halves after some periods of travel, starts again when the residual stays large
     wire gamma_restart_condition_4_now = period_tick & disturbed; // step 12
-    wire gamma_restart_condition_now = (gamma_gear_below_gamma_gear_settled | risen) | (held & ~(gear_periods < 6'sh1f)); // step 0
+    wire gamma_restart_condition_now = (gamma_gear_below_gamma_gear_settled | risen) | (held & ~(gear_periods < 6'sh1f)); // step 0, with held_periods_last
     wire gamma_restart_now = gamma_restart_condition_4_now & gamma_restart_condition; // step 12
-    wire gamma_gear_below_gamma_gear_last_now = $signed(gamma_gear[3:1]) < 3'sd3; // step 0
-    wire gamma_shift_condition_2_now = ~($signed(gear_periods[5:1]) < 5'sd1) & ~(disturbed | held); // step 0
+    wire gamma_gear_below_gamma_gear_last_now = $signed(gamma_gear[3:1]) < 3'sd3; // step 0, with gamma_gear_last
+    wire gamma_shift_condition_2_now = ~($signed(gear_periods[5:1]) < 5'sd1) & ~(disturbed | held); // step 0, with gear_periods_last
     wire gamma_shift_now = (period_tick & gamma_shift_condition_2) & gamma_gear_below_gamma_gear_last; // step 12
     wire signed [1:0] gamma_gear_next_chosen_2 = gamma_shift ? 2'sd1 : 2'sd0; // s2.0, step 13
     wire signed [4:0] gamma_gear_next_sum = {gamma_gear[3], gamma_gear} + {{3{gamma_gear_next_chosen_2[1]}}, gamma_gear_next_chosen_2}; // s5.0, step 13
@@ -578,7 +578,7 @@ module optical (
 
     always @(posedge clk)
         case (step)
-            5'd0: operand_a_0 <= 18'sh13b1b;
+            5'd0: operand_a_0 <= 18'sh13b1b; // loop_ab
             5'd1, 5'd5, 5'd13, 5'd15: operand_a_0 <= {{6{y_c[11]}}, y_c};
             5'd2: operand_a_0 <= {{7{cos_inside[10]}}, cos_inside};
             5'd3, 5'd14: operand_a_0 <= {{6{y_s[11]}}, y_s};
@@ -587,7 +587,7 @@ module optical (
             5'd7: operand_a_0 <= s_now;
             5'd8: operand_a_0 <= s;
             5'd10, 5'd11: operand_a_0 <= {{3{rho_limited[14]}}, rho_limited};
-            default: operand_a_0 <= 18'sh1cf1c;
+            default: operand_a_0 <= 18'sh1cf1c; // loop_a
         endcase
 
     always @(posedge clk)

@@ -234,6 +234,8 @@ module chip_tb;
         play_next("vectors/forwards.vec", "forwards", 24);
         play_next("vectors/backwards.vec", "backwards", 24);
         play_next("vectors/sweep.vec", "sweep", 24);
+        play_next("vectors/creep.vec", "creep", 24);
+        play_next("vectors/loss.vec", "loss", 24);
         play_next("vectors/step.vec", "step", 24);
         play_next("vectors/corners.vec", "corners", 24);
         play_next("vectors/bounds.vec", "bounds", 24);

@@ -2,7 +2,7 @@
 
 mod read;
 
-pub use read::{SpecError, line_of_field};
+pub use read::{SpecError, keys, line_of_field};
 
 use serde::{Deserialize, Serialize};
 
