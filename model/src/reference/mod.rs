@@ -16,7 +16,7 @@
 //! | what the paper lacks: the direction that no radius shows | [`completed`] |
 //! | a start within two periods | [`recursive`] |
 //! | the sine sampled later than the cosine | [`skew`] |
-//! | when to calibrate, how to start | [`gate`], [`start`] |
+//! | when to calibrate, how to start | [`gate`], [`hold`], [`start`] |
 //! | all of it together | [`interpolator`] |
 //!
 //! Only [`from_spec`] knows of the chip's `design.toml`, and of it no more than the physical numbers.
@@ -30,6 +30,7 @@ pub mod from_spec;
 pub mod gate;
 pub mod gradient;
 pub mod heydemann;
+pub mod hold;
 pub mod interpolator;
 pub mod loops;
 pub mod poles;
