@@ -31,6 +31,7 @@ mod solve;
 mod spline;
 mod statistics;
 mod sweep;
+mod telegraph;
 mod timebase;
 mod trig;
 mod unseen;
