@@ -30,6 +30,7 @@ mod sensor;
 mod solve;
 mod spline;
 mod statistics;
+mod steps;
 mod sweep;
 mod telegraph;
 mod timebase;

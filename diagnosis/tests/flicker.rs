@@ -173,3 +173,20 @@ fn offsets_that_jump_between_two_levels_are_not_flicker_noise() {
         assert!(found.unexplained.significant, "seed {seed}");
     }
 }
+
+/// A polynomial of time would follow them nearly as well as they do themselves.
+#[test]
+fn steps_are_no_drift() {
+    let steps: OfTime = |t| match t {
+        t if t < 0.05 => 0.0,
+        t if t < 0.11 => 0.0015,
+        t if t < 0.2 => -0.001,
+        t if t < 0.31 => 0.002,
+        _ => 0.0005,
+    };
+    for seed in 0..3 {
+        let found = diagnosed(&Colour::White, seed, |_| 0.0, steps);
+        assert_eq!(names(&found), Vec::<&str>::new(), "seed {seed}");
+        assert!(found.unexplained.significant, "seed {seed}");
+    }
+}
