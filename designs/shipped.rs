@@ -2,7 +2,9 @@
 #![allow(dead_code, reason = "each test uses its own part")]
 
 use nonius_model::design::Design;
-use nonius_model::spec::{CalibrationMethod, CalibrationStart, Spec};
+use nonius_model::spec::Spec;
+
+pub(crate) mod variants;
 
 /// All of them.
 pub(crate) const NAMES: [&str; 3] = ["optical", "magnetic", "interferometer"];
@@ -22,32 +24,4 @@ pub(crate) fn optical() -> Spec {
 /// Quantised.
 pub(crate) fn design(name: &str) -> Design {
     Design::new(&spec(name)).expect("a shipped design")
-}
-
-/// The shipped designs, the magnetic one with its offset binary codes, and the optical one with every other search.
-pub(crate) fn kinds() -> Vec<(String, Design)> {
-    use CalibrationMethod::{Batch, Exact, Final, SumOfSquares};
-    let mut kinds: Vec<_> = NAMES.map(|name| (name.to_owned(), design(name))).into();
-    for (method, parameters, completion) in [
-        (Final, 0, false),
-        (Final, 4, false),
-        (Final, 8, true),
-        (Final, 9, true),
-        (Final, 9, false),
-        (Exact, 5, false),
-        (SumOfSquares, 5, false),
-        (Batch, 5, false),
-    ] {
-        let mut spec = optical();
-        spec.calibration.method = method;
-        spec.calibration.parameters = parameters;
-        spec.calibration.completion = completion;
-        let what = format!("{method:?}, {parameters} parameters, completed {completion}");
-        kinds.push((what, Design::new(&spec).expect("a search of the paper")));
-    }
-    let mut spec = optical();
-    spec.calibration.start = CalibrationStart::LeastSquares;
-    let started = Design::new(&spec).expect("a started search");
-    kinds.push(("started".into(), started));
-    kinds
 }

@@ -13,16 +13,22 @@ const LONGEST: u64 = 1 << 20;
 
 /// The design in a file, quantised; an error names the line of the field that cannot be.
 pub(crate) fn read(path: &Path) -> Result<Design> {
+    Ok(read_with_text(path)?.0)
+}
+
+/// The same, and the file's text.
+pub(crate) fn read_with_text(path: &Path) -> Result<(Design, String)> {
     let file = path.display().to_string();
     let text = text(path, &file)?;
-    Design::new(&Spec::from_toml(&text, &file)?).map_err(|error| {
+    let design = Design::new(&Spec::from_toml(&text, &file)?).map_err(|error| {
         let place = match &error {
             DesignError::Field { field, .. } => line_of_field(&text, field),
             DesignError::Range(_) => None,
         };
         let place = place.map_or(String::new(), |line| format!(":{line}:1"));
         anyhow!("{file}{place}: {error}")
-    })
+    })?;
+    Ok((design, text))
 }
 
 fn text(path: &Path, file: &str) -> Result<String> {

@@ -55,13 +55,7 @@ struct About {
 pub(crate) fn run(args: &Diagnose) -> Result<bool> {
     let recording = Recording::read(&args.recording, &args.recording_args.overrides())?;
     let given = args.design.as_deref();
-    let design = match given {
-        Some(path) => {
-            crate::design_file::read(path)?;
-            Some(std::fs::read_to_string(path)?)
-        }
-        None => None,
-    };
+    let design = given.map(crate::design_file::read_with_text).transpose()?;
     let found = diagnose(&recording)
         .map_err(|error| anyhow::anyhow!("{}: {error}", args.recording.display()))?;
     for note in &found.notes {
@@ -99,7 +93,7 @@ pub(crate) fn run(args: &Diagnose) -> Result<bool> {
         ),
     ];
     let design = match design {
-        Some(text) => Some(text),
+        Some((_, text)) => Some(text),
         None => crate::new::fitted_text("fitted", &args.recording, &recording)
             .map_err(|error| eprintln!("note: no design.toml: {error:#}"))
             .ok(),

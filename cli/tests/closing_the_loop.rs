@@ -3,32 +3,23 @@
 //!
 //! The tables are kept in docs/closing-the-loop.md; NONIUS_BLESS=1 writes it anew.
 
+mod support;
+
 use std::f64::consts::TAU;
 use std::fmt::Write;
 use std::fs;
 use std::path::Path;
-use std::process::Command;
 use std::time::Duration;
 
 use nonius_hdl::progress::silent;
 use nonius_hdl::verify::{Options, verify};
 use nonius_sensor::{Motion, Sensor};
+use support::done;
 
 const KEPT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/closing-the-loop.md");
 const ROWS: u32 = 120_000;
 /// Rows of the recording that become vectors.
 const PLAYED: usize = 2_000;
-
-fn nonius(dir: &Path, arguments: &[&str]) -> String {
-    let output = Command::new(env!("CARGO_BIN_EXE_nonius"))
-        .current_dir(dir)
-        .args(arguments)
-        .output()
-        .expect("nonius runs");
-    let said = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(output.status.success(), "{arguments:?}: {said}");
-    said
-}
 
 const HEAD: &str = "# sample_rate_hz: 50000\n# adc_bits: 14\n# full_scale: 1\n# periods_per_revolution: 64\ntime_s,cos,sin,reference_rad\n";
 
@@ -96,7 +87,7 @@ fn skewed_encoder(delay_s: f64) -> String {
 
 /// Rms over the last third of the chip's position against the truth, mrad of a scale period.
 fn error(dir: &Path, design: &str) -> f64 {
-    nonius(dir, &["simulate", design, "r.csv", "-o", "out.csv"]);
+    done(dir, &["simulate", design, "r.csv", "-o", "out.csv"]);
     let said = fs::read_to_string(dir.join("out.csv")).expect("what simulate wrote");
     let truth = fs::read_to_string(dir.join("r.csv")).expect("the recording");
     let positions = said.lines().skip(1).map(|l| {
@@ -143,14 +134,14 @@ fn closed(recording: &str, simulated: bool) -> Closed {
     let dir = tempfile::tempdir().expect("scratch folder");
     let dir = dir.path();
     fs::write(dir.join("r.csv"), recording).expect("a recording");
-    nonius(dir, &["new", "plain", "--from", "r.csv"]);
-    let said = nonius(dir, &["diagnose", "r.csv", "-o", "found"]);
+    done(dir, &["new", "plain", "--from", "r.csv"]);
+    let said = done(dir, &["diagnose", "r.csv", "-o", "found"]);
     let json = fs::read_to_string(dir.join("found/findings.json")).expect("findings");
     let design = "found/design.toml";
     if simulated {
         let rows = recording.split_inclusive('\n').take(5 + PLAYED);
         fs::write(dir.join("head.csv"), rows.collect::<String>()).expect("its beginning");
-        nonius(dir, &["build", design, "-o", "chip", "--play", "head.csv"]);
+        done(dir, &["build", design, "-o", "chip", "--play", "head.csv"]);
         // As `nonius verify`, but however long a busy machine takes.
         let options = Options {
             time_limit: Some(Duration::from_secs(3600)),

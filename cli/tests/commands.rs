@@ -25,6 +25,8 @@ fn new_writes_a_design_that_builds_and_never_overwrites() {
         String::from_utf8_lossy(&built.stderr)
     );
     assert!(dir.path().join("out/mine/rtl/mine.v").is_file());
+    let said = String::from_utf8_lossy(&built.stdout);
+    assert!(said.contains("next: ") && !said.contains("note"), "{said}");
     refused(&nonius(dir.path(), &["new", "2nd"]), &["name", "2nd"]);
     assert!(!dir.path().join("2nd.toml").exists());
 }

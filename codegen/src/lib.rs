@@ -19,22 +19,24 @@ mod writer;
 
 pub use templates::{Files, generate};
 
-/// The design's hash: of everything it was made from. A correction that it does not have is no part of it, so that designs
-/// without one keep theirs.
+use nonius_model::design::Design;
+use nonius_model::graph::Op;
+use sha2::Digest;
+
+/// The design's hash: of what was asked for and of the numbers that the chip has.
 #[must_use]
-pub fn hash(design: &nonius_model::design::Design) -> String {
-    use nonius_model::spec::Correction;
-    use sha2::Digest;
-    let without = format!(", correction: {:?}", Correction::default());
-    let spec = format!("{:?}", design.spec).replace(&without, "");
-    let mut constants = vec![];
-    design.constants.map(|name, constant| {
-        if design.skew.is_some() || !name.starts_with("skew_") {
-            constants.push(format!("{name}: {constant:?}"));
-        }
-    });
-    let constants = constants.join(", ");
-    let digest = sha2::Sha256::digest(format!("{spec}Coefficients {{ {constants} }}"));
+pub fn hash(design: &Design) -> String {
+    let graph = &design.graph;
+    let constants: Vec<_> = graph
+        .ids()
+        .map(|id| graph.node(id))
+        .filter_map(|node| match node.op {
+            Op::Constant(raw) => Some((node.name.as_deref(), raw, node.format.fraction)),
+            _ => None,
+        })
+        .collect();
+    let all = serde_json::json!([design.spec, constants]).to_string();
+    let digest = sha2::Sha256::digest(all);
     digest
         .iter()
         .take(6)

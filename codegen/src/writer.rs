@@ -24,6 +24,8 @@ pub(crate) struct Writer<'a> {
     stable: Vec<bool>,
     widths: RefCell<BTreeMap<String, u32>>,
     read: RefCell<BTreeMap<String, u128>>,
+    /// Coefficients in what was written since they were last asked for.
+    coefficients: RefCell<Vec<String>>,
     declared: RefCell<Vec<(String, u32)>>,
 }
 
@@ -90,6 +92,7 @@ impl<'a> Writer<'a> {
             stable,
             widths: RefCell::new(widths),
             read: RefCell::default(),
+            coefficients: RefCell::default(),
             declared: RefCell::default(),
         }
     }
@@ -138,7 +141,10 @@ impl<'a> Writer<'a> {
     pub(crate) fn at(&self, id: NodeId, cycle: usize) -> Term {
         let node = self.graph.node(id);
         let source = match node.op {
-            Op::Constant(raw) => Source::Constant(raw.into()),
+            Op::Constant(raw) => {
+                self.note_coefficient(self.name(id));
+                Source::Constant(raw.into())
+            }
             Op::Input if SAMPLED.contains(&self.name(id)) => {
                 Source::Signal(format!("{}_held", self.name(id)), 0)
             }
@@ -155,6 +161,20 @@ impl<'a> Writer<'a> {
             fraction: node.format.fraction,
             range: node.range,
         }
+    }
+
+    /// A coefficient stands in what is written: its name, unless it says no more than its value.
+    fn note_coefficient(&self, name: &str) {
+        let mut noted = self.coefficients.borrow_mut();
+        let says = !matches!(name, "zero" | "one" | "minus_one" | "half" | "quarter");
+        if says && !noted.iter().any(|n| n == name) {
+            noted.push(name.to_owned());
+        }
+    }
+
+    /// The coefficients in what was written since the last time.
+    pub(crate) fn coefficients(&self) -> Vec<String> {
+        self.coefficients.take()
     }
 
     /// The expression of a condition.
@@ -182,12 +202,12 @@ impl<'a> Writer<'a> {
                 let right = self.signed(&b, fraction, wide);
                 match (&a.source, &b.source) {
                     (_, Source::Constant(limit)) if *limit < 0 => {
-                        below_negative(&format!("~{left}"), limit << (fraction - b.fraction), wide)
+                        let limit = limit << (fraction - b.fraction);
+                        format!("~{}", at_least(&format!("~{left}"), limit, wide))
                     }
-                    // The same from the other side: −m < x is ~x < m − 1.
                     (Source::Constant(limit), _) if *limit < 0 => {
                         let limit = limit << (fraction - a.fraction);
-                        format!("(~{right} < {})", literal(-limit - 1, wide))
+                        at_least(&format!("~{right}"), limit + 1, wide)
                     }
                     _ => format!("({left} < {right})"),
                 }
@@ -234,7 +254,8 @@ impl<'a> Writer<'a> {
             upper
         };
         if limit < 0 {
-            return Some(below_negative(&format!("$signed(~{upper})"), limit, bits));
+            let not_below = at_least(&format!("$signed(~{upper})"), limit, bits);
+            return Some(format!("~{not_below}"));
         }
         Some(format!("($signed({upper}) < {})", literal(limit, bits)))
     }
@@ -379,9 +400,9 @@ pub(crate) fn range(graph: &Graph, id: NodeId) -> String {
     }
 }
 
-/// x < −m, given ~x: it is not (~x < m). Yosys 0.23 gets wrong what compares four bits or fewer with a negative number
-/// (`hdl/tests/netlist.rs` sees it).
-fn below_negative(complement: &str, limit: i128, bits: u32) -> String {
+/// x ≥ `limit`, which is not above 0, given ~x: ~x < −limit. Yosys 0.23 gets wrong what compares four bits or fewer with a
+/// negative number (`hdl/tests/netlist.rs` sees it).
+fn at_least(complement: &str, limit: i128, bits: u32) -> String {
     let bits = bits.max(crate::quantise::covering(limit, -limit));
-    format!("~({complement} < {})", literal(-limit, bits))
+    format!("({complement} < {})", literal(-limit, bits))
 }

@@ -10,14 +10,14 @@
 // Formats: sW.F is a two's complement number of W bits, F of them behind the point; uW.F has no sign and is kept here
 // with a zero in front, so that every number is signed. Angles are in turns of a scale period. A signal that saturates
 // reads: the bits above the result all equal its sign ? the result : the end of its range on the side of the sign.
+// x < m looks only at the bits of x that m has, and x < -m reads ~(~x < m): some synthesis tools get short comparisons
+// with negative numbers wrong.
 //
 // A value x is computed in one step on the wire x, or on x_now where the register x keeps it for later steps and for
 // the testbench. All registers of the chip change together at the end of the last step: a sample is one transaction,
 // and samples never overlap. Outputs are those of the last sample from `valid` until the next `sample_valid`; before
 // the first `valid` those that are not registers of the chip are undefined.
 //
-// step | in the multiplier            | computed from it
-// -----+------------------------------+------------------------------------------------------------------------
 //%- for row in timetable %//
 // ${ row }$
 //%- endfor %//
@@ -139,9 +139,9 @@ module ${ name }$ (
     always @(posedge clk)
         case (step)
 //%- for l in p.loads %//
-            ${ l.0 }$: operand_${ p.letter }$_${ m.index }$ <= ${ l.1 }$;
+            ${ l.0 }$: operand_${ p.letter }$_${ m.index }$ <= ${ l.1.source }$;${ l.1.comment }$
 //%- endfor %//
-            default: operand_${ p.letter }$_${ m.index }$ <= ${ p.idle }$;
+            default: operand_${ p.letter }$_${ m.index }$ <= ${ p.idle.source }$;${ p.idle.comment }$
         endcase
 //%- endfor %//
 //%- endfor %//

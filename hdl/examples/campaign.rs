@@ -20,16 +20,12 @@ use std::time::Duration;
 use nonius_hdl::progress::silent;
 use nonius_hdl::{ChipDir, Options, verify};
 use nonius_model::design::Design;
-use nonius_model::spec::{All, CalibrationMethod, CalibrationStart, Multipliers, Spec};
+use nonius_model::spec::{Multipliers, Spec};
+use shipped::variants::{Variant, everything};
 
 /// Rows of each of the nine stimuli: at least 100 000 samples for Verilator, 2 000 for Icarus.
 const LONG: (usize, usize) = (11_200, 230);
 const SHORT: (usize, usize) = (60, 60);
-
-struct Variant {
-    what: String,
-    spec: Spec,
-}
 
 struct Outcome {
     what: String,
@@ -63,14 +59,14 @@ fn run(docs: Option<&Path>) -> Result<bool, Box<dyn Error>> {
     let (rows, step) = if docs.is_some() {
         (LONG, 1)
     } else {
-        (SHORT, 6)
+        (SHORT, 10)
     };
     let mut outcomes = vec![];
-    for variant in variants().into_iter().step_by(step) {
+    for variant in everything().into_iter().step_by(step) {
         let outcome = Outcome {
             verilator: samples(&variant.spec, rows.0, true)?,
             icarus: samples(&variant.spec, rows.1, false)?,
-            what: variant.what,
+            what: described(&variant),
         };
         eprintln!("{}", line(&outcome).trim_end());
         outcomes.push(outcome);
@@ -85,120 +81,21 @@ fn run(docs: Option<&Path>) -> Result<bool, Box<dyn Error>> {
         .all(|o| o.verilator.is_ok() && o.icarus.is_ok()))
 }
 
-fn variant(what: &str, spec: Spec) -> Variant {
-    let number = match spec.chip.multipliers {
+/// Its line in the table.
+fn described(variant: &Variant) -> String {
+    let spec = &variant.spec;
+    let multipliers = match spec.chip.multipliers {
         Multipliers::Count(n) => n.to_string(),
         Multipliers::All(_) => "all".into(),
     };
-    let (method, filter_type) = (spec.tracking.method, spec.tracking.filter_type);
-    let (parameters, bits) = (spec.calibration.parameters, spec.adc.bits);
-    Variant {
-        what: format!("{what} | {method} | {filter_type} | {parameters} | {number} | {bits}"),
-        spec,
-    }
-}
-
-/// The shipped designs; ADC widths; every number of multipliers; every search and parameter set; then every method and
-/// type with four and five parameters, on one multiplier and on as many as there are products.
-fn variants() -> Vec<Variant> {
-    let all = Multipliers::All(All::All);
-    let base = shipped::optical();
-    let with = |what: &str, change: &dyn Fn(&mut Spec)| {
-        let mut spec = base.clone();
-        change(&mut spec);
-        variant(what, spec)
-    };
-    let mut list = vec![];
-    for name in shipped::NAMES {
-        list.push(variant(name, shipped::spec(name)));
-    }
-    for bits in [8, 16, 18] {
-        list.push(with("optical", &|s| {
-            s.adc.bits = bits;
-            s.sensor.noise_rms = 0.0;
-            s.accuracy.rms_periods = 60e-6 * 2f64.powi(12 - bits as i32);
-        }));
-    }
-    for multipliers in [2, 3, 5].map(Multipliers::Count).into_iter().chain([all]) {
-        list.push(with("optical", &|s| s.chip.multipliers = multipliers));
-    }
-    for (what, method, parameters, completion) in [
-        ("completed", CalibrationMethod::Final, 8, true),
-        ("completed", CalibrationMethod::Final, 9, true),
-        ("radius alone", CalibrationMethod::Final, 9, false),
-        ("exact", CalibrationMethod::Exact, 4, false),
-        ("exact", CalibrationMethod::Exact, 5, false),
-        ("sum of squares", CalibrationMethod::SumOfSquares, 4, false),
-        ("sum of squares", CalibrationMethod::SumOfSquares, 5, false),
-        ("batch", CalibrationMethod::Batch, 4, false),
-        ("batch", CalibrationMethod::Batch, 5, false),
-        (
-            "sum of squares, completed",
-            CalibrationMethod::SumOfSquares,
-            9,
-            true,
-        ),
-        ("batch, completed", CalibrationMethod::Batch, 8, true),
-    ] {
-        list.push(with(what, &|s| {
-            s.calibration.method = method;
-            s.calibration.parameters = parameters;
-            s.calibration.completion = completion;
-        }));
-    }
-    for (what, method, parameters) in [
-        ("started", CalibrationMethod::Final, 4),
-        ("started", CalibrationMethod::Final, 5),
-        ("started", CalibrationMethod::Final, 9),
-        ("started, exact", CalibrationMethod::Exact, 5),
-    ] {
-        list.push(with(what, &|s| {
-            s.calibration.start = CalibrationStart::LeastSquares;
-            s.calibration.method = method;
-            s.calibration.parameters = parameters;
-        }));
-    }
-    for (what, filter_type, parameters, multipliers, delay) in [
-        ("skewed", 2, 5, Multipliers::Count(1), 1e-7),
-        ("skewed", 2, 9, all, -3e-7),
-        ("skewed", 1, 4, Multipliers::Count(1), 1e-6),
-        ("skewed, first order", 1, 5, all, 1e-9),
-    ] {
-        list.push(with(what, &|s| {
-            s.tracking.filter_type = filter_type;
-            if filter_type == 1 {
-                s.sensor.speed_max_periods_per_s = 1e3;
-            }
-            s.calibration.parameters = parameters;
-            s.chip.multipliers = multipliers;
-            s.correction.channel_skew_s = delay;
-        }));
-    }
-    list.push(with("completed", &|s| {
-        s.calibration.parameters = 9;
-        s.chip.multipliers = all;
-    }));
-    list.push(with("fixed", &|s| s.calibration.parameters = 0));
-    for (method, filter_type) in [(1, 1), (1, 2), (2, 1), (3, 1), (3, 2)] {
-        for parameters in [4, 5] {
-            for multipliers in [Multipliers::Count(1), all] {
-                if (method, filter_type, parameters) == (3, 2, 5) {
-                    continue;
-                }
-                list.push(with("optical", &|s| {
-                    s.tracking.method = method;
-                    s.tracking.filter_type = filter_type;
-                    if filter_type == 1 {
-                        // It lags at speed: asked to follow less.
-                        s.sensor.speed_max_periods_per_s = 1e3;
-                    }
-                    s.calibration.parameters = parameters;
-                    s.chip.multipliers = multipliers;
-                }));
-            }
-        }
-    }
-    list
+    format!(
+        "{} | {} | {} | {} | {multipliers} | {}",
+        variant.what,
+        spec.tracking.method,
+        spec.tracking.filter_type,
+        spec.calibration.parameters,
+        spec.adc.bits
+    )
 }
 
 fn samples(

@@ -16,8 +16,8 @@ use std::process::ExitCode;
 use nonius_hdl::ChipDir;
 use nonius_hdl::place::{Device, place};
 use nonius_hdl::progress::silent;
-use nonius_model::design::Design;
-use nonius_model::spec::{CalibrationMethod, CalibrationStart};
+use nonius_model::spec::Calibration;
+use shipped::variants::{fixed, searches};
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = env::args().skip(1).collect();
@@ -34,66 +34,19 @@ fn main() -> ExitCode {
     }
 }
 
-use CalibrationMethod::{Batch, Exact, Final, SumOfSquares};
-use CalibrationStart::{Gears, LeastSquares};
-
-/// Name, method, start, parameters, completion.
-const CHIPS: [(&str, CalibrationMethod, CalibrationStart, u32, bool); 17] = [
-    ("none", Final, Gears, 0, false),
-    ("residual, final form", Final, Gears, 4, false),
-    ("residual, final form", Final, Gears, 5, false),
-    ("residual, final form", Final, Gears, 8, false),
-    ("residual, final form", Final, Gears, 9, false),
-    ("residual, completed", Final, Gears, 8, true),
-    ("residual, completed", Final, Gears, 9, true),
-    ("residual, exact", Exact, Gears, 4, false),
-    ("residual, exact", Exact, Gears, 5, false),
-    ("sum of squares, λ", SumOfSquares, Gears, 4, false),
-    ("sum of squares, λ", SumOfSquares, Gears, 5, false),
-    ("sum of squares, batch", Batch, Gears, 4, false),
-    ("sum of squares, batch", Batch, Gears, 5, false),
-    (
-        "final form, started by least squares",
-        Final,
-        LeastSquares,
-        4,
-        false,
-    ),
-    (
-        "final form, started by least squares",
-        Final,
-        LeastSquares,
-        5,
-        false,
-    ),
-    (
-        "completed, started by least squares",
-        Final,
-        LeastSquares,
-        9,
-        true,
-    ),
-    (
-        "exact, started by least squares",
-        Exact,
-        LeastSquares,
-        5,
-        false,
-    ),
-];
-
 fn run(docs: &Path) -> Result<(), Box<dyn Error>> {
-    let base = shipped::optical();
     let mut page = String::from(HEAD);
     let mut csv = String::from("method,start,parameters,completion,clocks,lut4\n");
     let mut bare = 0;
-    for (name, method, start, parameters, completion) in CHIPS {
-        let mut spec = base.clone();
-        spec.calibration.method = method;
-        spec.calibration.start = start;
-        spec.calibration.parameters = parameters;
-        spec.calibration.completion = completion;
-        let design = Design::new(&spec)?;
+    for variant in [fixed()].into_iter().chain(searches()) {
+        let design = variant.design();
+        let Calibration {
+            method,
+            start,
+            parameters,
+            completion,
+            ..
+        } = variant.spec.calibration;
         let dir = tempfile::tempdir()?;
         let package = nonius_package::package(&design, 10)?;
         nonius_package::write(&package.files, dir.path())?;
@@ -104,7 +57,8 @@ fn run(docs: &Path) -> Result<(), Box<dyn Error>> {
         }
         writeln!(
             page,
-            "| {name} | {parameters} | {products} | {} | {} | {} | {} |",
+            "| {} | {parameters} | {products} | {} | {} | {} | {} |",
+            variant.what,
             products - bare,
             package.json.clocks_per_sample,
             placed.chip.lut4,
@@ -115,7 +69,7 @@ fn run(docs: &Path) -> Result<(), Box<dyn Error>> {
             csv,
             "{method:?},{start:?},{parameters},{completion},{clocks},{luts}"
         )?;
-        eprintln!("{name}, {parameters} parameters");
+        eprintln!("{}, {parameters} parameters", variant.what);
     }
     std::fs::create_dir_all(docs)?;
     write(docs, "on-line-costs.md", &page)?;

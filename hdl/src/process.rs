@@ -17,10 +17,11 @@ use crate::error::Error;
 /// A program that writes more than this is stopped: it hangs in a loop that prints.
 const OUTPUT_LIMIT: u64 = 64 << 20;
 
-/// A program with its arguments, working directory and time limit.
+/// A program with its arguments, environment, working directory and time limit.
 pub(crate) struct Job<'a> {
     program: &'a Path,
     arguments: Vec<OsString>,
+    environment: Vec<(&'static str, OsString)>,
     folder: &'a Path,
     limit: Duration,
 }
@@ -46,6 +47,7 @@ impl<'a> Job<'a> {
         Job {
             program,
             arguments: Vec::new(),
+            environment: Vec::new(),
             folder,
             limit,
         }
@@ -59,6 +61,11 @@ impl<'a> Job<'a> {
     pub(crate) fn args<S: AsRef<OsStr>>(mut self, arguments: impl IntoIterator<Item = S>) -> Self {
         self.arguments
             .extend(arguments.into_iter().map(|it| it.as_ref().to_owned()));
+        self
+    }
+
+    pub(crate) fn env(mut self, name: &'static str, value: impl AsRef<OsStr>) -> Self {
+        self.environment.push((name, value.as_ref().to_owned()));
         self
     }
 
@@ -91,6 +98,7 @@ impl<'a> Job<'a> {
     fn start(&self, stdout: &File, stderr: &File) -> io::Result<Child> {
         Command::new(self.program)
             .args(&self.arguments)
+            .envs(self.environment.iter().map(|(name, value)| (name, value)))
             .current_dir(self.folder)
             .stdin(Stdio::null())
             .stdout(stdout.try_clone()?)

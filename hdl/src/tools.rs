@@ -24,6 +24,8 @@ pub enum Tool {
     Cxx,
     /// The make that Verilator calls.
     Make,
+    /// Keeps what the C++ compiler has made before. Nothing needs it, but builds take a third of the time.
+    Ccache,
     /// Yosys.
     Yosys,
     /// Place and route for iCE40.
@@ -39,6 +41,7 @@ impl Tool {
             Tool::Verilator => "verilator",
             Tool::Cxx => "g++",
             Tool::Make => "make",
+            Tool::Ccache => "ccache",
             Tool::Yosys => "yosys",
             Tool::Nextpnr => "nextpnr-ice40",
         }
@@ -51,6 +54,7 @@ impl Tool {
             Tool::Vvp => "to simulate the Verilog in Icarus",
             Tool::Verilator => "to check and simulate the Verilog in Verilator",
             Tool::Cxx | Tool::Make => "to compile what Verilator writes",
+            Tool::Ccache => "to compile nothing twice",
             Tool::Yosys => "to check and synthesise the Verilog",
             Tool::Nextpnr => "to place and route the chip on an iCE40",
         }
@@ -63,6 +67,7 @@ impl Tool {
             Tool::Verilator => "verilator",
             Tool::Cxx => "g++",
             Tool::Make => "make",
+            Tool::Ccache => "ccache",
             Tool::Yosys => "yosys",
             Tool::Nextpnr => "nextpnr-ice40",
         }

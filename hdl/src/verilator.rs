@@ -77,8 +77,16 @@ pub fn simulate(
 }
 
 fn build(chip: &ChipDir, effort: Effort, verilator: &Found, to: &Path) -> Result<Output, Error> {
-    Job::new(&verilator.path, &chip.root, BUILD_LIMIT)
-        .args(["--binary", "--timing", "-O3", "-j", "2"])
+    let mut job = Job::new(&verilator.path, &chip.root, BUILD_LIMIT);
+    if effort == Effort::QuickBuild {
+        // In one piece the compiler reads the headers once.
+        job = job.args(["--output-split", "0"]);
+    }
+    // Verilator's own part is the same for every chip.
+    if let Ok(ccache) = Tool::Ccache.find() {
+        job = job.env("OBJCACHE", ccache.path);
+    }
+    job.args(["--binary", "--timing", "-O3", "-j", "2"])
         .args(["-Wall", "-Wno-fatal"])
         .args(["--top-module", TESTBENCH])
         .args(["-MAKEFLAGS", effort.make_flags()])

@@ -2,25 +2,78 @@
 
 mod chip;
 
-use std::fs;
 use std::path::Path;
 
-use chip::{optical, write};
+use chip::optical;
 use nonius_hdl::verify::{Options, verify};
+use nonius_model::design::Design;
+use nonius_model::spec::Spec;
+use rayon::prelude::*;
 
 /// As `nonius build` writes them.
 const ROWS: usize = nonius_package::ROWS;
 
-fn verdict(dir: &Path) -> (bool, String) {
+/// The files of a chip.
+fn files(spec: &Spec) -> Files {
+    let design = Design::new(spec).expect("a design that works");
+    let package = nonius_package::package(&design, ROWS).expect("a package");
+    assert!(verdict(&package.files).0, "the chip without a fault");
+    package.files
+}
+
+type Files = Vec<(String, Vec<u8>)>;
+
+fn text(files: &Files, path: &str) -> String {
+    let file = files.iter().find(|f| f.0 == path).expect("a file");
+    String::from_utf8(file.1.clone()).expect("text")
+}
+
+/// The same with `text` at `path`.
+fn altered(files: &Files, path: &str, text: &str) -> Files {
+    let mut files = files.clone();
+    let file = files.iter_mut().find(|f| f.0 == path).expect("a file");
+    assert_ne!(file.1, text.as_bytes(), "nothing is altered");
+    file.1 = text.into();
+    files
+}
+
+fn verdict(files: &Files) -> (bool, String) {
+    let dir = tempfile::tempdir().expect("scratch folder");
+    nonius_package::write(files, dir.path()).expect("a folder");
     let options = Options {
         verilator: false,
         stop_at_first: true,
         ..Options::default()
     };
-    let report =
-        verify(dir, &options, &nonius_hdl::progress::silent).unwrap_or_else(|e| panic!("{e}"));
+    let report = verify(dir.path(), &options, &nonius_hdl::progress::silent)
+        .unwrap_or_else(|e| panic!("{e}"));
     let failure = report.runs[0].failure.clone().unwrap_or_default();
     (report.passed, failure)
+}
+
+/// What is caught, on the page of figures.
+fn kept(place: &str, faults: usize) {
+    nonius_kept::figure(
+        Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/figures.md")),
+        &format!("faults planted in {place}, caught by the vectors"),
+        &format!("{faults} of {faults}"),
+        "hdl/tests/planted_faults.rs",
+    );
+}
+
+/// The vectors see each of these in the chip, and say where.
+fn all_caught(place: &str, files: &Files, rtl: &str, faults: &[Fault]) {
+    let sound = text(files, rtl);
+    let faulty: Vec<_> = faults
+        .iter()
+        .map(|(n, change)| (n, change(&sound)))
+        .collect();
+    faulty.par_iter().for_each(|(name, faulty)| {
+        let (passed, failure) = verdict(&altered(files, rtl, faulty));
+        assert!(!passed, "{name}: not caught");
+        assert!(failure.contains("signal"), "{name}: {failure}");
+    });
+    kept(place, faults.len());
 }
 
 /// The one line that holds all of `words`.
@@ -208,50 +261,37 @@ fn skew_faults() -> Vec<Fault> {
     ]
 }
 
+const RTL: &str = "rtl/optical.v";
+const TABLE: &str = "coefficients/sine_table.mem";
+
 #[test]
 fn vectors_catch_every_fault_in_the_correction_of_skew() {
-    let dir = tempfile::tempdir().expect("scratch folder");
     let mut spec = optical();
     spec.correction.channel_skew_s = 1e-7;
-    write(&spec, ROWS, dir.path());
-    assert!(verdict(dir.path()).0, "the chip without a fault");
-    let rtl = dir.path().join("rtl/optical.v");
-    let sound = fs::read_to_string(&rtl).expect("rtl");
-    for (name, change) in skew_faults() {
-        fs::write(&rtl, change(&sound)).expect("rtl");
-        let (passed, failure) = verdict(dir.path());
-        assert!(!passed, "{name}: not caught");
-        assert!(failure.contains("signal"), "{name}: {failure}");
-    }
+    all_caught("the correction of skew", &files(&spec), RTL, &skew_faults());
 }
 
 #[test]
 fn vectors_catch_every_planted_fault() {
-    let dir = tempfile::tempdir().expect("scratch folder");
-    write(&optical(), ROWS, dir.path());
-    assert!(verdict(dir.path()).0, "the chip without a fault");
-    let rtl = dir.path().join("rtl/optical.v");
-    let sound = fs::read_to_string(&rtl).expect("rtl");
-    for (name, change) in faults() {
-        let faulty = change(&sound);
-        assert_ne!(faulty, sound, "{name}");
-        fs::write(&rtl, faulty).expect("rtl");
-        let (passed, failure) = verdict(dir.path());
-        assert!(!passed, "{name}: not caught");
-        assert!(failure.contains("signal"), "{name}: {failure}");
-    }
-    fs::write(&rtl, &sound).expect("rtl");
+    all_caught("the Verilog", &files(&optical()), RTL, &faults());
+}
 
-    // One entry of the table: first, last and some between, the last bit of value or slope.
-    let table = dir.path().join("coefficients/sine_table.mem");
-    let entries = fs::read_to_string(&table).expect("table");
+/// One entry of the table: first, last and some between, the last bit of value or slope.
+#[test]
+fn vectors_catch_every_fault_in_the_table() {
+    let files = files(&optical());
+    let entries = text(&files, TABLE);
     let rows: Vec<&str> = entries.lines().collect();
-    for (row, bit) in [(0, 14), (rows.len() - 1, 0), (13, 14), (37, 0)] {
+    let last = rows.len() - 1;
+    let faults = [(0, 14), (last, 0), (13, 14), (37, 0)];
+    faults.par_iter().for_each(|&(row, bit)| {
         let word = u64::from_str_radix(rows[row], 16).expect("hex") ^ (1 << bit);
         let digits = rows[row].len();
         let mut faulty: Vec<String> = rows.iter().map(ToString::to_string).collect();
         faulty[row] = format!("{word:0digits$x}");
-        fs::write(&table, faulty.join("\n") + "\n").expect("table");
-        assert!(!verdict(dir.path()).0, "row {row}, bit {bit}: not caught");
-    }
+        let faulty = faulty.join("\n") + "\n";
+        let (passed, _) = verdict(&altered(&files, TABLE, &faulty));
+        assert!(!passed, "row {row}, bit {bit}: not caught");
+    });
+    kept("the sine table", faults.len());
 }

@@ -1,45 +1,26 @@
 //! Every measured recording, played into the Verilog of a design that was made for it. The homodyne ones are long and
 //! go through Verilator alone.
 
-use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
+use std::time::Duration;
 
 use nonius_hdl::progress::silent;
 use nonius_hdl::verify::{Options, verify};
 use nonius_model::design::Design;
 use nonius_model::spec::Spec;
 use nonius_recording::{Overrides, Recording};
+use rayon::prelude::*;
 
-/// The folder of the recordings; says past the capture of test output where it is absent.
-fn shared() -> Option<PathBuf> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data");
-    if folder.is_dir() {
-        return Some(folder);
-    }
-    let _ = writeln!(
-        std::io::stderr(),
-        "\nNOT RUN: recordings in Verilog: ../shared/data is not there"
-    );
-    None
-}
-
-const ICARUS: Options = Options {
-    icarus: true,
-    verilator: false,
-    stop_at_first: false,
-    time_limit: None,
-};
-const VERILATOR: Options = Options {
-    icarus: false,
-    verilator: true,
-    stop_at_first: false,
-    time_limit: None,
-};
+/// However long a busy machine takes.
 const BOTH: Options = Options {
     icarus: true,
     verilator: true,
     stop_at_first: false,
-    time_limit: None,
+    time_limit: Some(Duration::from_secs(3600)),
+};
+const VERILATOR: Options = Options {
+    icarus: false,
+    ..BOTH
 };
 
 /// What `nonius new --from` and `nonius build --play --repeat` do, and `nonius verify` after them.
@@ -65,27 +46,33 @@ fn agrees(file: &Path, repeat: u32, options: &Options) {
 
 #[test]
 fn recordings_agree_in_every_bit() {
-    let Some(folder) = shared() else { return };
+    let Some(folder) = nonius_kept::recordings("recordings in Verilog") else {
+        return;
+    };
     let recordings = [
         ("rm44_center", 4, BOTH),
-        ("rm44_static_x500um", 4, ICARUS),
-        ("rm44_gap_z500um", 4, ICARUS),
-        ("rm44_jumps", 1, ICARUS),
-        ("interf3x3_fs", 1, ICARUS),
-        ("interf3x3_mmi", 1, ICARUS),
-        ("wheel_magnetometer", 1, ICARUS),
+        ("rm44_static_x500um", 4, BOTH),
+        ("rm44_gap_z500um", 4, BOTH),
+        ("rm44_jumps", 1, BOTH),
+        ("interf3x3_fs", 1, BOTH),
+        ("interf3x3_mmi", 1, BOTH),
+        ("wheel_magnetometer", 1, BOTH),
         ("homodyne_settle", 1, VERILATOR),
         ("homodyne_stop", 1, VERILATOR),
     ];
-    for (name, repeat, simulators) in recordings {
-        agrees(&folder.join(format!("{name}.csv")), repeat, &simulators);
-    }
+    recordings
+        .par_iter()
+        .for_each(|(name, repeat, simulators)| {
+            agrees(&folder.join(format!("{name}.csv")), *repeat, simulators);
+        });
 }
 
 /// One period of the first encoder of the table, far from an ellipse, round and round.
 #[test]
 fn an_averaged_period_agrees_in_every_bit() {
-    let Some(folder) = shared() else { return };
+    let Some(folder) = nonius_kept::recordings("recordings in Verilog") else {
+        return;
+    };
     let table =
         std::fs::read_to_string(folder.join("optical_servo_tables.csv")).expect("the table");
     let mut lines = table.lines();

@@ -15,6 +15,8 @@ mod support;
 #[path = "../examples/study_convergence/table.rs"]
 mod table;
 
+use support::shipped;
+
 use nonius_model::design::Design;
 use scenario::Scenario;
 

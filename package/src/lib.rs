@@ -1,15 +1,23 @@
 //! Everything that `nonius build` writes, and writing it whole or not at all.
 
+mod channel_skew;
+mod coefficient;
 mod curves;
 mod design_json;
 mod diagram;
-mod measure;
+mod engineering;
 mod report;
-mod why;
+mod signals;
+mod simulation;
+mod sine;
+mod tracking;
 mod write;
 
 pub use design_json::DesignJson;
-pub use measure::{Accuracy, SineError, accuracy, sine_error};
+pub use engineering::engineering;
+pub use signals::{Signal, signals};
+pub use simulation::{Accuracy, Simulation, simulate};
+pub use sine::{SineError, sine_error};
 pub use write::{WriteError, write};
 
 use nonius_model::chip::Chip;
@@ -66,7 +74,8 @@ pub fn package_with(
         .collect();
     let hash = nonius_codegen::hash(design);
     let chip = nonius_codegen::generate(design, &hash, &names)?;
-    let json = DesignJson::of(design, &hash, chip.clocks);
+    let simulation = simulate(design);
+    let json = DesignJson::of(design, &hash, chip.clocks, simulation.accuracy);
     let mut files: Vec<(String, Vec<u8>)> = chip
         .files
         .into_iter()
@@ -86,13 +95,13 @@ pub fn package_with(
             waves.sample(s, &probes, &model)?;
         }
         waves.finish()?;
-        let save = gtkw(&format!("{name}.vcd"), design, &chip.columns, chip.clocks);
+        let save = gtkw(name, design, &chip.columns, chip.clocks);
         files.push((format!("waves/{name}.vcd"), bytes));
         files.push((format!("waves/{name}.gtkw"), save.into_bytes()));
     }
     let text = serde_json::to_string_pretty(&json)? + "\n";
     files.push(("design.json".into(), text.into_bytes()));
-    let page = report::page(design, &json, &files)?;
+    let page = report::page(design, &json, &simulation, &files)?;
     files.push(("report.html".into(), page.into_bytes()));
     Ok(Package { files, json })
 }

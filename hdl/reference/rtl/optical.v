@@ -5,11 +5,13 @@
 // radial residual rho shows what the correction still misses and moves its parameters theta.
 // After S. Balemi, "Automatic calibration of sinusoidal encoder signals", IFAC 2005; equation numbers are the paper's.
 //
-// Design 5968616ecbb4: 16 products on 1 multiplier, 19 clocks per sample.
+// Design ed57740fe4da: 16 products on 1 multiplier, 19 clocks per sample.
 //
 // Formats: sW.F is a two's complement number of W bits, F of them behind the point; uW.F has no sign and is kept here
 // with a zero in front, so that every number is signed. Angles are in turns of a scale period. A signal that saturates
 // reads: the bits above the result all equal its sign ? the result : the end of its range on the side of the sign.
+// x < m looks only at the bits of x that m has, and x < -m reads ~(~x < m): some synthesis tools get short comparisons
+// with negative numbers wrong.
 //
 // A value x is computed in one step on the wire x, or on x_now where the register x keeps it for later steps and for
 // the testbench. All registers of the chip change together at the end of the last step: a sample is one transaction,

@@ -13,6 +13,8 @@ mod on_chip;
 mod page;
 mod plot;
 mod scenario;
+#[path = "../../../designs/shipped.rs"]
+mod shipped;
 mod singular;
 mod table;
 

@@ -7,11 +7,10 @@ use nonius_model::chip::Chip;
 use nonius_model::design::Design;
 use nonius_model::physical::{self, Converter};
 use nonius_model::reference::{Parameters, Theta};
-use nonius_model::spec::CalibrationMethod::{self, Batch, Exact, Final, SumOfSquares};
-use nonius_model::spec::CalibrationStart::{self, Gears, LeastSquares};
 use nonius_model::spec::Spec;
 
 use super::method::{Correction, Said};
+use super::shipped::variants::searches_of;
 
 /// The bit-true chip of a design.
 pub(crate) struct OnChip {
@@ -20,39 +19,18 @@ pub(crate) struct OnChip {
     converter: Converter,
 }
 
-/// Name, method, start, completion, parameters.
-const CHIPS: [(&str, CalibrationMethod, CalibrationStart, bool, &[u32]); 8] = [
-    ("final form", Final, Gears, false, &[4, 5]),
-    ("sum of squares", SumOfSquares, Gears, false, &[4, 5]),
-    ("batch", Batch, Gears, false, &[4, 5]),
-    ("exact", Exact, Gears, false, &[4, 5]),
-    ("started", Final, LeastSquares, false, &[4, 5]),
-    ("radius alone", Final, Gears, false, &[8, 9]),
-    ("completed", Final, Gears, true, &[8, 9]),
-    ("completed, started", Final, LeastSquares, true, &[9]),
-];
-
-/// Every calibration that the design can be built with.
+/// Every calibration that a chip of this design can be built with.
 pub(crate) fn all(base: &Spec) -> impl Iterator<Item = (String, OnChip)> {
-    CHIPS
-        .iter()
-        .flat_map(move |(name, method, start, completion, sets)| {
-            sets.iter().filter_map(move |&parameters| {
-                let mut spec = base.clone();
-                spec.calibration.method = *method;
-                spec.calibration.start = *start;
-                spec.calibration.completion = *completion;
-                spec.calibration.parameters = parameters;
-                let set = match parameters {
-                    4 => "four",
-                    5 => "five",
-                    8 => "eight",
-                    _ => "nine",
-                };
-                let design = Design::new(&spec).ok()?;
-                Some((format!("chip, {name}, {set}"), OnChip::of(design)))
-            })
-        })
+    searches_of(base).into_iter().map(|variant| {
+        let set = match variant.spec.calibration.parameters {
+            4 => "four",
+            5 => "five",
+            8 => "eight",
+            _ => "nine",
+        };
+        let chip = OnChip::of(variant.design());
+        (format!("chip, {}, {set}", variant.what), chip)
+    })
 }
 
 impl OnChip {

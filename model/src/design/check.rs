@@ -2,64 +2,9 @@
 
 use super::DesignError;
 use super::keywords::{KEYWORDS, SYSTEM_KEYWORDS};
+use super::refuse::{between, refuse};
 use crate::graph::Graph;
 use crate::spec::{CalibrationMethod, CalibrationStart, Multipliers, Spec};
-
-pub(super) fn refuse<T>(
-    field: &'static str,
-    value: impl ToString,
-    limit: impl ToString,
-    reason: impl ToString,
-) -> Result<T, DesignError> {
-    let (value, limit, reason) = (value.to_string(), limit.to_string(), reason.to_string());
-    Err(DesignError::Field {
-        field,
-        value,
-        limit,
-        reason,
-    })
-}
-
-pub(super) fn between(
-    field: &'static str,
-    value: f64,
-    low: f64,
-    high: f64,
-    reason: &str,
-) -> Result<(), DesignError> {
-    if value.is_finite() && value >= low && value <= high {
-        return Ok(());
-    }
-    refuse(field, number(value), limits(low, high), reason)
-}
-
-/// Both ends in short, rounded to what is allowed.
-pub(super) fn limits(low: f64, high: f64) -> String {
-    let inwards = |end: f64, up: bool| {
-        let short = number(end).parse().unwrap_or(end);
-        if short == end || (short > end) == up {
-            return number(end);
-        }
-        let last = 10f64.powf(end.abs().log10().floor() - 4.0);
-        number(if up { short + last } else { short - last })
-    };
-    format!("{} … {}", inwards(low, true), inwards(high, false))
-}
-
-/// Short, whatever its size.
-pub(super) fn number(value: f64) -> String {
-    let plain = value.to_string();
-    if plain.len() <= 9 {
-        return plain;
-    }
-    let rounded = format!("{value:.4e}").parse().unwrap_or(value);
-    let plain = rounded.to_string();
-    if plain.len() <= 9 {
-        plain
-    } else {
-        format!("{rounded:e}")
-    }
-}
 
 /// Checks every field for sense.
 pub(super) fn check(spec: &Spec) -> Result<(), DesignError> {
@@ -140,12 +85,11 @@ pub(super) fn check(spec: &Spec) -> Result<(), DesignError> {
         0.6,
         "a larger offset moves the origin out of the ellipse",
     )?;
-    let reach = 1.0 + spec.sensor.amplitude_tolerance + spec.sensor.offset_max;
     between(
         "sensor.amplitude",
         spec.sensor.amplitude,
         0.0,
-        1.25 * spec.adc.full_scale / reach,
+        1.25 * spec.adc.full_scale / spec.sensor.reach(),
         "with its tolerance and its offset the signal goes too far beyond the ADC's range",
     )?;
     between(

@@ -255,11 +255,7 @@ pub(super) fn constants(
         loop_leak: Constant::normalised(1.0 - tracking.pole, width, 40),
         theta_1_nominal: nominal,
         theta_3_nominal: nominal,
-        skew_delay: Constant::normalised(
-            TAU * spec.correction.channel_skew_s * spec.adc.sample_rate_hz,
-            width,
-            40,
-        ),
+        skew_delay: Constant::normalised(skew::delay(spec), width, 40),
         skew_amplitude: Constant::normalised(normalisation(spec).0, width, 40),
         quarter_turn: corrected(0.25, 2.0 * half_bit, p),
         half_bit: Constant {

@@ -5,6 +5,7 @@ mod check;
 mod formats;
 mod keywords;
 mod poles;
+mod refuse;
 mod skew;
 
 pub use budget::{Budget, Term, Words};

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use super::DesignError;
-use super::check::{between, refuse};
+use super::refuse::{between, limits, refuse};
 use crate::spec::Spec;
 
 /// The tracking loop in real numbers.
@@ -90,7 +90,7 @@ impl Loop {
             return refuse(
                 "loop.bandwidth_hz",
                 t.bandwidth_hz,
-                format!("{} Hz", super::check::limits(5e-4 * rate, rate)),
+                format!("{} Hz", limits(5e-4 * rate, rate)),
                 "poles too fast for the sample rate, or so slow that the loop never locks",
             );
         }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use super::check::{between, number, refuse};
+use super::refuse::{between, number, refuse};
 use super::{Budget, DesignError, Loop};
 use crate::kernel::skew::{Order, correct};
 use crate::kernel::{Coefficients, Constant, Structure};
@@ -18,6 +18,8 @@ pub const PHASE_MAX: f64 = 0.25;
 pub struct Skew {
     /// How far the series goes: as far as what it leaves at the largest speed would be more than arithmetic may add.
     pub order: Order,
+    /// The phase of the delay as asked for, radians per turn of speed and sample.
+    pub delay: f64,
     /// The delay that the chip has, seconds.
     pub delay_quantised_s: f64,
     /// κ at the largest speed, radians.
@@ -31,9 +33,14 @@ pub struct Skew {
     pub uncorrected_rms_periods: f64,
 }
 
+/// The phase κ of the delay, radians per turn of speed and sample.
+pub(super) fn delay(spec: &Spec) -> f64 {
+    TAU * spec.correction.channel_skew_s * spec.adc.sample_rate_hz
+}
+
 /// κ at the largest speed, radians.
 pub(super) fn phase_max(spec: &Spec) -> f64 {
-    TAU * spec.sensor.speed_max_periods_per_s * spec.correction.channel_skew_s.abs()
+    (delay(spec) * spec.sensor.speed_max_periods_per_s / spec.adc.sample_rate_hz).abs()
 }
 
 /// Refuses a delay that the chip cannot correct.
@@ -160,6 +167,7 @@ pub(super) fn settle(
     let without = left(None, spec, structure, &k);
     Some(Skew {
         order,
+        delay: delay(spec),
         delay_quantised_s: constants.skew_delay.value() / TAU / spec.adc.sample_rate_hz,
         phase_max: phase_max(spec),
         sine_error_max: found.0,

@@ -2,7 +2,7 @@
 
 mod read;
 
-pub use read::{SpecError, line_of_field};
+pub use read::{SpecError, keys, line_of_field};
 
 use serde::{Deserialize, Serialize};
 
@@ -67,6 +67,14 @@ pub struct Sensor {
 
 fn bend_max() -> f64 {
     0.05
+}
+
+impl Sensor {
+    /// Largest value that either signal may take with what is promised here, in amplitudes.
+    #[must_use]
+    pub fn reach(&self) -> f64 {
+        1.0 + self.amplitude_tolerance + self.offset_max
+    }
 }
 
 /// `[adc]`

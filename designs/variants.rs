@@ -1,0 +1,261 @@
+//! The optical design with everything that a chip may be built with: one list for tests, campaigns and comparisons.
+
+use nonius_model::design::Design;
+use nonius_model::spec::{All, CalibrationMethod, CalibrationStart, Coding, Multipliers, Spec};
+
+use super::{NAMES, optical, spec};
+use CalibrationMethod::{Batch, Exact, Final, SumOfSquares};
+use CalibrationStart::{Gears, LeastSquares};
+
+/// A design and what is special about it.
+#[derive(Clone)]
+pub(crate) struct Variant {
+    pub(crate) what: String,
+    pub(crate) spec: Spec,
+}
+
+impl Variant {
+    fn of(what: impl Into<String>, change: impl Fn(&mut Spec)) -> Self {
+        let (what, mut spec) = (what.into(), optical());
+        change(&mut spec);
+        Self { what, spec }
+    }
+
+    /// Quantised.
+    pub(crate) fn design(&self) -> Design {
+        Design::new(&self.spec).unwrap_or_else(|refused| panic!("{}: {refused}", self.what))
+    }
+}
+
+pub(crate) const ALL: Multipliers = Multipliers::All(All::All);
+
+/// Type 1 lags at speed: asked to follow less.
+pub(crate) fn type_1(spec: &mut Spec) {
+    spec.tracking.filter_type = 1;
+    spec.sensor.speed_max_periods_per_s = 1e3;
+}
+
+/// The designs that are shipped, the magnetic one with its offset binary codes.
+pub(crate) fn shipped() -> Vec<Variant> {
+    let variant = |name: &str| Variant {
+        what: name.into(),
+        spec: spec(name),
+    };
+    NAMES.map(variant).into()
+}
+
+/// Search, start, completion and parameter sets.
+const SEARCHES: [(&str, CalibrationMethod, CalibrationStart, bool, &[u32]); 11] = [
+    ("final form", Final, Gears, false, &[4, 5]),
+    ("radius alone", Final, Gears, false, &[8, 9]),
+    ("completed", Final, Gears, true, &[8, 9]),
+    ("exact", Exact, Gears, false, &[4, 5]),
+    ("sum of squares", SumOfSquares, Gears, false, &[4, 5]),
+    (
+        "sum of squares, completed",
+        SumOfSquares,
+        Gears,
+        true,
+        &[8, 9],
+    ),
+    ("batch", Batch, Gears, false, &[4, 5]),
+    ("batch, completed", Batch, Gears, true, &[8, 9]),
+    ("started", Final, LeastSquares, false, &[4, 5]),
+    ("completed, started", Final, LeastSquares, true, &[8, 9]),
+    ("exact, started", Exact, LeastSquares, false, &[4, 5]),
+];
+
+/// Every search with every parameter set that it is built for.
+pub(crate) fn searches() -> Vec<Variant> {
+    searches_of(&optical())
+}
+
+/// The same of another design.
+pub(crate) fn searches_of(base: &Spec) -> Vec<Variant> {
+    let mut list = vec![];
+    for (what, method, start, completion, sets) in SEARCHES {
+        for &parameters in sets {
+            let mut spec = base.clone();
+            spec.calibration.method = method;
+            spec.calibration.start = start;
+            spec.calibration.completion = completion;
+            spec.calibration.parameters = parameters;
+            let what = what.to_owned();
+            list.push(Variant { what, spec });
+        }
+    }
+    list
+}
+
+/// Without calibration.
+pub(crate) fn fixed() -> Variant {
+    Variant::of("fixed", |spec| spec.calibration.parameters = 0)
+}
+
+/// One of each kind: the shipped designs, no calibration, and every search with its largest parameter set.
+pub(crate) fn kinds() -> Vec<Variant> {
+    let mut kinds = shipped();
+    kinds.push(fixed());
+    let largest = |v: &Variant| matches!(v.spec.calibration.parameters, 5 | 9);
+    kinds.extend(searches().into_iter().filter(largest));
+    kinds
+}
+
+/// The searches that only a design without completion has, which is rarely wanted.
+pub(crate) fn radius_alone() -> Vec<Variant> {
+    let searches = searches().into_iter();
+    let completed = searches.filter(|v| v.spec.calibration.completion && v.what != "completed");
+    completed
+        .map(|Variant { what, mut spec }| {
+            spec.calibration.completion = false;
+            let what = what.replace("completed", "radius alone");
+            Variant { what, spec }
+        })
+        .collect()
+}
+
+/// Every method and type of the loop, with four and five parameters, on one multiplier and on as many as there are
+/// products.
+pub(crate) fn loops() -> Vec<Variant> {
+    let mut list = vec![];
+    for (method, filter_type) in [(1, 1), (1, 2), (2, 1), (3, 1), (3, 2)] {
+        for (parameters, multipliers) in [
+            (4, Multipliers::Count(1)),
+            (4, ALL),
+            (5, Multipliers::Count(1)),
+            (5, ALL),
+        ] {
+            list.push(Variant::of("optical", |spec| {
+                spec.tracking.method = method;
+                if filter_type == 1 {
+                    type_1(spec);
+                }
+                spec.calibration.parameters = parameters;
+                spec.chip.multipliers = multipliers;
+            }));
+        }
+    }
+    list
+}
+
+/// The second pole of type 1 as a field, and loops that follow four samples a period, where the increments have a bit
+/// more.
+pub(crate) fn poles() -> Vec<Variant> {
+    let fast = |spec: &mut Spec| spec.sensor.speed_max_periods_per_s = 250e3;
+    vec![
+        Variant::of("second pole 0.9", |spec| {
+            type_1(spec);
+            spec.tracking.pole = Some(0.9);
+        }),
+        Variant::of("four samples a period", |spec| {
+            fast(spec);
+            spec.tracking.method = 1;
+        }),
+        Variant::of("four samples a period, second pole 0.9995", |spec| {
+            type_1(spec);
+            fast(spec);
+            spec.tracking.pole = Some(0.9995);
+        }),
+        Variant::of("exact, second pole 0.9", |spec| {
+            type_1(spec);
+            spec.tracking.pole = Some(0.9);
+            spec.calibration.method = Exact;
+            spec.chip.multipliers = Multipliers::Count(2);
+        }),
+    ]
+}
+
+/// Loops with six gears and more above the designed one.
+pub(crate) fn narrow() -> Vec<Variant> {
+    let of = |(method, bandwidth): (u32, f64)| {
+        Variant::of(format!("{bandwidth} Hz"), |spec| {
+            spec.tracking.method = method;
+            spec.tracking.bandwidth_hz = bandwidth;
+        })
+    };
+    [(3, 1e3), (1, 300.0)].map(of).into()
+}
+
+/// Other ADCs.
+pub(crate) fn adcs() -> Vec<Variant> {
+    let of = |bits: u32| {
+        Variant::of("optical", |spec| {
+            spec.adc.bits = bits;
+            spec.sensor.noise_rms = 0.0;
+            spec.accuracy.rms_periods = 60e-6 * 2f64.powi(12 - bits as i32);
+        })
+    };
+    let mut list: Vec<_> = [8, 16, 18].map(of).into();
+    list.push(Variant::of("offset binary", |spec| {
+        spec.adc.coding = Coding::OffsetBinary;
+    }));
+    list
+}
+
+/// Every number of multipliers.
+pub(crate) fn multipliers() -> Vec<Variant> {
+    let of = |multipliers| Variant::of("optical", |spec| spec.chip.multipliers = multipliers);
+    let few = [2, 3, 5].map(Multipliers::Count);
+    let mut list: Vec<_> = few.into_iter().chain([ALL]).map(of).collect();
+    for (parameters, method, multipliers) in [
+        (9, Final, ALL),
+        (9, Final, Multipliers::Count(3)),
+        (8, SumOfSquares, Multipliers::Count(2)),
+        (9, Batch, ALL),
+    ] {
+        list.push(Variant::of("completed", |spec| {
+            spec.calibration.parameters = parameters;
+            spec.calibration.method = method;
+            spec.chip.multipliers = multipliers;
+        }));
+    }
+    list
+}
+
+/// Chips for a sine that is sampled later or earlier: each method and type, each parameter set, the series to its first
+/// order (so little skew that it is enough) and to its second.
+pub(crate) fn skewed() -> Vec<Variant> {
+    let one = Multipliers::Count(1);
+    let of = |(method, filter_type, parameters, multipliers, delay): (u32, u32, u32, _, f64)| {
+        Variant::of(format!("skew {delay:e} s"), |spec| {
+            spec.tracking.method = method;
+            if filter_type == 1 {
+                type_1(spec);
+            }
+            spec.calibration.parameters = parameters;
+            spec.chip.multipliers = multipliers;
+            spec.correction.channel_skew_s = delay;
+        })
+    };
+    [
+        (3, 2, 5, one, 1e-7),
+        (3, 2, 5, ALL, -1e-7),
+        (1, 2, 4, ALL, 2e-7),
+        (1, 1, 5, one, 1e-9),
+        (2, 1, 4, one, -4e-7),
+        (3, 1, 9, ALL, 1e-6),
+        (3, 2, 9, one, 3e-7),
+        (3, 2, 0, one, 3e-7),
+    ]
+    .map(of)
+    .into()
+}
+
+/// All of these.
+pub(crate) fn everything() -> Vec<Variant> {
+    let mut list = shipped();
+    list.push(fixed());
+    for part in [
+        searches(),
+        radius_alone(),
+        loops(),
+        poles(),
+        narrow(),
+        adcs(),
+        multipliers(),
+        skewed(),
+    ] {
+        list.extend(part);
+    }
+    list
+}

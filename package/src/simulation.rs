@@ -1,0 +1,207 @@
+//! The bit-true chip with the sensor that the design promises, from power-up.
+
+use std::f64::consts::TAU;
+
+use nonius_model::chip::Chip;
+use nonius_model::design::Design;
+use nonius_model::physical::Converter;
+use serde::Serialize;
+
+/// Angle errors of the bit-true chip in periods.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Accuracy {
+    /// Rms.
+    pub rms_periods: f64,
+    /// Largest.
+    pub largest_periods: f64,
+    /// The loop was locked at the end.
+    pub locked: bool,
+}
+
+/// What the chip makes of that sensor.
+#[derive(Clone, Debug)]
+pub struct Simulation {
+    /// In the end, over a slow sweep through one period.
+    pub accuracy: Accuracy,
+    /// From power-up: periods of travel and the angle error over the last of them, periods rms; a period in fifty, later on.
+    pub course: Vec<[f64; 2]>,
+    /// The same of the arctangent of the raw signals, periods rms.
+    pub raw_rms_periods: f64,
+    /// In the end: place within the period and the angle error there, the mean over a 200th of the period.
+    pub along: Vec<[f64; 2]>,
+}
+
+/// Most samples that the calibration is given.
+const CONVERGE: usize = 400_000;
+/// Samples of a ramp down and of the sweep over a period.
+const RAMP: usize = 5_000;
+const SWEEP: usize = 100_000;
+/// Of so many parts of the period the mean error is told.
+const PARTS: usize = 200;
+
+/// A sensor with half of the promised errors and the promised noise: a fast stretch to converge on line, a ramp, and a slow
+/// sweep over one period.
+#[must_use]
+pub fn simulate(design: &Design) -> Simulation {
+    let spec = &design.spec;
+    let top = spec.sensor.speed_max_periods_per_s / spec.adc.sample_rate_hz;
+    let fast = (top / 2.0).min(0.00713);
+    // At the last gamma the slowest mode settles by an e-th in about 2/(64 gamma) periods.
+    let last = 2f64.powi(spec.calibration.gamma_last as i32);
+    let periods = 60.0 + 10.0 * last / 64.0 * 2.0;
+    // Where the machine is so slow that this would take for ever, it is simulated faster than it is.
+    let fast = fast.max(periods / CONVERGE as f64);
+    let converge = ((periods / fast) as usize).clamp(5_000, CONVERGE);
+    // An axis slows down, the loop comes to rest behind the ramp, and a whole period is measured.
+    let turns = spec.tracking.bandwidth_hz * TAU / spec.adc.sample_rate_hz;
+    let settle = RAMP + ((20.0 / turns) as usize).min(100_000);
+    let slow = 1.0 / SWEEP as f64;
+
+    let mut sensor = Sensor::of(design);
+    let mut chip = Chip::bit_true(design);
+    let (mut course, mut period, mut raw) = (vec![], Squares::default(), Squares::default());
+    let (mut whole, mut parts) = (Squares::default(), vec![Squares::default(); PARTS]);
+    let start = 0.1;
+    let mut at = start;
+    for k in 0..converge + settle + SWEEP {
+        let slowed = (k.saturating_sub(converge) as f64 / RAMP as f64).min(1.0);
+        let speed = fast + (slow - fast) * slowed;
+        at += speed;
+        let sample = sensor.sample(at, speed);
+        let error = wrapped(chip.position() - at);
+        if k < converge {
+            period.add(error);
+            raw.add(wrapped(sample.arctangent - at));
+            let travelled = at - start;
+            if travelled.floor() > (travelled - speed).max(0.0).floor() {
+                if due(&course, travelled) {
+                    course.push([travelled, period.rms()]);
+                }
+                period = Squares::default();
+            }
+        } else if k >= converge + settle {
+            whole.add(error);
+            let part = (at.rem_euclid(1.0) * PARTS as f64) as usize;
+            parts[part.min(PARTS - 1)].add(error);
+        }
+        chip.step_codes(sample.cos, sample.sin, false, true);
+    }
+    let place = |i: usize| (i as f64 + 0.5) / PARTS as f64;
+    let seen = parts
+        .iter()
+        .enumerate()
+        .filter(|(_, part)| part.count > 0.0);
+    Simulation {
+        accuracy: Accuracy {
+            rms_periods: whole.rms(),
+            largest_periods: whole.largest,
+            locked: chip.state.locked,
+        },
+        course,
+        raw_rms_periods: raw.rms(),
+        along: seen
+            .map(|(i, part)| [place(i), part.sum / part.count])
+            .collect(),
+    }
+}
+
+/// Every period at first, later one in fifty.
+fn due(course: &[[f64; 2]], travelled: f64) -> bool {
+    course.last().is_none_or(|last| travelled > 1.02 * last[0])
+}
+
+/// Between −½ and ½.
+fn wrapped(turns: f64) -> f64 {
+    turns - turns.round()
+}
+
+#[derive(Clone, Default)]
+struct Squares {
+    count: f64,
+    sum: f64,
+    squares: f64,
+    largest: f64,
+}
+
+impl Squares {
+    fn add(&mut self, error: f64) {
+        self.count += 1.0;
+        self.sum += error;
+        self.squares += error * error;
+        self.largest = self.largest.max(error.abs());
+    }
+
+    fn rms(&self) -> f64 {
+        (self.squares / self.count).sqrt()
+    }
+}
+
+/// Half of what the design promises of offsets, amplitudes and phase, and the noise.
+struct Sensor {
+    converter: Converter,
+    amplitudes: [f64; 2],
+    offset: f64,
+    beta: f64,
+    /// The sine is sampled so many samples later.
+    late: f64,
+    middle: f64,
+    noise: f64,
+    random: Noise,
+}
+
+struct Sample {
+    cos: i64,
+    sin: i64,
+    /// Arctangent of the signals, turns.
+    arctangent: f64,
+}
+
+impl Sensor {
+    fn of(design: &Design) -> Self {
+        let spec = &design.spec;
+        let s = &spec.sensor;
+        let (m, o) = (s.amplitude_tolerance / 2.0, s.offset_max / 2.0);
+        // The larger signal just fits the ADC.
+        let room = spec.adc.full_scale / (s.amplitude * (1.0 + m + o));
+        let a = s.amplitude * room.min(1.0) * 0.999;
+        Self {
+            converter: Converter::of(spec),
+            amplitudes: [a * (1.0 + m), a * (1.0 - m)],
+            offset: o * a,
+            beta: s.phase_error_max_deg.to_radians() / 2.0,
+            late: spec.correction.channel_skew_s * spec.adc.sample_rate_hz,
+            middle: spec.adc.middle,
+            noise: a * s.noise_rms,
+            random: Noise(1),
+        }
+    }
+
+    fn sample(&mut self, at: f64, speed: f64) -> Sample {
+        let (alpha, alpha_of_sin) = (at * TAU, (at + self.late * speed) * TAU);
+        let cos = self.amplitudes[0] * alpha.cos() + self.offset + self.noise * self.random.next();
+        let sin = self.amplitudes[1] * (alpha_of_sin - self.beta).sin() - self.offset
+            + self.noise * self.random.next();
+        Sample {
+            cos: self.converter.code(self.middle + cos),
+            sin: self.converter.code(self.middle + sin),
+            arctangent: sin.atan2(cos) / TAU,
+        }
+    }
+}
+
+/// Nearly Gaussian noise from a fixed seed: twelve uniform numbers less six.
+struct Noise(u64);
+
+impl Noise {
+    fn next(&mut self) -> f64 {
+        let mut sum = -6.0;
+        for _ in 0..12 {
+            // xorshift64
+            self.0 ^= self.0 << 13;
+            self.0 ^= self.0 >> 7;
+            self.0 ^= self.0 << 17;
+            sum += (self.0 >> 11) as f64 / (1u64 << 53) as f64;
+        }
+        sum
+    }
+}
