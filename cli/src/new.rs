@@ -121,7 +121,7 @@ fn settle(draft: &mut Draft) -> Result<Design> {
 
 fn names_the_name(error: &anyhow::Error) -> bool {
     let field = error.downcast_ref::<DesignError>();
-    matches!(field, Some(DesignError::Field { field: "name", .. }))
+    matches!(field, Some(DesignError::Field { field, .. }) if field == "name")
 }
 
 fn designed(draft: &Draft) -> Result<Design> {

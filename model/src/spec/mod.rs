@@ -1,7 +1,9 @@
 //! `design.toml`: what the user asks for, in physical units.
 
+mod correction;
 mod read;
 
+pub use correction::{Correction, Harmonic};
 pub use read::{SpecError, line_of_field};
 
 use serde::{Deserialize, Serialize};
@@ -198,23 +200,6 @@ impl Calibration {
             8 => &[1, 2, 3, 4, 6, 7, 8, 9],
             _ => &[1, 2, 3, 4, 5, 6, 7, 8, 9],
         }
-    }
-}
-
-/// `[correction]`
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Correction {
-    /// sin is sampled so much later than cos, seconds; negative: earlier. 0: at the same instant, and the chip is the one
-    /// without this correction.
-    #[serde(default)]
-    pub channel_skew_s: f64,
-}
-
-impl Correction {
-    /// Nothing to correct.
-    #[must_use]
-    pub fn is_none(&self) -> bool {
-        self.channel_skew_s == 0.0
     }
 }
 
