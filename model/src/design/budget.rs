@@ -232,7 +232,7 @@ pub(super) fn choose(spec: &Spec, tracking: &Loop) -> Result<(Words, Budget), De
         phase_bits: o.phase_bits.unwrap_or(44),
         sine_phase_bits: o.sine_phase_bits.unwrap_or((f + 8).min(30)),
         sine_rows_log2: o.sine_rows_log2.unwrap_or(13),
-        harmonic_rows_log2: harmonics::ROWS_LOG2_MAX,
+        harmonic_rows_log2: o.harmonic_rows_log2.unwrap_or(harmonics::ROWS_LOG2_MAX),
         accumulator_fraction: o.accumulator_fraction.unwrap_or(44),
     };
     let field = "formats.signal_fraction";
@@ -243,11 +243,17 @@ pub(super) fn choose(spec: &Spec, tracking: &Loop) -> Result<(Words, Budget), De
         ..w
     };
     let w = pick(o.sine_rows_log2, 4, 13, field, &rows)?;
-    let field = "correction.harmonics";
-    let w = pick(None, 4, harmonics::ROWS_LOG2_MAX, field, &|n| Words {
-        harmonic_rows_log2: n,
-        ..w
-    })?;
+    let field = "formats.harmonic_rows_log2";
+    let w = pick(
+        o.harmonic_rows_log2,
+        4,
+        harmonics::ROWS_LOG2_MAX,
+        field,
+        &|n| Words {
+            harmonic_rows_log2: n,
+            ..w
+        },
+    )?;
     let field = "formats.sine_phase_bits";
     let phase = |n| Words {
         sine_phase_bits: n,

@@ -22,7 +22,7 @@ const AMPLITUDE_MAX: f64 = 0.2;
 const SLOPE_MAX: f64 = 0.5;
 
 /// log2 of the most rows that the table may have.
-pub(super) const ROWS_LOG2_MAX: u32 = 10;
+pub(super) const ROWS_LOG2_MAX: u32 = 12;
 
 /// Angles at which what is left is looked at: above twice the highest order with its own.
 const ANGLES: u32 = 256;
@@ -36,6 +36,8 @@ pub struct Harmonics {
     pub order: Order,
     /// What it leaves of the angle error, at worst over what the design promises of phase and amplitude, periods rms.
     pub residual_rms_periods: f64,
+    /// Largest error of cosine or sine that it leaves, over the same.
+    pub pair_error_max: f64,
     /// Angle error of the harmonics themselves, periods rms.
     pub uncorrected_rms_periods: f64,
     /// Largest error of the table's interpolation, as a fraction of the amplitude.
@@ -44,21 +46,8 @@ pub struct Harmonics {
 
 /// What stands in a channel at the angle `alpha`, radians, and its derivative; `which`: 0 the cosine, 1 the sine.
 fn value_and_slope(list: &[Harmonic], which: usize, alpha: f64) -> (f64, f64) {
-    list.iter().fold((0.0, 0.0), |(value, slope), h| {
-        let (amplitude, phase) = channel(h, which);
-        let (sin, cos) = (f64::from(h.order) * alpha + phase).sin_cos();
-        (
-            value + amplitude * cos,
-            slope - amplitude * f64::from(h.order) * sin,
-        )
-    })
-}
-
-fn channel(h: &Harmonic, which: usize) -> (f64, f64) {
-    [
-        (h.amplitude_cos, h.phase_cos),
-        (h.amplitude_sin, h.phase_sin),
-    ][which]
+    let each = list.iter().map(|h| h.at(which, alpha));
+    each.fold((0.0, 0.0), |all, one| (all.0 + one.0, all.1 + one.1))
 }
 
 /// Refuses harmonics that are none, or that no table mends.
@@ -106,7 +95,7 @@ pub(super) fn check(spec: &Spec) -> Result<(), DesignError> {
         }
     }
     for which in 0..2 {
-        let sum: f64 = list.iter().map(|h| channel(h, which).0).sum();
+        let sum: f64 = list.iter().map(|h| h.channels()[which].0).sum();
         if sum > AMPLITUDE_MAX {
             return refuse(
                 "correction.harmonics",
@@ -242,16 +231,21 @@ fn table(list: &[Harmonic], words: &Words) -> Result<Rom, DesignError> {
     })
 }
 
-/// Rms angle error, radians, at worst: the kernel itself, unrounded, over pairs that Θ has corrected. `None` in place of an
+/// Rms angle error, radians, and largest error of cosine or sine, at worst: the kernel itself, unrounded, over pairs that Θ has corrected. `None` in place of an
 /// order: no correction.
-fn left(order: Option<Order>, spec: &Spec, structure: &Structure, k: &Coefficients<f64>) -> f64 {
+fn left(
+    order: Option<Order>,
+    spec: &Spec,
+    structure: &Structure,
+    k: &Coefficients<f64>,
+) -> (f64, f64) {
     let beta_max = if structure.has_phase() {
         spec.sensor.phase_error_max_deg.to_radians()
     } else {
         0.0
     };
     let list = &spec.correction.harmonics;
-    let mut worst = 0.0f64;
+    let (mut worst, mut pair_error) = (0.0f64, 0.0f64);
     for (beta, gain) in ENDS.into_iter().flat_map(|b| ENDS.map(|g| (b, g))) {
         let tan = (beta * beta_max).tan();
         let theta_1 = k.theta_1_nominal / (1.0 + gain * spec.sensor.amplitude_tolerance);
@@ -269,11 +263,12 @@ fn left(order: Option<Order>, spec: &Spec, structure: &Structure, k: &Coefficien
             let (c, s) = order.map_or(pair, |order| {
                 correct(pair, (h_c, h_s), (theta_1, theta_5), k, (structure, order))
             });
+            pair_error = pair_error.max((c - cos).abs()).max((s - sin).abs());
             sum += (s * cos - c * sin).atan2(c * cos + s * sin).powi(2);
         }
         worst = worst.max((sum / f64::from(ANGLES)).sqrt());
     }
-    worst
+    (worst, pair_error)
 }
 
 /// Settles how far the phase correction is followed: until what is left is less than half of what arithmetic may add. It
@@ -287,25 +282,27 @@ pub(super) fn settle(
     structure.harmonics.as_ref()?;
     let k = constants.real();
     let orders = [Order::Zeroth, Order::First, Order::Second];
-    let tried = orders.map(|order| (order, left(Some(order), spec, structure, &k) / TAU));
-    let enough = |(_, left): &&(Order, f64)| *left <= budget.allowed / 2.0;
-    let (order, residual) = *tried.iter().find(enough).unwrap_or(&tried[2]);
-    let uncorrected = left(None, spec, structure, &k) / TAU;
+    let tried = orders.map(|order| (order, left(Some(order), spec, structure, &k)));
+    let enough = |(_, left): &&(Order, (f64, f64))| left.0 / TAU <= budget.allowed / 2.0;
+    let (order, (residual, pair_error_max)) = *tried.iter().find(enough).unwrap_or(&tried[2]);
+    let residual = residual / TAU;
+    let uncorrected = left(None, spec, structure, &k).0 / TAU;
     budget.uncorrected = budget.uncorrected.hypot(residual);
     let stored = structure.harmonics.as_mut()?;
     stored.order = order;
     let half = TAU * exp2(-i64::from(stored.table.index_fraction) - 1);
     let list = &spec.correction.harmonics;
-    let interpolation = |which| -> f64 {
+    let interpolation = |which: usize| -> f64 {
         let each = list.iter().map(|h| {
             let x = f64::from(h.order) * half;
-            channel(h, which).0 * x * x / 4.0
+            h.channels()[which].0 * x * x / 4.0
         });
         each.sum()
     };
     Some(Harmonics {
         order,
         residual_rms_periods: residual,
+        pair_error_max,
         uncorrected_rms_periods: uncorrected,
         interpolation_max: interpolation(0).max(interpolation(1)),
     })

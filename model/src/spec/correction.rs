@@ -43,3 +43,24 @@ pub struct Harmonic {
     /// Its phase, radians.
     pub phase_sin: f64,
 }
+
+impl Harmonic {
+    /// Amplitude and phase in each channel, the cosine first.
+    #[must_use]
+    pub fn channels(&self) -> [(f64, f64); 2] {
+        [
+            (self.amplitude_cos, self.phase_cos),
+            (self.amplitude_sin, self.phase_sin),
+        ]
+    }
+
+    /// What it adds to channel `which` (0 the cosine, 1 the sine) at the angle `alpha`, radians, and the derivative; as
+    /// fractions of the amplitude.
+    #[must_use]
+    pub fn at(&self, which: usize, alpha: f64) -> (f64, f64) {
+        let (amplitude, phase) = self.channels()[which];
+        let order = f64::from(self.order);
+        let (sin, cos) = (order * alpha + phase).sin_cos();
+        (amplitude * cos, -amplitude * order * sin)
+    }
+}

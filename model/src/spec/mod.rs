@@ -341,6 +341,9 @@ pub struct Overrides {
     /// Rows of the quarter-wave table: 2^`sine_rows_log2`.
     #[serde(default)]
     pub sine_rows_log2: Option<u32>,
+    /// Rows of the table of harmonics: 2^`harmonic_rows_log2`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub harmonic_rows_log2: Option<u32>,
     /// Fraction bits of the parameter accumulators.
     #[serde(default)]
     pub accumulator_fraction: Option<u32>,

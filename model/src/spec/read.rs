@@ -85,6 +85,7 @@ fn known(section: &str) -> Option<&'static [&'static str]> {
             "phase_bits",
             "sine_phase_bits",
             "sine_rows_log2",
+            "harmonic_rows_log2",
             "accumulator_fraction",
         ],
         _ => return None,

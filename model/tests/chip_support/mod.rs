@@ -2,7 +2,7 @@
 #![allow(dead_code, reason = "each test uses its own part")]
 
 #[path = "../../../designs/shipped.rs"]
-mod shipped;
+pub(crate) mod shipped;
 
 #[allow(unused_imports, reason = "each test binary uses its own part")]
 pub(crate) use shipped::optical;
