@@ -39,10 +39,7 @@ impl HarmonicTable {
     pub(crate) fn of(design: &Design) -> Option<Self> {
         let (found, structure) = (design.harmonics?, &design.structure);
         let known = structure.harmonics.as_ref()?;
-        let (k, list) = (
-            design.constants.bits(),
-            &design.spec.correction.harmonics,
-        );
+        let (k, list) = (design.constants.bits(), &design.spec.correction.harmonics);
         let bits = structure.formats.sine_phase.format.fraction;
         let (step, places) = phases(bits);
         let (mut largest, mut count) = (0.0f64, 0);

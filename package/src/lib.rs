@@ -5,6 +5,7 @@ mod coefficient;
 mod curves;
 mod design_json;
 mod diagram;
+mod harmonics;
 mod report;
 mod signals;
 mod simulation;

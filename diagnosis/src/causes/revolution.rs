@@ -83,7 +83,12 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
                 id: 0,
                 exact: None,
                 sign: Sign::Any,
-                chip: Chip::CannotCorrect,
+                // Where a scale period is a revolution, it is two harmonics, which the chip's table takes.
+                chip: if context.periods_per_revolution == Some(1) && order >= 3 {
+                    Chip::Corrects
+                } else {
+                    Chip::CannotCorrect
+                },
                 parameters: harmonic(order, "amplitude", "rad"),
                 evidence: Rc::new(move |p| format!("against the reference the angle is off by {:.3e} rad of a scale period, {order} time(s) per revolution", p[1].value)),
             });
