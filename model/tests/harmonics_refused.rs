@@ -95,7 +95,7 @@ fn sums_and_slopes_are_bounded() {
     for (amplitude, expected) in [(0.11, "near a circle"), (0.09, "bandwidth")] {
         let mut spec = Spec::from_toml(&text, "d.toml").expect("a design");
         for h in &mut spec.correction.harmonics {
-            (h.amplitude_cos, h.amplitude_sin) = (amplitude, amplitude);
+            (h.amplitude_cos, h.amplitude_sin, h.phase_sin) = (amplitude, amplitude, 2.0);
         }
         let (field, reason) = refused(&spec);
         assert!(reason.contains(expected), "{reason}");

@@ -189,7 +189,7 @@ fn table(list: &[Harmonic], words: &Words) -> Result<Rom, DesignError> {
         })
         .collect();
     let centres = || (0..1u32 << rows).map(|i| segment * (f64::from(i) + 0.5));
-    let values = |which| {
+    let values = |which| -> Vec<f64> {
         centres()
             .map(|x| value_and_slope(&lowered, which, x).0)
             .collect()
@@ -213,10 +213,16 @@ fn table(list: &[Harmonic], words: &Words) -> Result<Rom, DesignError> {
         limit: "smaller amplitudes".into(),
         reason: format!("row {row} of the table of harmonics does not fit its word"),
     };
-    let value = |name, which| {
-        let format = Format::signed(f + 1, f + 2);
-        Column::new(name, format, values(which), exp2(-i64::from(f) - 1)).map_err(unfit)
-    };
+    let carried = exp2(-i64::from(f) - 1);
+    let largest = values(0)
+        .into_iter()
+        .chain(values(1))
+        .fold(0.0f64, |m, x| m.max(x.abs()));
+    // The sign, and the bits that the largest has.
+    let raw = ((largest + carried) * exp2(i64::from(f) + 2)).ceil() as u64;
+    let value_format = Format::signed(1 + (u64::BITS - raw.leading_zeros()), f + 2);
+    let value =
+        |name, which| Column::new(name, value_format, values(which), carried).map_err(unfit);
     let slope = |name, which| Column::new(name, slope_format, slopes(which), 0.0).map_err(unfit);
     Ok(Rom {
         name: "harmonic_table",
