@@ -101,8 +101,7 @@ fn unsure(finding: &Finding) -> bool {
     let (value, error) = amplitudes.fold((0.0f64, 0.0f64), |(value, error), p| {
         (value.hypot(p.value), error.hypot(p.std_error))
     });
-    // Not a number is unsure too.
-    !(error <= UNSURE * value)
+    error.is_nan() || value.is_nan() || error > UNSURE * value
 }
 
 /// The table for what was found and what no bend mends, by order; `bends`: the design has parameters for those. With it what
