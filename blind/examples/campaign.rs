@@ -10,7 +10,7 @@ use std::process::ExitCode;
 use anyhow::{Context, Result};
 use clap::Parser;
 use indicatif::{ProgressBar, ProgressStyle};
-use nonius_blind::{Case, Score, page, seal, verdict};
+use nonius_blind::{Case, Kind, Score, page, seal, verdict};
 use rayon::prelude::*;
 
 /// Hides causes in simulated recordings and scores what the diagnosis says.
@@ -25,6 +25,9 @@ struct Arguments {
     /// Samples of each.
     #[arg(long, default_value_t = 20_000)]
     samples: usize,
+    /// Only seeds that stand for this kind of case: nothing, one, wild, two or stranger.
+    #[arg(long, value_parser = kind, conflicts_with = "docs")]
+    kind: Option<Kind>,
     /// Folder for blind.md.
     #[arg(long)]
     docs: Option<PathBuf>,
@@ -34,6 +37,10 @@ struct Arguments {
     /// Writes the recording of each case there.
     #[arg(long)]
     recordings: Option<PathBuf>,
+}
+
+fn kind(word: &str) -> Result<Kind, serde_json::Error> {
+    serde_json::from_value(word.into())
 }
 
 fn main() -> ExitCode {
@@ -52,10 +59,16 @@ fn run(arguments: &Arguments) -> Result<()> {
     for folder in std::iter::once(folder).chain(arguments.recordings.as_deref()) {
         std::fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
     }
-    let bar = ProgressBar::new(arguments.cases).with_style(ProgressStyle::with_template(
+    let seeds = arguments.seed..arguments.seed.saturating_add(arguments.cases);
+    let wanted = |seed: &u64| {
+        arguments
+            .kind
+            .is_none_or(|kind| kind == Kind::of_seed(*seed))
+    };
+    let seeds: Vec<u64> = seeds.filter(wanted).collect();
+    let bar = ProgressBar::new(seeds.len() as u64).with_style(ProgressStyle::with_template(
         "{bar:40} {pos}/{len} {elapsed} ({eta} left)",
     )?);
-    let seeds = arguments.seed..arguments.seed.saturating_add(arguments.cases);
     let results: Vec<Result<Score>> = seeds
         .into_par_iter()
         .map(|seed| {

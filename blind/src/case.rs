@@ -56,6 +56,14 @@ enum Choice {
     Stranger(usize),
 }
 
+impl Kind {
+    /// What kind of case a seed stands for.
+    #[must_use]
+    pub fn of_seed(seed: u64) -> Self {
+        KINDS[(seed % KINDS.len() as u64) as usize]
+    }
+}
+
 impl Case {
     /// The case of a seed, with so many samples.
     ///
@@ -63,7 +71,7 @@ impl Case {
     /// Where no experiment shows the cause as asked.
     pub fn draw(seed: u64, samples: usize) -> Result<Self, Unreachable> {
         let mut random = StdRng::seed_from_u64(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15));
-        let kind = KINDS[(seed % 20) as usize];
+        let kind = Kind::of_seed(seed);
         let (choices, mut snrs) = plan(seed, kind, &mut random);
         for _ in 0..HALVINGS {
             for _ in 0..ATTEMPTS {

@@ -3,22 +3,8 @@
 #[path = "support/recordings.rs"]
 mod recordings;
 
-use std::io::Write;
-
 use nonius_calibration::{Calibration, Method, Options, calibrate};
 use nonius_recording::{Overrides, Recording};
-
-fn folder(check: &str) -> Option<std::path::PathBuf> {
-    let folder = recordings::folder();
-    if folder.is_none() {
-        // Past the capture of test output.
-        let _ = writeln!(
-            std::io::stderr(),
-            "\nNOT RUN: {check}: ../shared/data is not there"
-        );
-    }
-    folder
-}
 
 fn found(folder: &std::path::Path, name: &str, method: Method) -> (Recording, Calibration) {
     let path = folder.join(format!("{name}.csv"));
@@ -30,7 +16,7 @@ fn found(folder: &std::path::Path, name: &str, method: Method) -> (Recording, Ca
 
 #[test]
 fn the_tables_are_fresh() {
-    let Some(folder) = folder("the tables of docs/offline-calibration.md") else {
+    let Some(folder) = nonius_kept::recordings("the tables of docs/offline-calibration.md") else {
         return;
     };
     let page = std::fs::read_to_string(recordings::PAGE).expect("a kept file");
@@ -44,7 +30,7 @@ fn the_tables_are_fresh() {
 /// 1.77° uncorrected, 0.245° after any fit of an ellipse with phase; the extremes leave more.
 #[test]
 fn the_shifted_magnetic_encoder() {
-    let Some(folder) = folder("angle error of rm44_static_x500um") else {
+    let Some(folder) = nonius_kept::recordings("angle error of rm44_static_x500um") else {
         return;
     };
     for method in [Method::Unbiased, Method::Heydemann, Method::Sumsq5] {
@@ -70,7 +56,7 @@ fn the_shifted_magnetic_encoder() {
 /// one instrument agree on the ratio within its error.
 #[test]
 fn the_homodyne_interferometer() {
-    let Some(folder) = folder("noise ratio of the homodyne interferometer") else {
+    let Some(folder) = nonius_kept::recordings("noise ratio of the homodyne interferometer") else {
         return;
     };
     let ratios = ["homodyne_settle", "homodyne_stop"].map(|name| {
@@ -96,7 +82,7 @@ fn the_homodyne_interferometer() {
 /// the error of the search that stays.
 #[test]
 fn the_valley_of_the_cubic_search() {
-    let Some(folder) = folder("the valley of the cubic search") else {
+    let Some(folder) = nonius_kept::recordings("the valley of the cubic search") else {
         return;
     };
     let (recording, found) = found(&folder, "rm44_static_x500um", Method::Poly8);

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Result, bail};
 use clap::Args;
-use nonius_package::{DesignJson, ROWS, package_with, write};
+use nonius_package::{DesignJson, ROWS, engineering, package_with, write};
 use nonius_testvectors::stimulus;
 
 use crate::play;
@@ -68,7 +68,7 @@ fn summary(j: &DesignJson, output: &Path, shown: &str) {
     let rate = j.spec.adc.sample_rate_hz;
     say!("{} (design {})", j.name, j.hash);
     say!(
-        "  accuracy    {:.2e} periods rms predicted, {:.2e} simulated, {:.2e} asked",
+        "  accuracy    {:.2e} periods rms predicted, {:.2e} simulated with half of the promised errors, {:.2e} asked",
         j.budget.total,
         j.simulated.rms_periods,
         j.budget.asked
@@ -79,13 +79,13 @@ fn summary(j: &DesignJson, output: &Path, shown: &str) {
     ] {
         if let Some(per_period) = per_period {
             let rms = j.simulated.rms_periods * per_period;
-            say!("              {rms:.2e} {unit}, rms simulated");
+            say!("              {}, rms simulated", engineering(rms, unit));
         }
     }
     say!(
-        "  speed       {:.4} MS/s need a clock of {:.4} MHz: {} clocks per sample",
-        rate / 1e6,
-        j.latency.clock_hz_min / 1e6,
+        "  speed       {} need a clock of {}: {} clocks per sample",
+        engineering(rate, "S/s"),
+        engineering(j.latency.clock_hz_min, "Hz"),
         j.clocks_per_sample
     );
     say!(
@@ -96,9 +96,9 @@ fn summary(j: &DesignJson, output: &Path, shown: &str) {
         j.sine_table.bits + j.harmonics.as_ref().map_or(0, |h| h.bits)
     );
     say!(
-        "  bandwidth   {:.4e} Hz at -3 dB, to {:.4e} periods/s",
-        j.tracking.bandwidth_3db_hz,
-        j.tracking.speed_max_periods_per_s
+        "  bandwidth   {} at -3 dB, to {} periods/s",
+        engineering(j.tracking.bandwidth_3db_hz, "Hz"),
+        engineering(j.tracking.speed_max_periods_per_s, "").trim_end()
     );
     say!("  position    {}", position(j));
     let peak = j.spec.sensor.amplitude * j.spec.sensor.reach() / j.spec.adc.full_scale;
@@ -141,7 +141,7 @@ fn summary(j: &DesignJson, output: &Path, shown: &str) {
         "  written     {folder}/: rtl, tb, vectors, waves, coefficients, design.json, report.html"
     );
     say!("next: nonius verify {folder}");
-    say!("      gtkwave {folder}/waves/{shown}.gtkw");
+    say!("      gtkwave {folder}/waves/{shown}.vcd {folder}/waves/{shown}.gtkw");
 }
 
 /// The position at the output in the units that the design has for it.
@@ -153,11 +153,12 @@ fn position(j: &DesignJson) -> String {
     );
     match (p.step_m, p.range_m, p.radians_per_period) {
         (Some(step), Some(range), _) => {
-            format!("{bits}: steps of {step:.2e} m, to {range:.3e} m either way")
+            let (step, range) = (engineering(step, "m"), engineering(range, "m"));
+            format!("{bits}: steps of {step}, to {range} either way")
         }
         (_, _, Some(radians)) => format!(
-            "{bits}: steps of {:.2e} rad of the revolution",
-            p.step_periods * radians
+            "{bits}: steps of {}",
+            engineering(p.step_periods * radians, "rad of the revolution")
         ),
         _ => bits,
     }

@@ -98,14 +98,19 @@ pub fn fitted_text(name: &str, file: &Path, recording: &Recording) -> Result<Str
     Ok(draft.toml())
 }
 
-/// The finest accuracy that the rest of the draft allows, and a tenth for what the prediction leaves out.
+/// The finest accuracy that the rest of the draft allows and that the bit-true chip reaches, with a tenth to spare.
 fn settle(draft: &mut Draft) -> Result<Design> {
     draft.accuracy = FINEST;
     loop {
         match designed(draft) {
-            Ok(_) => {
-                draft.accuracy = rounded_up(draft.accuracy * MARGIN);
-                return designed(draft);
+            Ok(design) => {
+                let reached = nonius_package::simulate(&design).accuracy.rms_periods;
+                let spared = rounded_up(MARGIN * draft.accuracy.max(reached.min(COARSEST)));
+                if spared <= MARGIN * MARGIN * draft.accuracy {
+                    draft.accuracy = spared;
+                    return designed(draft);
+                }
+                draft.accuracy = rounded_up(spared / MARGIN);
             }
             Err(_) if draft.accuracy < COARSEST => {
                 draft.accuracy = rounded_up(draft.accuracy * 1.1);
@@ -182,6 +187,8 @@ fn fitted(name: &str, file: &Path, recording: &Recording, survey: &Survey) -> Re
             .max((ellipse.b_s - middle).abs());
         far / amplitude
     };
+    let tolerance = short((spread * 1.3 + 0.1).min(0.6));
+    let offset = |middle: f64| short((offset_from(middle) * 1.3 + 0.05).min(0.6));
     let described = same
         && own.source == AdcSource::Described
         && (8..=18).contains(&own.bits)
@@ -197,7 +204,10 @@ fn fitted(name: &str, file: &Path, recording: &Recording, survey: &Survey) -> Re
             far.fold(0.0, f64::max)
         };
         let reach = reach(&recording.cos).max(reach(&recording.sin));
-        let full_scale = rounded_up(reach.clamp(amplitude * 1.2, amplitude * 4.0) * 1.05);
+        // And what the design promises of the sensor.
+        let promised = amplitude * (1.0 + tolerance + offset(middle));
+        let seen = reach.clamp(amplitude * 1.2, amplitude * 4.0) * 1.05;
+        let full_scale = rounded_up(seen.max(promised));
         // At least as fine as the recording's own steps.
         let finest = adc.cos.lsb.min(adc.sin.lsb);
         let bits = (2.0 * full_scale / finest).log2().ceil().clamp(8.0, 18.0);
@@ -219,7 +229,6 @@ fn fitted(name: &str, file: &Path, recording: &Recording, survey: &Survey) -> Re
     }
     let speed = (seen * 1.3).clamp(1e-4, 0.25) * rate;
     let bandwidth = (8.0 * speed).clamp(0.02 * rate, 0.06 * rate);
-    let offset = (offset_from(middle) * 1.3 + 0.05).min(0.6);
     Ok(Draft {
         name: name.into(),
         description: format!("fitted to a recording of {} samples", recording.samples()),
@@ -237,11 +246,11 @@ fn fitted(name: &str, file: &Path, recording: &Recording, survey: &Survey) -> Re
             ),
         ),
         amplitude_tolerance: (
-            short((spread * 1.3 + 0.1).min(0.6)),
+            tolerance,
             format!("measured: {spread:.3}; and a tenth to spare"),
         ),
         offset_max: (
-            short(offset),
+            offset(middle),
             format!("measured: {:.3}; and some to spare", offset_from(middle)),
         ),
         phase_error_max_deg: (

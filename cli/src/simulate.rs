@@ -190,7 +190,7 @@ pub(crate) fn run(args: &Simulate) -> Result<()> {
         vec![]
     };
     let target = Target::new(&args.output)?;
-    write(
+    let lost = write(
         &target,
         interpolator.as_mut(),
         &recording,
@@ -200,7 +200,15 @@ pub(crate) fn run(args: &Simulate) -> Result<()> {
     )
     .with_context(|| format!("cannot write {}", args.output.display()))?;
     interpolator.finish()?;
-    target.keep()
+    target.keep()?;
+    if let Some(first) = lost.first() {
+        eprintln!(
+            "note: lock is lost {} time{}, first at {first} s: the position may have lost periods there",
+            lost.len(),
+            if lost.len() == 1 { "" } else { "s" }
+        );
+    }
+    Ok(())
 }
 
 /// What is read is not written over, and no file is written twice.
@@ -263,6 +271,7 @@ fn waves(design: &Design, path: &Path) -> Result<(Waves<BufWriter<File>>, Target
     Ok((waves, target))
 }
 
+/// Writes a row for each sample; says when lock was lost, seconds.
 fn write(
     target: &Target,
     interpolator: &mut dyn Interpolator,
@@ -270,7 +279,8 @@ fn write(
     repeat: u32,
     thetas: &[usize],
     units: &[(&str, f64)],
-) -> Result<()> {
+) -> Result<Vec<f64>> {
+    let (mut lost, mut locked) = (vec![], false);
     let mut out = BufWriter::with_capacity(1 << 16, target.file());
     write!(out, "time_s,position_periods,speed_periods_per_s,locked")?;
     for i in thetas {
@@ -293,6 +303,10 @@ fn write(
         for k in 0..recording.samples() {
             let now = interpolator.estimate();
             let time = recording.time_s[k] + f64::from(round) * turn;
+            if locked && !now.locked {
+                lost.push(time);
+            }
+            locked = now.locked;
             write!(
                 out,
                 "{time:.9},{},{},{}",
@@ -316,7 +330,7 @@ fn write(
     }
     bar.finish_and_clear();
     out.flush()?;
-    Ok(())
+    Ok(lost)
 }
 
 #[cfg(test)]

@@ -365,16 +365,10 @@ fn what_is_wrong_is_refused_with_place_and_way_out() {
 /// Sixteen encoders in one file: time starts again, and the file is refused whole with the place.
 #[test]
 fn several_records_in_one_file_are_refused() {
-    let file =
-        Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data/optical_servo_tables.csv");
-    if !file.is_file() {
-        use std::io::Write;
-        let _ = writeln!(
-            std::io::stderr(),
-            "\nNOT RUN: several records in one file: ../shared/data is not there"
-        );
+    let check = "several records in one file";
+    let Some(file) = nonius_kept::recording(check, "optical_servo_tables.csv") else {
         return;
-    }
+    };
     let output = nonius(Path::new("."), &[&file.display().to_string()]);
     assert_eq!(output.status.code(), Some(2));
     let said = String::from_utf8_lossy(&output.stderr);

@@ -3,32 +3,23 @@
 //!
 //! The tables are kept in docs/closing-the-loop.md; NONIUS_BLESS=1 writes it anew.
 
+mod support;
+
 use std::f64::consts::TAU;
 use std::fmt::Write;
 use std::fs;
 use std::path::Path;
-use std::process::Command;
 use std::time::Duration;
 
 use nonius_hdl::progress::silent;
 use nonius_hdl::verify::{Options, verify};
 use nonius_sensor::{Motion, Sensor};
+use support::done;
 
 const KEPT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/closing-the-loop.md");
 const ROWS: u32 = 120_000;
 /// Rows of the recording that become vectors.
 const PLAYED: usize = 2_000;
-
-fn nonius(dir: &Path, arguments: &[&str]) -> String {
-    let output = Command::new(env!("CARGO_BIN_EXE_nonius"))
-        .current_dir(dir)
-        .args(arguments)
-        .output()
-        .expect("nonius runs");
-    let said = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(output.status.success(), "{arguments:?}: {said}");
-    said
-}
 
 const HEAD: &str = "# sample_rate_hz: 50000\n# adc_bits: 14\n# full_scale: 1\n# periods_per_revolution: 64\ntime_s,cos,sin,reference_rad\n";
 
@@ -110,7 +101,7 @@ fn simulated_encoder(cause: &str) -> String {
 
 /// Rms over the last third of the chip's position against the truth, mrad of a scale period.
 fn error(dir: &Path, design: &str) -> f64 {
-    nonius(dir, &["simulate", design, "r.csv", "-o", "out.csv"]);
+    done(dir, &["simulate", design, "r.csv", "-o", "out.csv"]);
     let said = fs::read_to_string(dir.join("out.csv")).expect("what simulate wrote");
     let truth = fs::read_to_string(dir.join("r.csv")).expect("the recording");
     let positions = said.lines().skip(1).map(|l| {
@@ -134,10 +125,22 @@ fn error(dir: &Path, design: &str) -> f64 {
 struct Closed {
     /// What the diagnosis says on the terminal.
     said: String,
-    findings: serde_json::Value,
+    /// What the diagnosis finds first.
+    first: serde_json::Value,
     /// Angle error of the chip that knows nothing, and of that of the diagnosis.
     before: f64,
     after: f64,
+}
+
+impl Closed {
+    /// Share of the angle error that the chip of the diagnosis leaves.
+    fn left(&self) -> f64 {
+        self.after / self.before
+    }
+
+    fn errors(&self) -> String {
+        format!("{:.3} -> {:.3} mrad", self.before, self.after)
+    }
 }
 
 /// From the recording to the chip, in the simulators too where that is asked for.
@@ -145,14 +148,14 @@ fn closed(recording: &str, simulated: bool) -> Closed {
     let dir = tempfile::tempdir().expect("scratch folder");
     let dir = dir.path();
     fs::write(dir.join("r.csv"), recording).expect("a recording");
-    nonius(dir, &["new", "plain", "--from", "r.csv"]);
-    let said = nonius(dir, &["diagnose", "r.csv", "-o", "found"]);
+    done(dir, &["new", "plain", "--from", "r.csv"]);
+    let said = done(dir, &["diagnose", "r.csv", "-o", "found"]);
     let json = fs::read_to_string(dir.join("found/findings.json")).expect("findings");
     let design = "found/design.toml";
     if simulated {
         let rows = recording.split_inclusive('\n').take(5 + PLAYED);
         fs::write(dir.join("head.csv"), rows.collect::<String>()).expect("its beginning");
-        nonius(dir, &["build", design, "-o", "chip", "--play", "head.csv"]);
+        done(dir, &["build", design, "-o", "chip", "--play", "head.csv"]);
         // As `nonius verify`, but however long a busy machine takes.
         let options = Options {
             time_limit: Some(Duration::from_secs(3600)),
@@ -166,9 +169,10 @@ fn closed(recording: &str, simulated: bool) -> Closed {
             PLAYED
         );
     }
+    let findings: serde_json::Value = serde_json::from_str(&json).expect("JSON");
     Closed {
         said,
-        findings: serde_json::from_str(&json).expect("JSON"),
+        first: findings["findings"][0].clone(),
         before: error(dir, "plain.toml"),
         after: error(dir, design),
     }
@@ -211,47 +215,42 @@ fn what_is_found_is_corrected_by_the_chip() {
         )
     });
     for (bends, closed) in BENDS.into_iter().zip(bent) {
-        let Closed {
-            said,
-            findings,
-            before,
-            after,
-        } = closed;
+        let said = &closed.said;
         assert!(
             said.contains("nine parameters"),
             "{said} {:#}",
-            findings["findings"]
+            closed.first
         );
-        let name = findings["findings"][0]["cause"].as_str().expect("a name");
-        println!("{bends:?}: {name}, {before:.3} -> {after:.3} mrad");
+        let name = closed.first["cause"].as_str().expect("a name");
+        println!("{bends:?}: {name}, {}", closed.errors());
         let _ = writeln!(
             table,
-            "| {:.1} %, {:.1} % | `{name}` | {before:.2} | {after:.2} |",
+            "| {:.1} %, {:.1} % | `{name}` | {:.2} | {:.2} |",
             100.0 * bends[0],
-            100.0 * bends[1]
+            100.0 * bends[1],
+            closed.before,
+            closed.after
         );
-        assert!(after < 0.5 * before, "{before} -> {after} mrad");
+        assert!(closed.left() < 0.5, "{}", closed.errors());
     }
     table += "\n## A sine that is sampled later than the cosine\n\n\
          Up to 550 periods a second in both directions, a sample each 20 µs. At constant speed the calibration on line would hide\n\
          the skew in its phase parameter; where the speed changes nothing does.\n\n\
          | delay | named | measured | chip of `new --from` | chip of the diagnosis |\n|---|---|---|---|---|\n";
     for (delay, closed) in DELAYS.into_iter().zip(skewed) {
-        let Closed {
-            said,
-            findings,
-            before,
-            after,
-        } = closed;
-        let found = &findings["findings"][0];
-        println!("{delay:e}: {before:.3} -> {after:.3} mrad, {found:#}");
+        let found = &closed.first;
+        println!("{delay:e}: {}, {found:#}", closed.errors());
         if delay == 0.0 {
             // What the chips of the others should come to.
             assert!(found.is_null(), "{found}");
-            let _ = writeln!(table, "| none | nothing | – | {before:.2} | {after:.2} |");
+            let _ = writeln!(
+                table,
+                "| none | nothing | – | {:.2} | {:.2} |",
+                closed.before, closed.after
+            );
             continue;
         }
-        assert!(said.contains("corrects a sine"), "{said}");
+        assert!(closed.said.contains("corrects a sine"), "{}", closed.said);
         assert_eq!(found["cause"], "channel_skew");
         assert_eq!(found["chip"], "corrects");
         let parameter = &found["parameters"][0];
@@ -259,31 +258,27 @@ fn what_is_found_is_corrected_by_the_chip() {
         let (value, std_error) = (number("value"), number("std_error"));
         let _ = writeln!(
             table,
-            "| {:.2} µs | `channel_skew` | {:.3} ± {:.3} µs | {before:.2} | {after:.2} |",
+            "| {:.2} µs | `channel_skew` | {:.3} ± {:.3} µs | {:.2} | {:.2} |",
             1e6 * delay,
             1e6 * value,
-            1e6 * std_error
+            1e6 * std_error,
+            closed.before,
+            closed.after
         );
         assert!(
             (value - delay).abs() < 5.0 * std_error,
             "{value} ± {std_error}"
         );
-        assert!(after < 0.1 * before, "{before} -> {after} mrad");
+        assert!(closed.left() < 0.1, "{}", closed.errors());
     }
     table += "\n## Harmonics of the scale period that are no bend\n\n\
          The same motion. What looks like a gain or a phase error along the radius also moves the calibration of the chip that does\n\
          not know.\n\n\
          | order, amplitude and phase (cos; sin) | measured | chip of `new --from` | chip of the diagnosis |\n|---|---|---|---|\n";
     for (harmonic, closed) in HARMONICS.into_iter().zip(harmonics) {
-        let Closed {
-            said,
-            findings,
-            before,
-            after,
-        } = closed;
-        let found = &findings["findings"][0];
-        println!("{harmonic:?}: {before:.3} -> {after:.3} mrad, {found:#}");
-        assert!(said.contains("by a table"), "{said}");
+        let found = &closed.first;
+        println!("{harmonic:?}: {}, {found:#}", closed.errors());
+        assert!(closed.said.contains("by a table"), "{}", closed.said);
         assert_eq!(found["cause"], "spatial_harmonic");
         assert_eq!(found["chip"], "corrects");
         let number = |i: usize| found["parameters"][i]["value"].as_f64().expect("a number");
@@ -291,7 +286,7 @@ fn what_is_found_is_corrected_by_the_chip() {
         assert_eq!(number(0), f64::from(order));
         let _ = writeln!(
             table,
-            "| {order}: {:.2} %, {:.2} rad; {:.2} %, {:.2} rad | {:.3} %, {:.3} rad; {:.3} %, {:.3} rad | {before:.2} | {after:.2} |",
+            "| {order}: {:.2} %, {:.2} rad; {:.2} %, {:.2} rad | {:.3} %, {:.3} rad; {:.3} %, {:.3} rad | {:.2} | {:.2} |",
             100.0 * cos.0,
             cos.1,
             100.0 * sin.0,
@@ -299,9 +294,11 @@ fn what_is_found_is_corrected_by_the_chip() {
             100.0 * number(1),
             number(2),
             100.0 * number(3),
-            number(4)
+            number(4),
+            closed.before,
+            closed.after
         );
-        assert!(after < 0.15 * before, "{before} -> {after} mrad");
+        assert!(closed.left() < 0.15, "{}", closed.errors());
     }
     nonius_kept::same(
         Path::new(KEPT),

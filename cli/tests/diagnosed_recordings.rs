@@ -132,11 +132,10 @@ fn measured_recordings_are_diagnosed() {
     let mut files: Vec<(String, String)> = vec![];
     let mut of_rm44 = vec![];
     for (name, periods_per_revolution, what) in RECORDINGS {
-        let path = docs().join(format!("../../shared/data/{name}.csv"));
-        if !path.is_file() {
-            println!("NOT RUN: diagnosed_recordings: ../shared/data/{name}.csv is not there");
+        let Some(path) = nonius_kept::recording("diagnosed_recordings", &format!("{name}.csv"))
+        else {
             return;
-        }
+        };
         let overrides = Overrides {
             periods_per_revolution,
             ..Overrides::default()

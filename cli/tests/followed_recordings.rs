@@ -2,41 +2,23 @@
 //!
 //! The table is kept in docs/followed-recordings.md; NONIUS_BLESS=1 writes it anew.
 
+mod support;
+
 use std::f64::consts::TAU;
 use std::fmt::Write;
-use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::path::Path;
 
 use nonius_model::spec::Spec;
 use nonius_recording::{Overrides, Recording, Survey};
+use support::done;
+
+/// For what a recording that is not there leaves out.
+const CHECK: &str = "designs from recordings";
 
 const KEPT: &str = concat!(
     env!("CARGO_MANIFEST_DIR"),
     "/../docs/followed-recordings.md"
 );
-
-fn shared(name: &str) -> Option<PathBuf> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("../../shared/data")
-        .join(name);
-    if !path.is_file() {
-        println!(
-            "NOT RUN: designs_from_recordings_follow_them: ../shared/data/{name} is not there"
-        );
-        return None;
-    }
-    Some(path)
-}
-
-fn nonius(dir: &Path, arguments: &[&str]) {
-    let output = Command::new(env!("CARGO_BIN_EXE_nonius"))
-        .current_dir(dir)
-        .args(arguments)
-        .output()
-        .expect("nonius runs");
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{arguments:?}: {said}");
-}
 
 /// Column `name` of what `simulate` wrote.
 fn column(csv: &str, name: &str) -> Vec<f64> {
@@ -81,7 +63,7 @@ fn travelled(recording: &Recording) -> f64 {
 /// Positions that the chip of the diagnosis says over sixty turns, and the orders in its table.
 fn diagnosed(dir: &Path, path: &Path, name: &str) -> (Vec<f64>, String) {
     let (file, found) = (path.display().to_string(), format!("{name}_found"));
-    nonius(
+    done(
         dir,
         &[
             "diagnose",
@@ -93,7 +75,7 @@ fn diagnosed(dir: &Path, path: &Path, name: &str) -> (Vec<f64>, String) {
         ],
     );
     let (design, out) = (format!("{found}/design.toml"), format!("{found}.csv"));
-    nonius(
+    done(
         dir,
         &["simulate", &design, &file, "-o", &out, "--repeat", "60"],
     );
@@ -108,9 +90,9 @@ fn diagnosed(dir: &Path, path: &Path, name: &str) -> (Vec<f64>, String) {
 /// Positions that the chip of a design made for the recording says, and whether it was locked.
 fn followed(dir: &Path, path: &Path, name: &str, repeat: &str) -> (Vec<f64>, Vec<f64>) {
     let file = path.display().to_string();
-    nonius(dir, &["new", name, "--from", &file]);
+    done(dir, &["new", name, "--from", &file]);
     let (design, out) = (format!("{name}.toml"), format!("{name}.csv"));
-    nonius(
+    done(
         dir,
         &["simulate", &design, &file, "-o", &out, "--repeat", repeat],
     );
@@ -134,7 +116,7 @@ fn designs_from_recordings_follow_them() {
     );
     let mut complete = true;
     for name in ["rm44_center", "rm44_static_x500um", "rm44_gap_z500um"] {
-        let Some(path) = shared(&format!("{name}.csv")) else {
+        let Some(path) = nonius_kept::recording(CHECK, &format!("{name}.csv")) else {
             complete = false;
             continue;
         };
@@ -169,7 +151,7 @@ fn designs_from_recordings_follow_them() {
               | recording | periods travelled | arctangent, uncorrected: net periods lost | noise of a sample, rms | chip, rms | \
               chip, largest | locked |\n|---|---|---|---|---|---|---|\n";
     for name in ["homodyne_settle", "homodyne_stop"] {
-        let Some(path) = shared(&format!("{name}.csv")) else {
+        let Some(path) = nonius_kept::recording(CHECK, &format!("{name}.csv")) else {
             complete = false;
             continue;
         };

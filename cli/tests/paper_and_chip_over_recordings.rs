@@ -1,34 +1,15 @@
 //! `nonius simulate --reference` beside `nonius simulate`, over measured recordings: the paper in floating point and the
 //! bit-true chip, each left to its own decisions, say the same.
 
+mod support;
+
 use std::f64::consts::TAU;
-use std::io::Write;
-use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::path::Path;
 
-/// The recording's file; says past the capture of test output where it is absent.
-fn shared(name: &str) -> Option<PathBuf> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data");
-    let path = folder.join(format!("{name}.csv"));
-    if path.is_file() {
-        return Some(path);
-    }
-    let _ = writeln!(
-        std::io::stderr(),
-        "\nNOT RUN: paper and chip over {name}: ../shared/data is not there"
-    );
-    None
-}
+use support::done;
 
-fn nonius(dir: &Path, arguments: &[&str]) {
-    let output = Command::new(env!("CARGO_BIN_EXE_nonius"))
-        .current_dir(dir)
-        .args(arguments)
-        .output()
-        .expect("nonius runs");
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{arguments:?}: {said}");
-}
+/// For what a recording that is not there leaves out.
+const CHECK: &str = "paper and chip over recordings";
 
 fn column(path: &Path, name: &str) -> Vec<f64> {
     let text = std::fs::read_to_string(path).expect("a file");
@@ -43,12 +24,12 @@ fn column(path: &Path, name: &str) -> Vec<f64> {
 fn both(recording: &Path, repeat: &str) -> [Vec<f64>; 2] {
     let dir = tempfile::tempdir().expect("scratch folder");
     let file = recording.display().to_string();
-    nonius(dir.path(), &["new", "it", "--from", &file]);
+    done(dir.path(), &["new", "it", "--from", &file]);
     [&[][..], &["--reference"][..]].map(|flag| {
         let common = [
             "simulate", "it.toml", &file, "-o", "o.csv", "--repeat", repeat,
         ];
-        nonius(dir.path(), &[&common, flag].concat());
+        done(dir.path(), &[&common, flag].concat());
         let out = dir.path().join("o.csv");
         let locked = column(&out, "locked");
         assert!(
@@ -80,7 +61,9 @@ fn error_degrees(turns: &[f64], reference: &[f64]) -> f64 {
 #[test]
 fn the_magnetic_encoder_is_calibrated_alike() {
     for name in ["rm44_center", "rm44_static_x500um", "rm44_gap_z500um"] {
-        let Some(path) = shared(name) else { return };
+        let Some(path) = nonius_kept::recording(CHECK, &format!("{name}.csv")) else {
+            return;
+        };
         let reference = column(&path, "reference_rad");
         let [chip, paper] =
             both(&path, "60").map(|p| error_degrees(&p[p.len() - reference.len()..], &reference));
@@ -95,7 +78,9 @@ fn the_magnetic_encoder_is_calibrated_alike() {
 #[test]
 fn the_interferometers_are_followed_alike() {
     for name in ["homodyne_settle", "homodyne_stop"] {
-        let Some(path) = shared(name) else { return };
+        let Some(path) = nonius_kept::recording(CHECK, &format!("{name}.csv")) else {
+            return;
+        };
         let [chip, paper] = both(&path, "1");
         let whole = (paper[300] - chip[300]).round();
         let apart = |k: usize| (paper[k] - chip[k] - whole).abs();

@@ -40,6 +40,13 @@ fn numbers_in_the_readme_stand_in_the_pages_behind_them() {
             .iter()
             .map(|page| fs::read_to_string(root.join(page)).expect("a page that is linked"))
             .collect();
+        // Rows of the page of figures are quoted as they are.
+        if pages == ["docs/figures.md"] {
+            let quoted = |row: &str| row.starts_with(&format!("|{}|{measured}|", cells[1]));
+            assert!(text.lines().any(quoted), "not in docs/figures.md: {line}");
+            compared += 1;
+            continue;
+        }
         let known = numbers(&text);
         for number in numbers(measured) {
             assert!(

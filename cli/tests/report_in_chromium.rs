@@ -2,13 +2,14 @@
 //! the window; and each of these checks sees a fault that is planted.
 
 mod browser;
+mod support;
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 
 use browser::look;
 use nonius_sensor::{Motion, Sensor};
+use support::done;
 
 const WIDTHS: [u32; 2] = [1280, 390];
 
@@ -43,19 +44,6 @@ name = "flicker_noise"
 density_at_1_hz = 4e-4
 "#;
 
-fn nonius(arguments: &[&str], folder: &Path) {
-    let output = Command::new(env!("CARGO_BIN_EXE_nonius"))
-        .args(arguments)
-        .current_dir(folder)
-        .output()
-        .expect("nonius runs");
-    assert!(
-        output.status.success(),
-        "{}",
-        String::from_utf8_lossy(&output.stderr)
-    );
-}
-
 /// A recording of a sensor with these causes, two samples of which are missing in the middle.
 fn recording(causes: &str, folder: &Path) {
     let text = format!("{PLAIN}{causes}");
@@ -75,7 +63,7 @@ fn recording(causes: &str, folder: &Path) {
 
 fn diagnosed(causes: &str, folder: &Path) -> String {
     recording(causes, folder);
-    nonius(&["diagnose", "recording.csv", "-o", "diagnosis"], folder);
+    done(folder, &["diagnose", "recording.csv", "-o", "diagnosis"]);
     std::fs::read_to_string(folder.join("diagnosis/report.html")).expect("a report")
 }
 
@@ -121,10 +109,8 @@ fn the_report_of_noise_is_whole() {
 fn the_report_of_a_design_is_whole() {
     let scratch = tempfile::tempdir().expect("scratch folder");
     let design = design();
-    nonius(
-        &["build", &design.to_string_lossy(), "-o", "chip"],
-        scratch.path(),
-    );
+    let design = design.to_string_lossy();
+    done(scratch.path(), &["build", &design, "-o", "chip"]);
     let html = std::fs::read_to_string(scratch.path().join("chip/report.html")).expect("a report");
     for width in WIDTHS {
         let verdict = look(&html, width, scratch.path());

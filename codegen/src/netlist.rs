@@ -95,9 +95,13 @@ impl Netlist {
             {
                 continue;
             }
-            sections[node.formula]
-                .lines
-                .extend(expression::lines(w, id));
+            w.coefficients();
+            let mut lines = expression::lines(w, id);
+            let with = w.coefficients().join(", ");
+            if let (Some(last), false) = (lines.last_mut(), with.is_empty()) {
+                *last += &format!(", with {with}");
+            }
+            sections[node.formula].lines.extend(lines);
             if w.kept(id) {
                 let name = w.name(id);
                 w.declare(name, width(graph, id));

@@ -143,14 +143,6 @@ fn rom_mif(head: &str, rom: &Rom) -> String {
 
 /// The coefficients that the chip reads: name, integer, bits, fraction bits.
 fn coefficients(graph: &Graph) -> Vec<(String, i64, u32, u32)> {
-    let read = |id| {
-        let used = graph.nodes.iter().any(|n| n.op.operands().contains(&id));
-        used || graph
-            .next
-            .iter()
-            .chain(&graph.probes)
-            .any(|(_, n)| *n == id)
-    };
     graph
         .ids()
         .filter_map(|id| {
@@ -158,7 +150,7 @@ fn coefficients(graph: &Graph) -> Vec<(String, i64, u32, u32)> {
             let (Op::Constant(raw), Kind::Value) = (node.op, node.kind) else {
                 return None;
             };
-            let name = node.name.clone().filter(|_| read(id))?;
+            let name = node.name.clone().filter(|_| graph.is_read(id))?;
             Some((name, raw, node.format.width, node.format.fraction))
         })
         .collect()

@@ -3,7 +3,7 @@
 use nonius_model::graph::{NodeId, Op};
 
 use crate::netlist::width;
-use crate::writer::{Term, Writer, literal};
+use crate::writer::{Source, Term, Writer, literal};
 
 /// A multiplier.
 pub(crate) struct Multiplier {
@@ -15,12 +15,20 @@ pub(crate) struct Multiplier {
     pub(crate) ports: Vec<Port>,
 }
 
-/// An operand register: letter, bits, step and source, source when idle.
+/// An operand register.
 pub(crate) struct Port {
     pub(crate) letter: char,
     pub(crate) bits: u32,
-    pub(crate) loads: Vec<(String, String)>,
-    pub(crate) idle: String,
+    /// Steps and source.
+    pub(crate) loads: Vec<(String, Load)>,
+    pub(crate) idle: Load,
+}
+
+/// What an operand register takes, and the comment beside it: the name of a coefficient.
+#[derive(PartialEq)]
+pub(crate) struct Load {
+    pub(crate) source: String,
+    pub(crate) comment: String,
 }
 
 struct Product {
@@ -126,28 +134,33 @@ fn port(w: &Writer, products: &[Product], letter: char, side: usize) -> Port {
         .max()
         .unwrap_or(1);
     // The same source in several steps is one line.
-    let mut loads: Vec<(Vec<usize>, String)> = vec![];
+    let mut loads: Vec<(Vec<usize>, Load)> = vec![];
     for product in products {
-        let term = &product.operands[side].1;
-        let text = w.fit(term, term.fraction, bits, None);
-        match loads.iter_mut().find(|l| l.1 == text) {
-            Some(load) => load.0.push(product.step),
-            None => loads.push((vec![product.step], text)),
+        let (id, term) = &product.operands[side];
+        let load = Load {
+            source: w.fit(term, term.fraction, bits, None),
+            comment: match term.source {
+                Source::Constant(_) => format!(" // {}", w.name(*id)),
+                _ => String::new(),
+            },
+        };
+        match loads.iter_mut().find(|l| l.1 == load) {
+            Some(same) => same.0.push(product.step),
+            None => loads.push((vec![product.step], load)),
         }
     }
-    let idle = loads.pop().map_or_else(|| literal(0, bits), |l| l.1);
+    let nothing = Load {
+        source: literal(0, bits),
+        comment: String::new(),
+    };
+    let idle = loads.pop().map_or(nothing, |l| l.1);
     let step_bits = step_bits(w);
-    let loads = loads
-        .into_iter()
-        .map(|(steps, text)| {
-            let labels: Vec<String> = steps.iter().map(|s| format!("{step_bits}'d{s}")).collect();
-            (labels.join(", "), text)
-        })
-        .collect();
+    let label = |step: &usize| format!("{step_bits}'d{step}");
+    let labels = |steps: Vec<usize>| steps.iter().map(label).collect::<Vec<_>>().join(", ");
     Port {
         letter,
         bits,
-        loads,
+        loads: loads.into_iter().map(|l| (labels(l.0), l.1)).collect(),
         idle,
     }
 }
@@ -203,24 +216,29 @@ pub(crate) fn tables(w: &Writer) -> Vec<Table> {
     w.graph.roms.iter().enumerate().map(table).collect()
 }
 
-/// One row of the schedule: step, product in the multipliers, what is computed.
+/// The schedule as a table: step, products in the multipliers, what is computed.
 pub(crate) fn timetable(w: &Writer) -> Vec<String> {
-    let mut rows = vec![];
-    for step in 0..w.schedule.clocks {
-        let mut parts = vec![];
-        for id in w.graph.ids() {
-            let issued = w.schedule.issue[id.index()];
-            if let (Op::Mul(a, b), Some((_, cycle))) = (w.graph.node(id).op, issued)
-                && cycle == step
-            {
-                parts.push(format!("{} * {}", w.name(a), w.name(b)));
-            }
-        }
-        let products = if parts.is_empty() {
-            "-".to_owned()
-        } else {
-            parts.join(", ")
-        };
+    let products: Vec<String> = (0..w.schedule.clocks)
+        .map(|step| products(w, step))
+        .collect();
+    let title = if w.schedule.multipliers == 1 {
+        "in the multiplier"
+    } else {
+        "in the multipliers"
+    };
+    let longest = products.iter().map(String::len).max();
+    let width = longest.unwrap_or(0).max(title.len());
+    let columns = (width + 60).max(112);
+    let mut rows = vec![
+        format!("step | {title:<width$} | computed from it"),
+        format!(
+            "-----+-{:-<width$}-+{:-<rest$}",
+            "",
+            "",
+            rest = columns - width - 9
+        ),
+    ];
+    for (step, products) in products.iter().enumerate() {
         let named: Vec<&str> = w
             .graph
             .ids()
@@ -232,10 +250,28 @@ pub(crate) fn timetable(w: &Writer) -> Vec<String> {
             })
             .map(|id| w.name(id))
             .collect();
-        let first = format!("{step:>4} | {products:<28} | ");
-        rows.extend(wrap(&first, &named.join(" "), 112));
+        let first = format!("{step:>4} | {products:<width$} | ");
+        rows.extend(wrap(&first, &named.join(" "), columns));
     }
     rows
+}
+
+/// The products that are computed in a step.
+fn products(w: &Writer, step: usize) -> String {
+    let mut parts = vec![];
+    for id in w.graph.ids() {
+        let issued = w.schedule.issue[id.index()];
+        if let (Op::Mul(a, b), Some((_, cycle))) = (w.graph.node(id).op, issued)
+            && cycle == step
+        {
+            parts.push(format!("{} * {}", w.name(a), w.name(b)));
+        }
+    }
+    if parts.is_empty() {
+        "-".to_owned()
+    } else {
+        parts.join(", ")
+    }
 }
 
 /// `words` behind `first`, broken at `columns`; further lines are indented by an empty row of the table.

@@ -24,6 +24,8 @@ pub(crate) struct Writer<'a> {
     stable: Vec<bool>,
     widths: RefCell<BTreeMap<String, u32>>,
     read: RefCell<BTreeMap<String, u128>>,
+    /// Coefficients in what was written since they were last asked for.
+    coefficients: RefCell<Vec<String>>,
     declared: RefCell<Vec<(String, u32)>>,
 }
 
@@ -90,6 +92,7 @@ impl<'a> Writer<'a> {
             stable,
             widths: RefCell::new(widths),
             read: RefCell::default(),
+            coefficients: RefCell::default(),
             declared: RefCell::default(),
         }
     }
@@ -138,7 +141,10 @@ impl<'a> Writer<'a> {
     pub(crate) fn at(&self, id: NodeId, cycle: usize) -> Term {
         let node = self.graph.node(id);
         let source = match node.op {
-            Op::Constant(raw) => Source::Constant(raw.into()),
+            Op::Constant(raw) => {
+                self.note_coefficient(self.name(id));
+                Source::Constant(raw.into())
+            }
             Op::Input if SAMPLED.contains(&self.name(id)) => {
                 Source::Signal(format!("{}_held", self.name(id)), 0)
             }
@@ -155,6 +161,20 @@ impl<'a> Writer<'a> {
             fraction: node.format.fraction,
             range: node.range,
         }
+    }
+
+    /// A coefficient stands in what is written: its name, unless it says no more than its value.
+    fn note_coefficient(&self, name: &str) {
+        let mut noted = self.coefficients.borrow_mut();
+        let says = !matches!(name, "zero" | "one" | "minus_one" | "half" | "quarter");
+        if says && !noted.iter().any(|n| n == name) {
+            noted.push(name.to_owned());
+        }
+    }
+
+    /// The coefficients in what was written since the last time.
+    pub(crate) fn coefficients(&self) -> Vec<String> {
+        self.coefficients.take()
     }
 
     /// The expression of a condition.

@@ -18,8 +18,6 @@
 // and samples never overlap. Outputs are those of the last sample from `valid` until the next `sample_valid`; before
 // the first `valid` those that are not registers of the chip are undefined.
 //
-// step | in the multiplier            | computed from it
-// -----+------------------------------+------------------------------------------------------------------------
 //%- for row in timetable %//
 // ${ row }$
 //%- endfor %//
@@ -141,9 +139,9 @@ module ${ name }$ (
     always @(posedge clk)
         case (step)
 //%- for l in p.loads %//
-            ${ l.0 }$: operand_${ p.letter }$_${ m.index }$ <= ${ l.1 }$;
+            ${ l.0 }$: operand_${ p.letter }$_${ m.index }$ <= ${ l.1.source }$;${ l.1.comment }$
 //%- endfor %//
-            default: operand_${ p.letter }$_${ m.index }$ <= ${ p.idle }$;
+            default: operand_${ p.letter }$_${ m.index }$ <= ${ p.idle.source }$;${ p.idle.comment }$
         endcase
 //%- endfor %//
 //%- endfor %//

@@ -95,6 +95,24 @@ pub(crate) struct Candidate {
 }
 
 impl Candidate {
+    /// One choice, of amounts that can be anything, of shapes that are what they are; the chip cannot correct it, and
+    /// nothing is said of it yet.
+    pub(crate) fn new(name: &'static str, domain: Domain, shapes: Vec<Shape>) -> Self {
+        Self {
+            name,
+            domain,
+            trials: 1.0,
+            shapes,
+            id: 0,
+            motion: false,
+            sign: Sign::Any,
+            chip: Chip::CannotCorrect,
+            exact: None,
+            parameters: Rc::new(|_| vec![]),
+            evidence: Rc::new(|_| String::new()),
+        }
+    }
+
     /// Numbers that are no part of the cause, but of how it was when the recording began.
     pub(crate) fn given(&self) -> usize {
         match self.sign {

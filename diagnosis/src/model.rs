@@ -1,10 +1,12 @@
 //! The linear model of a recording: sums of products of every function with every other, and fits made of them alone.
 
+mod halves;
+mod residual;
+
 use nalgebra::{DMatrix, DVector};
 
 use crate::causes::Catalogue;
 use crate::context::Context;
-use crate::finding::Effect;
 use crate::flicker::{self, Flicker};
 use crate::library::{ROWS, Row, Shape};
 use crate::selection::Accepted;
@@ -12,30 +14,14 @@ use crate::solve::{Normal, Solution};
 use crate::sweep::Samples;
 use crate::whiten::Whitener;
 
+pub(crate) use halves::Halves;
+pub(crate) use residual::{Residual, above_motion};
+
 /// Share of a function's square below which it is a rounding error.
 const NOTHING: f64 = 1e-18;
 
-/// What the model so far leaves of the recording.
-#[derive(Clone, Debug)]
-pub(crate) struct Residual {
-    /// Along the radius, in amplitudes.
-    pub radial: Vec<f64>,
-    /// Along the circle, in radians: above the motion, or against the reference.
-    pub tangential: Vec<f64>,
-    /// What moves faster than the spline, in radians: where real vibration shows; `None` where it is the tangential
-    /// residual.
-    pub motion: Option<Vec<f64>>,
-}
-
-impl Residual {
-    /// Where real vibration shows.
-    pub(crate) fn fast(&self) -> &[f64] {
-        self.motion.as_deref().unwrap_or(&self.tangential)
-    }
-}
-
 /// Sums of products of one pass, row by row: atoms in the order asked for, then the data.
-struct Moments(pub(crate) [DMatrix<f64>; 3]);
+struct Moments([DMatrix<f64>; 3]);
 
 /// Data, functions and sums of a recording.
 pub(crate) struct System<'a> {
@@ -49,18 +35,6 @@ pub(crate) struct System<'a> {
     tried: usize,
     /// Flicker noise in what everything that any cause could explain leaves.
     pub(crate) flicker: Option<Flicker>,
-}
-
-/// The sums of either half of interleaved blocks, for some atoms only.
-pub(crate) struct Halves {
-    /// Where each atom stands in the sums.
-    atoms: Vec<usize>,
-    white: [Normal; 2],
-    /// Plain, the rows apart.
-    plain: [[Normal; 3]; 2],
-    /// Samples that count, in each half.
-    counts: [f64; 2],
-    against: bool,
 }
 
 /// Shapes in the model, and their amounts.
@@ -277,112 +251,6 @@ impl<'a> System<'a> {
         let solution = self.total.of(&shapes).solve();
         Fit { shapes, solution }
     }
-
-    /// What a fit leaves.
-    pub(crate) fn residual(&self, fit: &Fit) -> Residual {
-        let [radial, tangential, motion] = self.samples.left(&fit.amounts());
-        Residual {
-            radial,
-            tangential,
-            motion: (!motion.is_empty()).then_some(motion),
-        }
-    }
-
-    /// What some of the shapes of a fit do, as it is seen beside the motion.
-    pub(crate) fn effect(&self, fit: &Fit, range: std::ops::Range<usize>) -> Effect {
-        let own = amounts(&fit.shapes[range.clone()], &fit.solution.x[range]);
-        let left = self.samples.left(&own);
-        let taken = |row: Row| {
-            let pairs = self.samples.data[row as usize]
-                .iter()
-                .zip(&left[row as usize]);
-            pairs.map(|(d, l)| (d - l) as f32).collect()
-        };
-        Effect {
-            radial: taken(Row::Radial),
-            tangential: taken(Row::Tangential),
-            motion: taken(Row::Motion),
-        }
-    }
-
-    /// The sums of either half, for all that some fits are made of.
-    pub(crate) fn halves(&self, shapes: &[Shape]) -> Halves {
-        let atoms = atoms_of(shapes);
-        let make = || self.empty(&atoms);
-        let (mut white, mut plain) = ([make(), make()], [make(), make()]);
-        self.samples.pass(&atoms, 1, &mut |half, parts| {
-            for (row, part) in parts.iter().enumerate() {
-                part.add_products(true, 0, &mut white[half].0[row]);
-                part.add_products(false, 0, &mut plain[half].0[row]);
-            }
-        });
-        let only = |moments: &Moments, row: usize| {
-            let mut one = self.empty(&atoms);
-            one.0[row].copy_from(&moments.0[row]);
-            self.normal(&one, &atoms, false)
-        };
-        Halves {
-            white: white.map(|m| self.normal(&m, &atoms, true)),
-            plain: plain.map(|m| [0, 1, 2].map(|row| only(&m, row))),
-            counts: self.samples.counts(),
-            against: self.context.against_reference.is_some(),
-            atoms,
-        }
-    }
-}
-
-impl Halves {
-    fn mapped(&self, shapes: &[Shape]) -> Vec<Shape> {
-        shapes.iter().map(|s| s.among(&self.atoms)).collect()
-    }
-
-    fn left(&self, half: usize, row: usize, shapes: &[Shape], x: &[f64]) -> f64 {
-        let normal = self.plain[half][row].of(shapes);
-        let x = DVector::from_column_slice(x);
-        normal.power - 2.0 * normal.right.dot(&x) + (&normal.gram * &x).dot(&x)
-    }
-
-    /// Rms of radial and tangential residual together, on blocks that were not fitted.
-    pub(crate) fn held_out(&self, shapes: &[Shape]) -> f64 {
-        let shapes = self.mapped(shapes);
-        let mut sum = 0.0;
-        for half in 0..2 {
-            let x = self.white[half].of(&shapes).solve().x;
-            sum += (0..2)
-                .map(|row| self.left(1 - half, row, &shapes, &x))
-                .sum::<f64>();
-        }
-        let count = 2.0 * (self.counts[0] + self.counts[1]);
-        (sum.max(0.0) / count.max(1.0)).sqrt()
-    }
-
-    /// Rms of radial and tangential residual together.
-    pub(crate) fn rms(&self, fit: &Fit) -> f64 {
-        let sum = self.square(fit, 0) + self.square(fit, 1);
-        let count = 2.0 * (self.counts[0] + self.counts[1]);
-        (sum.max(0.0) / count.max(1.0)).sqrt()
-    }
-
-    /// Log-likelihood of what a fit leaves of either row, its noise free.
-    pub(crate) fn log_likelihood(&self, fit: &Fit) -> f64 {
-        let count = self.counts[0] + self.counts[1];
-        let of = |row| -0.5 * count * (self.square(fit, row) / count).max(1e-300).ln();
-        of(0) + of(1)
-    }
-
-    /// Position error against the reference, rms in radians.
-    pub(crate) fn position_error(&self, fit: &Fit) -> Option<f64> {
-        let count = self.counts[0] + self.counts[1];
-        self.against
-            .then(|| (self.square(fit, 1).max(0.0) / count.max(1.0)).sqrt())
-    }
-
-    fn square(&self, fit: &Fit, row: usize) -> f64 {
-        let shapes = self.mapped(&fit.shapes);
-        (0..2)
-            .map(|half| self.left(half, row, &shapes, &fit.solution.x))
-            .sum()
-    }
 }
 
 impl Fit {
@@ -408,12 +276,4 @@ pub(crate) fn amounts(shapes: &[Shape], x: &[f64]) -> Vec<(usize, f64)> {
         }
     }
     sums.into_iter().collect()
-}
-
-/// What of an angle the spline does not follow.
-pub(crate) fn above_motion(context: &Context, angle: &[f64]) -> Vec<f64> {
-    match &context.spline {
-        Some(spline) => spline.residual(angle, &context.weight),
-        None => vec![0.0; angle.len()],
-    }
 }

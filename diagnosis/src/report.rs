@@ -36,7 +36,7 @@ struct Page<'a> {
     left: Vec<String>,
     unseen: Vec<String>,
     style: &'static str,
-    script: &'static str,
+    script: String,
 }
 
 /// A number before and after.
@@ -138,7 +138,7 @@ pub fn report(
         signature: words::capital(&found.unexplained.signature),
         unseen: unseen(&found.context),
         style: nonius_plot::STYLE,
-        script: nonius_plot::SCRIPT,
+        script: nonius_plot::script(),
     }
     .render()
 }

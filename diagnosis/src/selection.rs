@@ -85,37 +85,19 @@ impl Selection {
     /// The model that can be simulated: the five parameters and the causes that are findings, without the shapes that stand
     /// in for what has no name. Those would make anything look explained.
     pub(crate) fn named(&self, system: &System) -> Self {
-        let names = self.with_names_alone(system);
-        let mut shapes = self.base.shapes.clone();
-        let mut accepted = vec![];
-        for (one, alone) in self.accepted.iter().zip(&names.accepted) {
-            let Some(own) = self
-                .own(one, system)
-                .or_else(|| self.held(&names, alone, system))
-            else {
-                continue;
-            };
-            let first = shapes.len();
-            shapes.extend(one.candidate.shapes.iter().cloned());
-            accepted.push(Accepted {
-                first,
-                own,
-                ..one.clone()
-            });
-        }
-        Self {
-            fit: system.fit(shapes),
-            base: self.base.clone(),
-            accepted,
-            unnamed: vec![],
-            again: vec![],
-        }
+        let names = self.of(self.accepted.clone(), system);
+        let pairs = self.accepted.iter().zip(&names.accepted);
+        let findings = pairs.filter_map(|(one, alone)| {
+            let own = self.own(one, system);
+            let own = own.or_else(|| self.held(&names, alone, system))?;
+            Some(Accepted { own, ..one.clone() })
+        });
+        self.of(findings.collect(), system)
     }
 
-    /// Everything that was accepted, without the shapes that stand in for what has no name.
-    fn with_names_alone(&self, system: &System) -> Self {
+    /// The five parameters and these causes, without the shapes that stand in for what has no name.
+    fn of(&self, mut accepted: Vec<Accepted>, system: &System) -> Self {
         let mut shapes = self.base.shapes.clone();
-        let mut accepted = self.accepted.clone();
         for one in &mut accepted {
             one.first = shapes.len();
             shapes.extend(one.candidate.shapes.iter().cloned());

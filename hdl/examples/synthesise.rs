@@ -27,6 +27,8 @@ struct Table {
 #[derive(Serialize)]
 struct Row {
     design: String,
+    /// The clock that the design's own sample rate needs.
+    needed_mhz: Option<f64>,
     clocks_per_sample: Option<u64>,
     megasamples_per_s: Option<f64>,
     #[serde(flatten)]
@@ -72,6 +74,7 @@ fn run(docs: &Path, chips: &[String], devices: &[Device]) -> Result<(), Box<dyn 
             }
             rows.push(Row {
                 design: chip.name.clone(),
+                needed_mhz: needed(dir)?,
                 clocks_per_sample: chip.clocks_per_sample,
                 megasamples_per_s: chip
                     .clocks_per_sample
@@ -92,13 +95,22 @@ fn run(docs: &Path, chips: &[String], devices: &[Device]) -> Result<(), Box<dyn 
     Ok(())
 }
 
+/// The clock that the design's own sample rate needs, MHz: `design.json` says.
+fn needed(dir: &str) -> Result<Option<f64>, Box<dyn Error>> {
+    let text = fs::read_to_string(Path::new(dir).join("design.json"))?;
+    let json: serde_json::Value = serde_json::from_str(&text)?;
+    Ok(json["latency"]["clock_hz_min"]
+        .as_f64()
+        .map(|hertz| hertz / 1e6))
+}
+
 fn markdown(rows: &[Row]) -> Result<String, std::fmt::Error> {
     let mut text = String::from(HEAD);
     for row in rows {
         let Placed { chip, harness, .. } = &row.placed;
         writeln!(
             text,
-            "| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} + {} | Yosys {}, nextpnr {} |",
+            "| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} + {} | Yosys {}, nextpnr {} |",
             row.design,
             row.placed.device.name(),
             chip.lut4,
@@ -107,6 +119,7 @@ fn markdown(rows: &[Row]) -> Result<String, std::fmt::Error> {
             chip.bram,
             chip.dsp,
             number(row.placed.best_mhz, 1, "not placed"),
+            number(row.needed_mhz, 1, "–"),
             row.clocks_per_sample
                 .map_or("?".to_owned(), |it| it.to_string()),
             number(row.megasamples_per_s, 2, "–"),
@@ -132,8 +145,9 @@ LUT4, carry, FF, BRAM and DSP are the cells of the chip's clean top by itself, e
 kept. The clock is the best of three seeds of nextpnr, from register to register, with the
 chip in a harness that feeds its inputs from a shift register and catches every output in a
 register behind one multiplexer; the harness is not counted with the chip and stands in its
-own column.
+own column. *Needed* is the clock for the design's own sample rate: where it is more than what
+the device reaches, that design wants a faster one.
 
-| design | device | LUT4 | carry | FF | BRAM | DSP | MHz | clocks per sample | MS/s | harness LUT4 + FF | tools |
-|---|---|---|---|---|---|---|---|---|---|---|---|
+| design | device | LUT4 | carry | FF | BRAM | DSP | MHz | MHz needed | clocks per sample | MS/s | harness LUT4 + FF | tools |
+|---|---|---|---|---|---|---|---|---|---|---|---|---|
 ";

@@ -70,11 +70,28 @@ fn ports_only(dir: &Path) {
     fs::write(file, ports.join("\n") + "\n").expect("a testbench");
 }
 
+/// LUT4 of a hand-made chip of optical's widths without lock detection, gears, bounds and counters, and what all these may
+/// take.
+const PROTOTYPE: usize = 2533;
+const ALLOWED: f64 = 1.25;
+
+/// The chip that is compared with a hand-made one is not much larger.
+fn small_enough(dir: &Path) {
+    let netlist = fs::read_to_string(dir.join("netlist.v")).expect("a netlist");
+    let cells = netlist.matches("SB_LUT4 ").count();
+    println!("{cells} LUT4");
+    assert!(cells > PROTOTYPE / 2, "{cells} LUT4: not all are counted");
+    assert!(cells as f64 <= ALLOWED * PROTOTYPE as f64, "{cells} LUT4");
+}
+
 fn synthesised(spec: &Spec, change: impl Fn(&Path)) -> Run {
     let dir = tempfile::tempdir().expect("a scratch folder");
     chip::write(spec, ROWS, dir.path());
     change(dir.path());
     synthesise(dir.path(), &spec.name);
+    if spec.name == "optical" {
+        small_enough(dir.path());
+    }
     ports_only(dir.path());
     let chip = ChipDir::open(dir.path()).expect("a chip");
     let limit = Duration::from_secs(900);

@@ -2,6 +2,8 @@
 
 mod chip;
 
+use std::path::Path;
+
 use chip::optical;
 use nonius_hdl::verify::{Options, verify};
 use nonius_model::design::Design;
@@ -49,8 +51,18 @@ fn verdict(files: &Files) -> (bool, String) {
     (report.passed, failure)
 }
 
+/// What is caught, on the page of figures.
+fn kept(place: &str, faults: usize) {
+    nonius_kept::figure(
+        Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/figures.md")),
+        &format!("faults planted in {place}, caught by the vectors"),
+        &format!("{faults} of {faults}"),
+        "hdl/tests/planted_faults.rs",
+    );
+}
+
 /// The vectors see each of these in the chip, and say where.
-fn all_caught(files: &Files, rtl: &str, faults: Vec<Fault>) {
+fn all_caught(place: &str, files: &Files, rtl: &str, faults: &[Fault]) {
     let sound = text(files, rtl);
     let faulty: Vec<_> = faults
         .iter()
@@ -61,6 +73,7 @@ fn all_caught(files: &Files, rtl: &str, faults: Vec<Fault>) {
         assert!(!passed, "{name}: not caught");
         assert!(failure.contains("signal"), "{name}: {failure}");
     });
+    kept(place, faults.len());
 }
 
 /// The one line that holds all of `words`.
@@ -277,7 +290,12 @@ fn vectors_catch_every_fault_in_the_correction_of_harmonics() {
     let mut spec = optical();
     spec.correction.harmonics = chip::shipped::variants::third_and_fifth();
     let files = files(&spec);
-    all_caught(&files, RTL, harmonic_faults());
+    all_caught(
+        "the correction of harmonics",
+        &files,
+        RTL,
+        &harmonic_faults(),
+    );
     // One entry of the table: first, last and some between, in each column.
     let path = "coefficients/harmonic_table.mem";
     let design = Design::new(&spec).expect("a design that works");
@@ -292,16 +310,16 @@ fn vectors_catch_every_fault_in_the_correction_of_harmonics() {
         .collect();
     let last = table.rows() - 1;
     // Two bits below the sign: what the vectors, which meet each row some times, cannot miss.
-    [(0, ends[0]), (last, ends[1]), (13, ends[2]), (137, ends[3])]
-        .par_iter()
-        .for_each(|&(row, end)| {
-            let rows = text(&files, path);
-            let mut rows: Vec<String> = rows.lines().map(ToOwned::to_owned).collect();
-            let word = u128::from_str_radix(&rows[row], 16).expect("hex") ^ (1 << (end - 3));
-            rows[row] = format!("{word:0digits$x}", digits = rows[row].len());
-            let (passed, _) = verdict(&altered(&files, path, &(rows.join("\n") + "\n")));
-            assert!(!passed, "row {row}, bit {}: not caught", end - 3);
-        });
+    let faults = [(0, ends[0]), (last, ends[1]), (13, ends[2]), (137, ends[3])];
+    faults.par_iter().for_each(|&(row, end)| {
+        let rows = text(&files, path);
+        let mut rows: Vec<String> = rows.lines().map(ToOwned::to_owned).collect();
+        let word = u128::from_str_radix(&rows[row], 16).expect("hex") ^ (1 << (end - 3));
+        rows[row] = format!("{word:0digits$x}", digits = rows[row].len());
+        let (passed, _) = verdict(&altered(&files, path, &(rows.join("\n") + "\n")));
+        assert!(!passed, "row {row}, bit {}: not caught", end - 3);
+    });
+    kept("the table of harmonics", faults.len());
 }
 
 const RTL: &str = "rtl/optical.v";
@@ -311,12 +329,12 @@ const TABLE: &str = "coefficients/sine_table.mem";
 fn vectors_catch_every_fault_in_the_correction_of_skew() {
     let mut spec = optical();
     spec.correction.channel_skew_s = 1e-7;
-    all_caught(&files(&spec), RTL, skew_faults());
+    all_caught("the correction of skew", &files(&spec), RTL, &skew_faults());
 }
 
 #[test]
 fn vectors_catch_every_planted_fault() {
-    all_caught(&files(&optical()), RTL, faults());
+    all_caught("the Verilog", &files(&optical()), RTL, &faults());
 }
 
 /// One entry of the table: first, last and some between, the last bit of value or slope.
@@ -326,15 +344,15 @@ fn vectors_catch_every_fault_in_the_table() {
     let entries = text(&files, TABLE);
     let rows: Vec<&str> = entries.lines().collect();
     let last = rows.len() - 1;
-    [(0, 14), (last, 0), (13, 14), (37, 0)]
-        .par_iter()
-        .for_each(|&(row, bit)| {
-            let word = u64::from_str_radix(rows[row], 16).expect("hex") ^ (1 << bit);
-            let digits = rows[row].len();
-            let mut faulty: Vec<String> = rows.iter().map(ToString::to_string).collect();
-            faulty[row] = format!("{word:0digits$x}");
-            let faulty = faulty.join("\n") + "\n";
-            let (passed, _) = verdict(&altered(&files, TABLE, &faulty));
-            assert!(!passed, "row {row}, bit {bit}: not caught");
-        });
+    let faults = [(0, 14), (last, 0), (13, 14), (37, 0)];
+    faults.par_iter().for_each(|&(row, bit)| {
+        let word = u64::from_str_radix(rows[row], 16).expect("hex") ^ (1 << bit);
+        let digits = rows[row].len();
+        let mut faulty: Vec<String> = rows.iter().map(ToString::to_string).collect();
+        faulty[row] = format!("{word:0digits$x}");
+        let faulty = faulty.join("\n") + "\n";
+        let (passed, _) = verdict(&altered(&files, TABLE, &faulty));
+        assert!(!passed, "row {row}, bit {bit}: not caught");
+    });
+    kept("the sine table", faults.len());
 }

@@ -1,8 +1,7 @@
 //! Every measured recording, played into the Verilog of a design that was made for it. The homodyne ones are long and
 //! go through Verilator alone.
 
-use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Duration;
 
 use nonius_hdl::progress::silent;
@@ -11,19 +10,6 @@ use nonius_model::design::Design;
 use nonius_model::spec::Spec;
 use nonius_recording::{Overrides, Recording};
 use rayon::prelude::*;
-
-/// The folder of the recordings; says past the capture of test output where it is absent.
-fn shared() -> Option<PathBuf> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data");
-    if folder.is_dir() {
-        return Some(folder);
-    }
-    let _ = writeln!(
-        std::io::stderr(),
-        "\nNOT RUN: recordings in Verilog: ../shared/data is not there"
-    );
-    None
-}
 
 /// However long a busy machine takes.
 const BOTH: Options = Options {
@@ -60,7 +46,9 @@ fn agrees(file: &Path, repeat: u32, options: &Options) {
 
 #[test]
 fn recordings_agree_in_every_bit() {
-    let Some(folder) = shared() else { return };
+    let Some(folder) = nonius_kept::recordings("recordings in Verilog") else {
+        return;
+    };
     let recordings = [
         ("rm44_center", 4, BOTH),
         ("rm44_static_x500um", 4, BOTH),
@@ -82,7 +70,9 @@ fn recordings_agree_in_every_bit() {
 /// One period of the first encoder of the table, far from an ellipse, round and round.
 #[test]
 fn an_averaged_period_agrees_in_every_bit() {
-    let Some(folder) = shared() else { return };
+    let Some(folder) = nonius_kept::recordings("recordings in Verilog") else {
+        return;
+    };
     let table =
         std::fs::read_to_string(folder.join("optical_servo_tables.csv")).expect("the table");
     let mut lines = table.lines();

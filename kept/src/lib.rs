@@ -1,5 +1,11 @@
 //! For tests: files that are kept in the repository are compared with what is made now, and written anew where
-//! `NONIUS_BLESS` is set.
+//! `NONIUS_BLESS` is set; and recordings that are kept elsewhere.
+
+mod figures;
+mod recordings;
+
+pub use figures::figure;
+pub use recordings::{recording, recordings};
 
 use std::fs;
 use std::path::Path;

@@ -3,7 +3,7 @@
 mod support;
 
 use nonius_model::design::{Design, DesignError, Words};
-use nonius_model::spec::{CalibrationMethod, CalibrationStart, Multipliers, Overrides, Spec};
+use nonius_model::spec::{CalibrationMethod, CalibrationStart, Multipliers, Overrides, Spec, keys};
 use proptest::prelude::*;
 use support::{Encoder, optical, shipped, wrapped};
 
@@ -119,22 +119,23 @@ fn what_cannot_work_names_the_field() {
     }
 }
 
-/// Asking for more accuracy takes longer words; each chosen word is the shortest that keeps the budget.
+/// Asking for more accuracy takes longer words, of twice the accuracy those that count most, of sixteen times all.
 #[test]
 fn words_follow_from_the_accuracy() {
-    let mut spec = optical();
-    spec.adc.bits = 16;
-    spec.sensor.noise_rms = 0.0;
-    let wide = Design::new(&spec).expect("a design that works");
-    spec.accuracy.rms_periods /= 2.0;
-    let wider = Design::new(&spec).expect("a design that works");
-    for (field, word, _) in WORDS {
-        let (one, two) = (word(&wide.words), word(&wider.words));
-        assert!(two >= one, "{field}: {one} bits, then {two}");
-    }
-    assert!(wider.words.signal_fraction > wide.words.signal_fraction);
-
-    assert!(wide.budget.arithmetic() <= wide.budget.allowed);
+    let words = |finer: f64| {
+        let mut spec = optical();
+        spec.adc.bits = 18;
+        spec.sensor.noise_rms = 0.0;
+        spec.accuracy.rms_periods /= finer;
+        let design = Design::new(&spec).expect("a design that works");
+        assert!(design.budget.arithmetic() <= design.budget.allowed);
+        WORDS.map(|(_, word, _)| word(&design.words))
+    };
+    let [once, twice, sixteen] = [1.0, 2.0, 16.0].map(words);
+    println!("{once:?} {twice:?} {sixteen:?}");
+    assert!(twice.iter().zip(once).all(|(two, one)| *two >= one));
+    assert!(twice.iter().sum::<u32>() > once.iter().sum::<u32>());
+    assert!(sixteen.iter().zip(once).all(|(more, one)| *more > one));
 }
 
 /// The field of a word in `design.toml`, the word, and how to ask for it.
@@ -221,24 +222,69 @@ proptest! {
         let _ = Spec::from_toml(&garbage, "d.toml");
     }
 
-    /// Any number in any field is either a design or a refusal.
+    /// Anything in any field, of those too that the shipped design leaves out, is either a design or a refusal.
     #[test]
-    fn no_number_makes_the_design_panic(
-        line in 0usize..60,
+    fn no_value_makes_the_design_panic(
+        field in 0..keys().count(),
         value in prop_oneof![
             Just("0".to_owned()), Just("-1".to_owned()), Just("1e308".to_owned()), Just("nan".to_owned()),
-            Just("inf".to_owned()), Just("4294967295".to_owned()), (-40i32..40).prop_map(|n| n.to_string()),
+            Just("inf".to_owned()), Just("4294967295".to_owned()), (-40i32..50).prop_map(|n| n.to_string()),
             (-12.0..12.0f64).prop_map(|x| format!("{:e}", 10f64.powf(x))),
+            prop_oneof![
+                Just("all"), Just("exact"), Just("batch"), Just("sum_of_squares"), Just("least_squares"),
+                Just("offset_binary"), Just(""),
+            ].prop_map(|word| format!("{word:?}")),
+            Just("true".to_owned()), Just("[1]".to_owned()),
         ],
     ) {
-        let changed: Vec<String> = text().lines().enumerate().map(|(n, l)| match l.split_once('=') {
-            Some((key, _)) if n == line => format!("{key}= {value}"),
-            _ => l.to_owned(),
-        }).collect();
-        if let Ok(spec) = Spec::from_toml(&changed.join("\n"), "d.toml") {
+        let (section, key) = keys().nth(field).expect("a field");
+        let mut design: toml::Table = text().parse().expect("a shipped design");
+        let value: toml::Table = format!("it = {value}").parse().expect("a value");
+        let fields = match section.split_once('.') {
+            // One entry of a list, sound but for this field.
+            Some((section, list)) => {
+                let mut entry: toml::Table = keys()
+                    .filter(|(of, _)| of.ends_with(list))
+                    .map(|(_, key)| (key.to_owned(), if key == "order" { 3.into() } else { 0.01.into() }))
+                    .collect();
+                entry.insert(key.into(), value["it"].clone());
+                let fields = design.entry(section).or_insert(toml::Table::new().into());
+                fields.as_table_mut().expect("a section").insert(list.into(), vec![entry].into());
+                None
+            }
+            None => Some(design.entry(section).or_insert(toml::Table::new().into())),
+        };
+        if let Some(fields) = fields {
+            let fields = fields.as_table_mut().expect("a section");
+            fields.insert(key.into(), value["it"].clone());
+        }
+        if let Ok(spec) = Spec::from_toml(&design.to_string(), "d.toml") {
             let _ = Design::new(&spec);
         }
     }
+}
+
+/// What does not fit is named with what it is made of, with its steps, and with the way out.
+#[test]
+fn a_value_that_does_not_fit_is_named() {
+    let mut spec = optical();
+    spec.adc.bits = 18;
+    spec.sensor.noise_rms = 0.0;
+    spec.calibration.parameters = 9;
+    spec.calibration.method = CalibrationMethod::SumOfSquares;
+    spec.formats.signal_fraction = Some(24);
+    spec.formats.phase_bits = Some(44);
+    spec.formats.accumulator_fraction = Some(44);
+    let refused = Design::new(&spec).expect_err("too many bits").to_string();
+    for words in [
+        "does not fit s63.48",
+        "in steps of 2^-",
+        " is ",
+        "[formats]",
+    ] {
+        assert!(refused.contains(words), "{refused}");
+    }
+    assert!(!refused.contains("operand"), "{refused}");
 }
 
 /// The test's own encoder: an ideal one has no offset, angles wrap to half a turn.

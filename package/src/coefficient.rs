@@ -2,7 +2,7 @@
 
 use nonius_model::design::Design;
 use nonius_model::format::Format;
-use nonius_model::graph::{NodeId, Op};
+use nonius_model::graph::Op;
 use nonius_model::kernel::{Coefficients, Constant};
 use serde::Serialize;
 
@@ -35,7 +35,7 @@ impl Coefficient {
             let used = design.graph.ids().any(|id| {
                 let node = design.graph.node(id);
                 let named = node.name.as_deref() == Some(name);
-                named && matches!(node.op, Op::Constant(_)) && is_read(design, id)
+                named && matches!(node.op, Op::Constant(_)) && design.graph.is_read(id)
             });
             if !used {
                 return;
@@ -68,14 +68,4 @@ impl Coefficient {
         });
         list
     }
-}
-
-fn is_read(design: &Design, id: NodeId) -> bool {
-    let graph = &design.graph;
-    let used = graph.nodes.iter().any(|n| n.op.operands().contains(&id));
-    used || graph
-        .next
-        .iter()
-        .chain(&graph.probes)
-        .any(|(_, n)| *n == id)
 }

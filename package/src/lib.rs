@@ -5,6 +5,7 @@ mod coefficient;
 mod curves;
 mod design_json;
 mod diagram;
+mod engineering;
 mod harmonics;
 mod report;
 mod signals;
@@ -14,6 +15,7 @@ mod tracking;
 mod write;
 
 pub use design_json::DesignJson;
+pub use engineering::engineering;
 pub use signals::{Signal, signals};
 pub use simulation::{Accuracy, Simulation, simulate};
 pub use sine::{SineError, sine_error};
@@ -94,7 +96,7 @@ pub fn package_with(
             waves.sample(s, &probes, &model)?;
         }
         waves.finish()?;
-        let save = gtkw(&format!("{name}.vcd"), design, &chip.columns, chip.clocks);
+        let save = gtkw(name, design, &chip.columns, chip.clocks);
         files.push((format!("waves/{name}.vcd"), bytes));
         files.push((format!("waves/{name}.gtkw"), save.into_bytes()));
     }

@@ -8,6 +8,7 @@ use nonius_plot::{Axis, Look, Mark, Plot, Series};
 use crate::curves;
 use crate::design_json::DesignJson;
 use crate::diagram::Diagram;
+use crate::engineering::engineering;
 use crate::simulation::Simulation;
 
 #[derive(Template)]
@@ -19,9 +20,9 @@ struct Page<'a> {
     bode: String,
     simulated: [String; 2],
     style: &'static str,
-    script: &'static str,
+    script: String,
     bars: Vec<Bar>,
-    /// The save file of the waves that were written.
+    /// The waves that were written, without the ending.
     waves: &'a str,
     files: Vec<(String, String)>,
 }
@@ -40,18 +41,6 @@ struct Bar {
     /// Share of the widest bar, per cent.
     width: String,
     class: &'static str,
-}
-
-/// A number with three digits and a prefix.
-fn engineering(value: f64, unit: &str) -> String {
-    if value == 0.0 || !value.is_finite() {
-        return format!("{value} {unit}");
-    }
-    let steps = (value.abs().log10() / 3.0).floor().clamp(-5.0, 4.0) as i32;
-    let prefix = ["f", "p", "n", "µ", "m", "", "k", "M", "G", "T"][(steps + 5) as usize];
-    let scaled = value / 1000f64.powi(steps);
-    let digits = (2 - scaled.abs().log10().floor() as i32).clamp(0, 3) as usize;
-    format!("{scaled:.digits$} {prefix}{unit}")
 }
 
 fn facts(design: &Design, j: &DesignJson) -> Vec<Fact> {
@@ -111,7 +100,7 @@ fn said(design: &Design, j: &DesignJson) -> Vec<(&'static str, String, String)> 
             SIMULATED,
             per_period(j.simulated.rms_periods),
             format!(
-                "bit-true, rms; largest {:.2e}; asked {:.2e}{}",
+                "bit-true, rms, with half of the promised errors; largest {:.2e}; asked {:.2e}{}",
                 j.simulated.largest_periods,
                 j.budget.asked,
                 if j.simulated.locked {
@@ -265,7 +254,7 @@ fn bars(j: &DesignJson) -> Vec<Bar> {
         (
             "noise of the calibration at its last gamma".to_owned(),
             j.budget.calibration,
-            "own",
+            "search",
         ),
     ];
     if j.budget.uncorrected > 0.0 {
@@ -326,12 +315,12 @@ pub(crate) fn page(
         bode: bode(design).html(),
         simulated: simulated(simulation).map(|plot| plot.html()),
         style: nonius_plot::STYLE,
-        script: nonius_plot::SCRIPT,
+        script: nonius_plot::script(),
         bars: bars(j),
         waves: written
             .iter()
-            .find(|(path, _)| path.ends_with(".gtkw"))
-            .map_or("", |(path, _)| path),
+            .find_map(|(path, _)| path.strip_suffix(".gtkw"))
+            .unwrap_or_default(),
         files: files(written),
     }
     .render()

@@ -32,6 +32,8 @@ pub struct Simulation {
     pub along: Vec<[f64; 2]>,
 }
 
+/// Most samples that the calibration is given.
+const CONVERGE: usize = 400_000;
 /// Samples of a ramp down and of the sweep over a period.
 const RAMP: usize = 5_000;
 const SWEEP: usize = 100_000;
@@ -48,7 +50,9 @@ pub fn simulate(design: &Design) -> Simulation {
     // At the last gamma the slowest mode settles by an e-th in about 2/(64 gamma) periods.
     let last = 2f64.powi(spec.calibration.gamma_last as i32);
     let periods = 60.0 + 10.0 * last / 64.0 * 2.0;
-    let converge = ((periods / fast) as usize).clamp(5_000, 400_000);
+    // Where the machine is so slow that this would take for ever, it is simulated faster than it is.
+    let fast = fast.max(periods / CONVERGE as f64);
+    let converge = ((periods / fast) as usize).clamp(5_000, CONVERGE);
     // An axis slows down, the loop comes to rest behind the ramp, and a whole period is measured.
     let turns = spec.tracking.bandwidth_hz * TAU / spec.adc.sample_rate_hz;
     let settle = RAMP + ((20.0 / turns) as usize).min(100_000);

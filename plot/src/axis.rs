@@ -21,11 +21,15 @@ pub struct Axis {
 }
 
 /// Most intervals between the ticks of an axis.
-const INTERVALS: f64 = 5.0;
+pub(crate) const INTERVALS: f64 = 5.0;
 /// Decades below which a logarithmic axis has the numbers of a linear one.
-const LINEAR: f64 = 0.7;
+pub(crate) const LINEAR: f64 = 0.7;
 /// Decades below which 2 and 5 have numbers too.
-const FEW: f64 = 2.5;
+pub(crate) const FEW: f64 = 2.5;
+/// From it on a number has a power of ten.
+pub(crate) const LARGE: f64 = 1e5;
+/// Step below which it has one, too.
+pub(crate) const SMALL: f64 = 1e-4;
 
 impl Axis {
     /// A linear axis between two ends.
@@ -133,7 +137,7 @@ fn number(value: f64, step: f64) -> String {
     if value == 0.0 {
         return "0".into();
     }
-    if value.abs() >= 1e5 || step < 1e-4 {
+    if value.abs() >= LARGE || step < SMALL {
         let digits = (value.abs().log10().floor() - step.log10().floor()).clamp(0.0, 6.0) as usize;
         return format!("{value:.digits$e}");
     }

@@ -7,10 +7,10 @@ use crate::escaped;
 use crate::plot::Plot;
 
 /// Units of the drawing from one end of an axis to the other.
-const UNITS: f64 = 1000.0;
+pub(crate) const UNITS: f64 = 1000.0;
 
 impl Plot {
-    /// A `<figure>` that fills the width it is given; it needs [`crate::STYLE`], and [`crate::SCRIPT`] to be zoomed.
+    /// A `<figure>` that fills the width it is given; it needs [`crate::STYLE`], and [`crate::script()`] to be zoomed.
     #[must_use]
     pub fn html(&self) -> String {
         let kind = |s: Scale| match s {

@@ -1,7 +1,8 @@
 // Zooms the plots of the page and reads points off: drag a rectangle, or use the buttons; double click shows the whole.
-"use strict";
-(() => {
-  const UNITS = 1000, INTERVALS = 5, NEAR = 40;
+// The rules by which the pictures are drawn come with the call.
+((rules) => {
+  "use strict";
+  const { UNITS, INTERVALS, LINEAR, FEW, LARGE, SMALL } = rules, NEAR = 40;
 
   // An axis as the page describes it: "low high lin|log"; `part` is what of it is shown, from 0 to 1.
   const axis = (text) => {
@@ -18,7 +19,7 @@
   const digitsOf = (step) => Math.max(0, Math.min(9, -Math.floor(Math.log10(step))));
   const number = (value, step) => {
     if (value === 0) return "0";
-    if (Math.abs(value) >= 1e5 || step < 1e-4) {
+    if (Math.abs(value) >= LARGE || step < SMALL) {
       const digits = Math.floor(Math.log10(Math.abs(value))) - Math.floor(Math.log10(step));
       return value.toExponential(Math.max(0, Math.min(6, digits))).replace("+", "");
     }
@@ -32,8 +33,8 @@
     const decades = Math.log10(high / low), list = [];
     // As the axis of the picture has them: decades, with 2 and 5 where they are few; and as a linear axis where less than
     // one is shown.
-    if (axis.log && decades >= 0.7) {
-      const few = decades < 2.5, every = few ? 1 : Math.ceil(decades / INTERVALS);
+    if (axis.log && decades >= LINEAR) {
+      const few = decades < FEW, every = few ? 1 : Math.ceil(decades / INTERVALS);
       const first = Math.log10(low), begin = few ? Math.floor(first) : Math.ceil(first);
       for (let p = begin; p <= Math.log10(high); p += every) {
         for (const value of (few ? [1, 2, 5] : [1]).map((f) => f * 10 ** p)) {
@@ -161,4 +162,4 @@
     });
     area.addEventListener("dblclick", whole);
   }
-})();
+})

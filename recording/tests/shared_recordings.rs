@@ -1,12 +1,10 @@
 //! The real recordings beside the workspace: read, estimated, surveyed.
 
-mod support;
-
+use nonius_kept::recording;
 use nonius_recording::{AdcSource, ErrorKind, FitMethod, Overrides, Recording, Survey};
-use support::shared_recording;
 
 fn read(check: &str, name: &str) -> Option<Recording> {
-    let file = shared_recording(check, name)?;
+    let file = recording(check, name)?;
     Some(Recording::read(&file, &Overrides::default()).expect("a recording that can be read"))
 }
 
@@ -121,7 +119,7 @@ fn the_wheel_magnetometer_turns_with_its_gyroscope() {
 
 #[test]
 fn the_optical_tables_are_refused_whole_and_read_one_by_one() {
-    let Some(file) = shared_recording("optical tables", "optical_servo_tables.csv") else {
+    let Some(file) = recording("optical tables", "optical_servo_tables.csv") else {
         return;
     };
     let error = Recording::read(&file, &Overrides::default()).expect_err("several records in one");

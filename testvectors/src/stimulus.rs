@@ -27,6 +27,18 @@ pub struct Stimulus {
     pub samples: Vec<Sample>,
 }
 
+/// Position of a sweep over its time 0 … 1: at top speed 1, over to −1 as slowly as there is time, and back.
+fn sweep(t: f64) -> f64 {
+    match t {
+        t if t < 1.0 / 6.0 => t,
+        t if t < 5.0 / 6.0 => {
+            let turning = t - 1.0 / 6.0;
+            1.0 / 6.0 + turning - 1.5 * turning * turning
+        }
+        t => 1.0 - t,
+    }
+}
+
 /// All named stimuli, `rows` samples each, from one seed.
 #[must_use]
 pub fn named(design: &Design, rows: usize) -> Vec<Stimulus> {
@@ -56,7 +68,8 @@ pub fn named(design: &Design, rows: usize) -> Vec<Stimulus> {
             Sample {
                 cos,
                 sin,
-                preset: k == rows / 3,
+                // The second one stands after every loss of lock.
+                preset: k == rows / 3 || k == rows - rows / 8,
                 calibrate: k % 701 > 3,
             }
         });
@@ -79,6 +92,8 @@ pub fn named(design: &Design, rows: usize) -> Vec<Stimulus> {
     let slow = motion("slow turn", &|k| {
         pair(0.007 * k as f64 * (top / 0.1), 1.0, 0.0)
     });
+    // Rate below which the direction does not change, turns.
+    let dead = design.constants.direction_rate.value();
     vec![
         motion("standstill", &|_| pair(0.3, 1.0, 0.0)),
         motion("forwards", &|k| {
@@ -87,13 +102,24 @@ pub fn named(design: &Design, rows: usize) -> Vec<Stimulus> {
         motion("backwards", &|k| {
             pair(0.4 - 0.013 * k as f64 * (top / 0.1), 1.0, 0.0)
         }),
-        motion("sweep", &|k| {
-            let t = k as f64 / n;
-            pair(
-                top * n / std::f64::consts::TAU * (1.0 - (std::f64::consts::TAU * t).cos()),
-                1.0,
-                0.0,
-            )
+        motion("sweep", &|k| pair(sweep(k as f64 / n) * n * top, 1.0, 0.0)),
+        // So slow that the direction is the old one, then the other one.
+        motion("creep", &|k| {
+            let t = k as f64 / n - 0.5;
+            pair(0.3 + 4.0 * dead * n * t * t, 1.0, 0.0)
+        }),
+        // The signal goes and comes back, small; then it grows.
+        motion("loss", &|k| {
+            let gain = match k as f64 / n {
+                t if t < 0.4 => 1.0,
+                t if t < 0.6 => 0.0,
+                t if t < 0.8 => 0.7,
+                t => 0.7 + 2.0 * (t - 0.8),
+            };
+            let (cos, sin) = pair(0.02 * k as f64 * (top / 0.1), 1.0, 0.0);
+            let faded = |code: i64| middle + ((code - middle) as f64 * gain).round() as i64;
+            let within = |code: i64| faded(code).clamp(low, full);
+            (within(cos), within(sin))
         }),
         motion("step", &|k| {
             let stepped = if k > rows / 2 {

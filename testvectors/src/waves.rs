@@ -207,10 +207,10 @@ impl<W: Write> Waves<W> {
     }
 }
 
-/// A GTKWave save file that shows the waves in `file` sensibly: position and phase as curves, then inputs, outputs,
+/// A GTKWave save file, `name`.gtkw, that shows the waves in `name`.vcd beside it sensibly: position and phase as curves, then inputs, outputs,
 /// the signals of the loop, those of the calibration.
 #[must_use]
-pub fn gtkw(file: &str, design: &Design, columns: &[Column], clocks: usize) -> String {
+pub fn gtkw(name: &str, design: &Design, columns: &[Column], clocks: usize) -> String {
     // GTKWave's flags: right justified, signed, analogue step, full scale; a stretched blank gives a curve height.
     const CURVE: &str = "@88420";
     const SIGNED: &str = "@420";
@@ -218,7 +218,8 @@ pub fn gtkw(file: &str, design: &Design, columns: &[Column], clocks: usize) -> S
     const HEX: &str = "@22";
     const TITLE: &str = "@200";
     let mut out = format!(
-        "[dumpfile] \"{file}\"\n[timestart] 0\n*-{:.1} 0 -1\n[sst_expanded] 1\n",
+        // With the place of this file GTKWave finds the waves beside it, wherever it was started.
+        "[dumpfile] \"{name}.vcd\"\n[savefile] \"{name}.gtkw\"\n[timestart] 0\n*-{:.1} 0 -1\n[sst_expanded] 1\n",
         (clocks as f64 * CLOCK_NS as f64 * 8.0).log2()
     );
     let mut curve = |name: &str| {

@@ -156,10 +156,7 @@ fn waves_read_back(kind: &str, design: &Design) {
     let offered: Vec<bool> = (0..=4 * ROWS).map(|i| matches!(i % 4, 1 | 2)).collect();
     assert_eq!(strobed("sample_valid"), offered);
     let mut replay = Chip::bit_true(design);
-    let position = header
-        .find_var(&["chip_tb", "position_periods"])
-        .expect("a real")
-        .code;
+    let edge = |name: &str| header.find_var(&["chip_tb", name]).expect("a wave").code;
     let after = snapshots
         .iter()
         .zip(&results)
@@ -194,11 +191,22 @@ fn waves_read_back(kind: &str, design: &Design) {
                 "{kind}: {name} at {k}"
             );
         }
+        let real = |name: &str| analogue[&edge(name)];
+        let value = |name: &str| {
+            let value = probes.value(name).or_else(|| replay.state.value(name));
+            value.expect("a value").to_f64()
+        };
+        assert_eq!(real("position_periods"), replay.position(), "{kind}: {k}");
+        assert_eq!(real("alpha_hat_turns"), value("alpha_hat"), "{kind}: {k}");
         assert_eq!(
-            analogue[&position],
-            replay.position(),
-            "{kind}: position at {k}"
+            real("speed_turns_per_sample"),
+            value("speed"),
+            "{kind}: {k}"
         );
+        let f = &design.structure.formats;
+        let all = (1u128 << (f.count.width + f.alpha.width)) - 1;
+        let position = replay.position_raw() as u128 & all;
+        assert_eq!(values[&path("position")], position, "{kind}: {k}");
     }
 }
 
@@ -212,7 +220,12 @@ fn the_save_file_names_signals_that_are_there() {
         .expect("memory");
     let mut parser = vcd::Parser::new(&bytes[..]);
     let header = parser.parse_header().expect("a header");
-    let save = gtkw("sweep.vcd", &design, &files.columns, files.clocks);
+    let save = gtkw("sweep", &design, &files.columns, files.clocks);
+    let named: Vec<&str> = save.lines().take(2).collect();
+    assert_eq!(
+        named,
+        ["[dumpfile] \"sweep.vcd\"", "[savefile] \"sweep.gtkw\""]
+    );
     let signals: Vec<&str> = save.lines().filter(|l| l.starts_with("chip_tb.")).collect();
     assert!(signals.len() > files.columns.len());
     for signal in signals {
@@ -238,7 +251,16 @@ proptest! {
         bytes[at] = byte;
         let damaged = String::from_utf8_lossy(&bytes).into_owned();
         match rows(&damaged, design.spec.adc.bits, true, files.columns.len()) {
-            Ok(read) => prop_assert!(read.len() <= 11),
+            // What is read all the same is what stands there.
+            Ok(read) => {
+                let words = |text: &str| -> Vec<String> {
+                    let lower = |word: &str| word.to_lowercase().trim_start_matches('0').to_owned();
+                    text.split_whitespace().map(lower).collect()
+                };
+                let sound = rows(&text, design.spec.adc.bits, true, files.columns.len());
+                let equal = sound.expect("rows") == read;
+                prop_assert_eq!(equal, words(&damaged) == words(&text));
+            }
             Err(error) => prop_assert!(error.line >= 1 && error.line <= 11, "{}", error),
         }
     }

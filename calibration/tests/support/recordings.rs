@@ -1,7 +1,7 @@
 //! The measured recordings beside the workspace, and what each method makes of them.
 
 use std::fmt::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use nonius_calibration::{Method, Options, calibrate};
 use nonius_recording::{Overrides, Recording};
@@ -13,12 +13,6 @@ pub(crate) const PAGE: &str = concat!(
 );
 pub(crate) const BEGIN: &str = "<!-- begin: written by `cargo run -p nonius-calibration --example recordings`; do not edit -->\n";
 pub(crate) const END: &str = "<!-- end -->\n";
-
-/// The folder with the recordings, where it is there.
-pub(crate) fn folder() -> Option<PathBuf> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data");
-    folder.join("rm44_center.csv").is_file().then_some(folder)
-}
 
 /// A recording with the name that the table gives it.
 struct Named {

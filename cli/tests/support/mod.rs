@@ -14,6 +14,14 @@ pub(crate) fn nonius(dir: &Path, arguments: &[&str]) -> Output {
         .expect("nonius runs")
 }
 
+/// The same, successfully; what it says on standard error.
+pub(crate) fn done(dir: &Path, arguments: &[&str]) -> String {
+    let output = nonius(dir, arguments);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.success(), "{arguments:?}: {said}");
+    said
+}
+
 /// A shipped design's path.
 pub(crate) fn design() -> String {
     let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../designs/optical.toml");

@@ -46,14 +46,7 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
     let u = normalised(beta);
     let per_channel = |n: usize| (0..2).map(|i| of_channel(i, &u[i].power(n))).collect();
     let of = |name, shapes: Vec<Shape>, what: &'static str| Candidate {
-        name,
-        domain: Domain::Angle,
         trials: 2.0,
-        shapes,
-        motion: false,
-        id: 0,
-        exact: None,
-        sign: Sign::Any,
         // By the bends of 8 and 9 parameters, or by the table of harmonics.
         chip: Chip::Corrects,
         parameters: each(&["k_cos", "k_sin"], "amplitude"),
@@ -64,6 +57,7 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
                 p[1].value * 100.0
             )
         }),
+        ..Candidate::new(name, Domain::Angle, shapes)
     };
     let list = &mut catalogue.candidates;
     list.extend([
@@ -77,14 +71,7 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
             })
             .collect();
         list.push(Candidate {
-            name: "spatial_harmonic",
-            domain: Domain::Angle,
             trials: 6.0,
-            shapes,
-            motion: false,
-            id: 0,
-            exact: None,
-            sign: Sign::Any,
             chip: Chip::Corrects,
             parameters: Rc::new(move |e| {
                 let (a_c, d_c, p_c, e_c) = polar(&e.x[..2], &e.error[..2]);
@@ -100,6 +87,7 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
             evidence: Rc::new(move |p| {
                 format!("order {order} of the scale period stands in the channels with {:.3} % (cos) and {:.3} % (sin) of the amplitude", p[1].value * 100.0, p[3].value * 100.0)
             }),
+            ..Candidate::new("spatial_harmonic", Domain::Angle, shapes)
         });
     }
     for threshold in THRESHOLDS {
@@ -114,12 +102,7 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
         ];
         for (where_, of) in variants {
             catalogue.candidates.push(Candidate {
-                name: "saturation",
-                domain: Domain::Angle,
                 trials: 4.0 * THRESHOLDS.len() as f64,
-                shapes: of(&rails),
-                motion: false,
-                id: 0,
                 exact: Some(Exact {
                     make: Rc::new(move |inner, library| of(&self::rails(inner[0], library))),
                     inner: vec![threshold],
@@ -127,7 +110,6 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
                     follows: false,
                 }),
                 sign: Sign::Positive,
-                chip: Chip::CannotCorrect,
                 parameters: Rc::new(move |e| {
                     let most = e.x.iter().copied().fold(0.0, f64::max);
                     let error = e.error.iter().copied().fold(0.0, f64::max);
@@ -159,6 +141,7 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
                 evidence: Rc::new(move |p| {
                     format!("the signals are compressed at {where_}, from {:.3} of the amplitude on by {:.2} % of what is beyond", p[0].value, p[1].value * 100.0)
                 }),
+                ..Candidate::new("saturation", Domain::Angle, of(&rails))
             });
         }
     }

@@ -4,9 +4,9 @@ use std::rc::Rc;
 
 use super::Catalogue;
 use crate::block::Block;
-use crate::cause::{Candidate, Domain, Sign};
+use crate::cause::{Candidate, Domain};
 use crate::context::Context;
-use crate::finding::{Chip, Parameter};
+use crate::finding::Parameter;
 use crate::library::Shape;
 
 pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
@@ -53,15 +53,7 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
             })
             .collect();
         catalogue.candidates.push(Candidate {
-            name: "adc_nonlinearity",
-            domain: Domain::Code,
             trials: 8.0,
-            shapes,
-            motion: false,
-            id: 0,
-            exact: None,
-            sign: Sign::Any,
-            chip: Chip::CannotCorrect,
             parameters: Rc::new(move |e| {
                 vec![
                     Parameter::exact("bit", f64::from(bit), "1"),
@@ -72,6 +64,7 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
             evidence: Rc::new(move |p| {
                 format!("the ADC's bit {bit} is off by {:.4} % (cos) and {:.4} % (sin) of the amplitude", p[1].value * 100.0, p[2].value * 100.0)
             }),
+            ..Candidate::new("adc_nonlinearity", Domain::Code, shapes)
         });
     }
 }

@@ -9,7 +9,7 @@ use super::speed::follows;
 use crate::block::Block;
 use crate::cause::{Candidate, Domain, Exact, Sign};
 use crate::context::Context;
-use crate::finding::{Chip, Parameter};
+use crate::finding::Parameter;
 use crate::library::{Library, Shape};
 
 /// Scale periods of travel that ac coupling needs to be told from shapes of the angle.
@@ -71,18 +71,12 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
         let make = high_pass(context.rate);
         let shapes = make(corner, &mut catalogue.library);
         catalogue.candidates.push(Candidate {
-            name: "ac_coupling",
-            domain: Domain::Speed,
             trials: corners,
-            shapes,
-            motion: false,
-            id: 0,
             exact: follows(corner, make).map(|e| Exact {
                 steps: vec![0.01 * corner],
                 ..e
             }),
             sign: Sign::Known(least),
-            chip: Chip::CannotCorrect,
             parameters: Rc::new(move |e| {
                 let (value, error) = match e.inner_error {
                     Some(error) => (e.inner[0], error[0]),
@@ -96,6 +90,7 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
                     p[0].value
                 )
             }),
+            ..Candidate::new("ac_coupling", Domain::Speed, shapes)
         });
         least = corner;
         corner *= 3.0;

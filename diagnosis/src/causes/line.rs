@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 use std::rc::Rc;
 
 use crate::block::Block;
-use crate::cause::{Candidate, Domain, Estimate, Exact, Make, Sign, polar};
+use crate::cause::{Candidate, Domain, Estimate, Exact, Make, Reads, polar};
 use crate::context::Context;
 use crate::finding::{Chip, Parameter};
 use crate::library::{Fill, Library, Place, Shape, Use};
@@ -121,15 +121,8 @@ pub(crate) fn candidates(
                     .collect()
             });
             list.push(Candidate {
-                name: "interference",
-                domain: Domain::Line,
                 trials,
-                shapes: all.clone(),
-                motion: false,
-                id: 0,
                 exact: exact(hertz, make),
-                sign: Sign::Any,
-                chip: Chip::CannotCorrect,
                 parameters: Rc::new(move |e| {
                     let (a_c, d_c, ..) = polar(&e.x[..2], &e.error[..2]);
                     let (a_s, d_s, ..) = polar(&e.x[2..4], &e.error[2..4]);
@@ -153,6 +146,7 @@ pub(crate) fn candidates(
                     let with = if harmonics > 1 { " and its harmonics" } else { "" };
                     format!("a line at {:.3} Hz{with} is added to the channels, {:.3} % (cos) and {:.3} % (sin) of the amplitude", p[0].value, p[1].value * 100.0, p[3].value * 100.0)
                 }),
+                ..Candidate::new("interference", Domain::Line, all.clone())
             });
         }
     }
@@ -162,24 +156,11 @@ pub(crate) fn candidates(
         let make: Make = Rc::new(|inner, library| {
             two(library.add(2, Use::Radial, wave(inner[0])), Place::radial)
         });
+        let shapes = make(&[hertz], library);
         list.push(Candidate {
-            name: "amplitude_ripple",
-            domain: Domain::Line,
             trials,
-            shapes: make(&[hertz], library),
-            motion: false,
-            id: 0,
             exact: exact(hertz, make),
-            sign: Sign::Any,
-            chip: Chip::CannotCorrect,
-            parameters: Rc::new(move |e| {
-                let (a, d, p, ep) = polar(e.x, e.error);
-                vec![
-                    frequency(e, a / d, duration),
-                    Parameter::measured("depth", a, d, "1"),
-                    Parameter::measured("phase", p, ep, "rad"),
-                ]
-            }),
+            parameters: one_wave("depth", "1", duration),
             evidence: Rc::new(|p| {
                 format!(
                     "the amplitude of both channels is modulated by {:.3} % at {:.3} Hz",
@@ -187,6 +168,7 @@ pub(crate) fn candidates(
                     p[0].value
                 )
             }),
+            ..Candidate::new("amplitude_ripple", Domain::Line, shapes)
         });
     }
     if let Some(f) = line(fast, length) {
@@ -197,28 +179,30 @@ pub(crate) fn candidates(
                 Place::tangential,
             )
         });
+        let shapes = make(&[hertz], library);
         list.push(Candidate {
-            name: "vibration",
-            domain: Domain::Motion,
             trials,
-            shapes: make(&[hertz], library),
             motion: true,
-            id: 0,
             exact: exact(hertz, make),
-            sign: Sign::Any,
             chip: Chip::NotASensorError,
-            parameters: Rc::new(move |e| {
-                let (a, d, p, ep) = polar(e.x, e.error);
-                vec![
-                    frequency(e, a / d, duration),
-                    Parameter::measured("amplitude", a, d, "rad"),
-                    Parameter::measured("phase", p, ep, "rad"),
-                ]
-            }),
+            parameters: one_wave("amplitude", "rad", duration),
             evidence: Rc::new(|p| format!("the axis really vibrates: {:.3e} rad of a scale period at {:.3} Hz, without any change of the radius", p[1].value, p[0].value)),
+            ..Candidate::new("vibration", Domain::Motion, shapes)
         });
     }
     list
+}
+
+/// Frequency, amplitude and phase of a line without harmonics.
+fn one_wave(amplitude: &'static str, unit: &'static str, duration: f64) -> Reads {
+    Rc::new(move |e| {
+        let (a, d, p, ep) = polar(e.x, e.error);
+        vec![
+            frequency(e, a / d, duration),
+            Parameter::measured(amplitude, a, d, unit),
+            Parameter::measured("phase", p, ep, "rad"),
+        ]
+    })
 }
 
 /// A frequency: its error is that of the fit, or the Cramér–Rao bound for a line of that signal-to-noise ratio.

@@ -85,20 +85,16 @@ fn cogging(
         [0, 1].map(|i| place.tangential(i)).into()
     });
     let order = order as u32;
+    let shapes = make(&[], library);
     Some(Candidate {
-        name: "cogging",
-        domain: Domain::Motion,
         trials: ORDERS as f64,
-        shapes: make(&[], library),
         motion: true,
-        id: 0,
         exact: Some(Exact {
             make,
             inner: vec![],
             steps: vec![],
             follows: false,
         }),
-        sign: Sign::Any,
         chip: Chip::NotASensorError,
         parameters: harmonic(order, "amplitude", "rad"),
         evidence: Rc::new(move |p| {
@@ -107,6 +103,7 @@ fn cogging(
                 p[1].value
             )
         }),
+        ..Candidate::new("cogging", Domain::Motion, shapes)
     })
 }
 
@@ -147,13 +144,9 @@ fn contamination(phi: &[f64], residual: &Residual, library: &mut Library) -> Vec
     for shift in [-0.5, 0.0, 0.5] {
         for width in WIDTHS {
             let centre = (lowest as f64 + 0.5 + shift) / PLACES as f64 * TAU;
+            let shapes = dip(&[centre, width], library);
             list.push(Candidate {
-                name: "contamination",
-                domain: Domain::Revolution,
                 trials: PLACES as f64 * 5.0,
-                shapes: dip(&[centre, width], library),
-                motion: false,
-                id: 0,
                 exact: Some(Exact {
                     make: Rc::new(dip),
                     inner: vec![centre, width],
@@ -161,7 +154,6 @@ fn contamination(phi: &[f64], residual: &Residual, library: &mut Library) -> Vec
                     follows: false,
                 }),
                 sign: Sign::Positive,
-                chip: Chip::CannotCorrect,
                 parameters: Rc::new(move |e| {
                     let mut all = each(&["depth"], "1")(e);
                     // For a dip of Gaussian shape.
@@ -178,6 +170,7 @@ fn contamination(phi: &[f64], residual: &Residual, library: &mut Library) -> Vec
                         p[1].value
                     )
                 }),
+                ..Candidate::new("contamination", Domain::Revolution, shapes)
             });
         }
     }

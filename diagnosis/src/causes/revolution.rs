@@ -5,7 +5,7 @@ use std::rc::Rc;
 
 use super::Catalogue;
 use crate::block::Block;
-use crate::cause::{Candidate, Domain, Sign, polar};
+use crate::cause::{Candidate, Domain, polar};
 use crate::context::Context;
 use crate::finding::{Chip, Parameter};
 use crate::library::{Shape, Use};
@@ -57,17 +57,10 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
         let first = 2 * order as usize - 2;
         let shapes: Vec<Shape> = [first, first + 1].map(|i| place.radial(i)).into();
         list.push(Candidate {
-            name: "runout",
-            domain: Domain::Revolution,
             trials: 3.0,
-            shapes,
-            motion: false,
-            id: 0,
-            exact: None,
-            sign: Sign::Any,
-            chip: Chip::CannotCorrect,
             parameters: harmonic(order, "depth", "1"),
             evidence: Rc::new(move |p| format!("the amplitude of both channels changes {order} time(s) per revolution, by {:.3} %", p[1].value * 100.0)),
+            ..Candidate::new("runout", Domain::Revolution, shapes)
         });
     }
     if against {
@@ -75,14 +68,7 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
             let first = 2 * order as usize - 2;
             let shapes: Vec<Shape> = [first, first + 1].map(|i| place.tangential(i)).into();
             list.push(Candidate {
-                name: "graduation_error",
-                domain: Domain::Revolution,
                 trials: ORDERS as f64,
-                shapes,
-                motion: false,
-                id: 0,
-                exact: None,
-                sign: Sign::Any,
                 // Where a scale period is a revolution, it is two harmonics, which the chip's table takes.
                 chip: if context.periods_per_revolution == Some(1) && order >= 3 {
                     Chip::Corrects
@@ -91,6 +77,7 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
                 },
                 parameters: harmonic(order, "amplitude", "rad"),
                 evidence: Rc::new(move |p| format!("against the reference the angle is off by {:.3e} rad of a scale period, {order} time(s) per revolution", p[1].value)),
+                ..Candidate::new("graduation_error", Domain::Revolution, shapes)
             });
         }
     }

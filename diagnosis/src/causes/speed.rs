@@ -95,17 +95,8 @@ pub(super) fn cause(
     unit: &'static str,
 ) -> Candidate {
     Candidate {
-        name,
-        domain: Domain::Speed,
-        trials: 1.0,
-        shapes,
-        motion: false,
-        id: 0,
-        exact: None,
-        sign: Sign::Any,
-        chip: Chip::CannotCorrect,
         parameters: each(parameters, unit),
-        evidence: Rc::new(|_| String::new()),
+        ..Candidate::new(name, Domain::Speed, shapes)
     }
 }
 

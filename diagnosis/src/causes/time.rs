@@ -3,7 +3,7 @@
 use std::rc::Rc;
 
 use super::{Catalogue, Modulated, modulated};
-use crate::cause::{Candidate, Domain, Sign};
+use crate::cause::{Candidate, Domain};
 use crate::context::Context;
 use crate::finding::{Chip, Parameter};
 use crate::library::Shape;
@@ -74,15 +74,9 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
                     (0..per).map(move |by| modulations.shape(by, &parts))
                 })
                 .collect();
+            let name = if gain { "gain_drift" } else { "offset_drift" };
             catalogue.candidates.push(Candidate {
-                name: if gain { "gain_drift" } else { "offset_drift" },
-                domain: Domain::Time,
                 trials,
-                shapes: all,
-                motion: false,
-                id: 0,
-                exact: None,
-                sign: Sign::Any,
                 chip: Chip::Corrects,
                 parameters: Rc::new(move |e| {
                     // From one end of the recording to the other: twice the odd polynomials.
@@ -110,6 +104,7 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
                     let what = if gain { "gains" } else { "offsets" };
                     format!("the {what} drift with {driver}, by {:.3} % (cos) and {:.3} % (sin) of the amplitude from one end to the other", p[0].value * 100.0, p[1].value * 100.0)
                 }),
+                ..Candidate::new(name, Domain::Time, all)
             });
         }
     }

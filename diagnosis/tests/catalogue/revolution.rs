@@ -4,35 +4,35 @@ use std::f64::consts::TAU;
 
 use crate::harness::{Case, PERIODS, REVOLVING, alone, finds, near, within_errors};
 
-/// An amplitude with a dip at one place of the revolution, radians, of that depth and width.
-fn dipped(alpha: f64, depth: f64, width: f64) -> f64 {
-    let off = (alpha / PERIODS - 1.0 + TAU / 2.0).rem_euclid(TAU) - TAU / 2.0;
-    1.0 - depth * (-0.5 * (off / width).powi(2)).exp()
+/// The amplitude of both channels changes once a revolution, by a depth of so many per mille.
+fn eccentric<const PER_MILLE: u32>() -> Case {
+    Case {
+        channels: |c, s, _, a, _| {
+            let m = 1.0 + f64::from(PER_MILLE) * 1e-3 * (a / PERIODS + 0.5).cos();
+            (c * m, s * m)
+        },
+        ..REVOLVING
+    }
+}
+
+/// The amplitude of both channels dips at one place of the revolution, by so many per mille, over so many milliradians.
+fn dirty<const DEPTH: u32, const WIDTH: u32>() -> Case {
+    Case {
+        channels: |c, s, _, a, _| {
+            let off = (a / PERIODS - 1.0 + TAU / 2.0).rem_euclid(TAU) - TAU / 2.0;
+            let [depth, width] = [DEPTH, WIDTH].map(|v| f64::from(v) * 1e-3);
+            let m = 1.0 - depth * (-0.5 * (off / width).powi(2)).exp();
+            (c * m, s * m)
+        },
+        ..REVOLVING
+    }
 }
 
 #[test]
 fn run_out_and_dirt() {
-    let found = finds(
-        "runout",
-        &Case {
-            channels: |c, s, _, a, _| {
-                let m = 1.0 + 0.002 * (a / PERIODS + 0.5).cos();
-                (c * m, s * m)
-            },
-            ..REVOLVING
-        },
-    );
+    let found = finds("runout", &eccentric::<2>());
     near(&found, "depth", 0.002);
-    finds(
-        "contamination",
-        &Case {
-            channels: |c, s, _, a, _| {
-                let m = dipped(a, 0.01, 0.08);
-                (c * m, s * m)
-            },
-            ..REVOLVING
-        },
-    );
+    finds("contamination", &dirty::<10, 80>());
 }
 
 #[test]
@@ -57,27 +57,9 @@ fn graduation() {
 
 #[test]
 fn large() {
-    let found = alone(
-        "runout",
-        &Case {
-            channels: |c, s, _, a, _| {
-                let m = 1.0 + 0.05 * (a / PERIODS + 0.5).cos();
-                (c * m, s * m)
-            },
-            ..REVOLVING
-        },
-    );
+    let found = alone("runout", &eccentric::<50>());
     within_errors(&found, "depth", 0.05);
-    let found = alone(
-        "contamination",
-        &Case {
-            channels: |c, s, _, a, _| {
-                let m = dipped(a, 0.2, 0.1);
-                (c * m, s * m)
-            },
-            ..REVOLVING
-        },
-    );
+    let found = alone("contamination", &dirty::<200, 100>());
     // The place counts from where the recording begins, a whole number of periods off.
     let place = &found.findings[0].parameters[1];
     let period = TAU / PERIODS;

@@ -2,6 +2,29 @@
 
 use crate::harness::{Case, NOISE, PLAIN, alone, finds, near, within_errors};
 
+/// The offsets turn over with the direction, by so many per mille of the amplitude.
+fn turning<const COS: i32, const SIN: i32>() -> Case {
+    Case {
+        channels: |c, s, _, _, v| {
+            let by = |per_mille| f64::from(per_mille) * 1e-3 * v.signum();
+            (c + by(COS), s + by(SIN))
+        },
+        ..PLAIN
+    }
+}
+
+/// Both channels are late by so many microseconds.
+fn late<const MICROSECONDS: u32>() -> Case {
+    Case {
+        seen: |a, v| {
+            let seen = a - f64::from(MICROSECONDS) * 1e-6 * v;
+            (seen, seen)
+        },
+        reference: true,
+        ..PLAIN
+    }
+}
+
 #[test]
 fn delays_and_bandwidths() {
     let found = finds(
@@ -31,14 +54,7 @@ fn delays_and_bandwidths() {
         },
     );
     near(&found, "tau_s", 2e-5);
-    let found = finds(
-        "latency",
-        &Case {
-            seen: |a, v| (a - 3e-6 * v, a - 3e-6 * v),
-            reference: true,
-            ..PLAIN
-        },
-    );
+    let found = finds("latency", &late::<3>());
     near(&found, "delay_s", 3e-6);
 }
 
@@ -56,13 +72,7 @@ fn crosstalk_and_hysteresis() {
             ..PLAIN
         },
     );
-    let found = finds(
-        "hysteresis",
-        &Case {
-            channels: |c, s, _, _, v| (c + 0.002 * v.signum(), s - 0.001 * v.signum()),
-            ..PLAIN
-        },
-    );
+    let found = finds("hysteresis", &turning::<2, -1>());
     near(&found, "offset_cos", 0.002);
 }
 
@@ -118,21 +128,8 @@ fn large() {
             ..PLAIN
         },
     );
-    let found = alone(
-        "hysteresis",
-        &Case {
-            channels: |c, s, _, _, v| (c + 0.003 * v.signum(), s - 0.004 * v.signum()),
-            ..PLAIN
-        },
-    );
+    let found = alone("hysteresis", &turning::<3, -4>());
     within_errors(&found, "offset_cos", 0.003);
-    let found = alone(
-        "latency",
-        &Case {
-            seen: |a, v| (a - 3e-5 * v, a - 3e-5 * v),
-            reference: true,
-            ..PLAIN
-        },
-    );
+    let found = alone("latency", &late::<30>());
     within_errors(&found, "delay_s", 3e-5);
 }

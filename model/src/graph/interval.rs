@@ -8,16 +8,17 @@ use crate::rom::Rom;
 
 /// A value that does not fit, with the operands that lead there.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("{signal} does not fit {limit}: it reaches {low} … {high} when {worst_case}")]
+#[error(
+    "{signal} does not fit {limit}: it reaches {reach} when {worst_case}; shorter words in \
+     [formats] would help"
+)]
 pub struct RangeError {
     /// Name of the signal, or of the formula and operation where it has none.
     pub signal: String,
     /// What it should fit.
     pub limit: String,
-    /// Smallest value.
-    pub low: String,
-    /// Largest value.
-    pub high: String,
+    /// Smallest and largest value, and its steps.
+    pub reach: String,
     /// The operands' ranges that lead there.
     pub worst_case: String,
 }
@@ -226,23 +227,50 @@ fn outside(
     fraction: u32,
     limit: Format,
 ) -> RangeError {
-    let real = |v: i128, fraction: u32| format!("{}", v as f64 * Format::signed(2, fraction).lsb());
     let describe = |id: &NodeId| {
         let entry = &nodes[id.index()];
-        let name = entry
-            .name
-            .clone()
-            .unwrap_or_else(|| format!("operand {}", id.0));
         let low = real(entry.range.0, entry.format.fraction);
         let high = real(entry.range.1, entry.format.fraction);
-        format!("{name} is {low} … {high} ({})", entry.format)
+        format!(
+            "{} is {low} … {high} ({})",
+            called(nodes, *id),
+            entry.format
+        )
     };
     let operands: Vec<_> = op.operands().iter().map(describe).collect();
     RangeError {
         signal: "a signal".into(),
         limit: limit.to_string(),
-        low: real(range.0, fraction),
-        high: real(range.1, fraction),
+        reach: format!(
+            "{} … {} in steps of 2^-{fraction}",
+            real(range.0, fraction),
+            real(range.1, fraction)
+        ),
         worst_case: operands.join(" and "),
     }
+}
+
+/// Its name, or what it is made of, by names.
+fn called(nodes: &[Entry], id: NodeId) -> String {
+    let entry = &nodes[id.index()];
+    if let Some(name) = &entry.name {
+        return name.clone();
+    }
+    let of = |id: NodeId| called(nodes, id);
+    match entry.op {
+        Op::Add(a, b) => format!("({} + {})", of(a), of(b)),
+        Op::Sub(a, b) => format!("({} - {})", of(a), of(b)),
+        Op::Mul(a, b) => format!("{} * {}", of(a), of(b)),
+        Op::Select(_, a, b) => format!("({} or {})", of(a), of(b)),
+        Op::Neg(a) => format!("-{}", of(a)),
+        Op::Scale(a, _) | Op::Quantise(a, _) => of(a),
+        Op::QuantiseGeared { value, .. } => of(value),
+        Op::Lookup { address, .. } => format!("the row at {}", of(address)),
+        Op::Constant(raw) => real(raw.into(), entry.format.fraction),
+        _ => "an input or a condition".into(),
+    }
+}
+
+fn real(raw: i128, fraction: u32) -> String {
+    format!("{}", raw as f64 * Format::signed(2, fraction).lsb())
 }

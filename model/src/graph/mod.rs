@@ -168,6 +168,13 @@ impl Graph {
         (0..self.nodes.len() as u32).map(NodeId)
     }
 
+    /// Whether anything reads the node: another one, a register or a probe.
+    #[must_use]
+    pub fn is_read(&self, id: NodeId) -> bool {
+        let used = self.nodes.iter().any(|n| n.op.operands().contains(&id));
+        used || self.next.iter().chain(&self.probes).any(|(_, n)| *n == id)
+    }
+
     /// How many products one sample takes.
     #[must_use]
     pub fn products(&self) -> usize {

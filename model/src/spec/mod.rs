@@ -4,7 +4,7 @@ mod correction;
 mod read;
 
 pub use correction::{Correction, Harmonic};
-pub use read::{SpecError, line_of_field};
+pub use read::{SpecError, keys, line_of_field};
 
 use serde::{Deserialize, Serialize};
 

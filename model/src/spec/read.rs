@@ -43,9 +43,11 @@ const TOP: &[&str] = &[
     "formats",
 ];
 
-fn known(section: &str) -> Option<&'static [&'static str]> {
-    Some(match section {
-        "sensor" => &[
+/// Sections and their keys.
+const KEYS: &[(&str, &[&str])] = &[
+    (
+        "sensor",
+        &[
             "amplitude",
             "amplitude_tolerance",
             "offset_max",
@@ -56,9 +58,18 @@ fn known(section: &str) -> Option<&'static [&'static str]> {
             "scale_period_m",
             "periods_per_revolution",
         ],
-        "adc" => &["bits", "full_scale", "middle", "coding", "sample_rate_hz"],
-        "loop" => &["method", "type", "bandwidth_hz", "damping", "pole"],
-        "calibration" => &[
+    ),
+    (
+        "adc",
+        &["bits", "full_scale", "middle", "coding", "sample_rate_hz"],
+    ),
+    (
+        "loop",
+        &["method", "type", "bandwidth_hz", "damping", "pole"],
+    ),
+    (
+        "calibration",
+        &[
             "parameters",
             "method",
             "start",
@@ -70,17 +81,23 @@ fn known(section: &str) -> Option<&'static [&'static str]> {
             "gear_periods",
             "restart_residual",
         ],
-        "correction" => &["channel_skew_s", "harmonics"],
-        "correction.harmonics" => &[
+    ),
+    ("correction", &["channel_skew_s", "harmonics"]),
+    (
+        "correction.harmonics",
+        &[
             "order",
             "amplitude_cos",
             "phase_cos",
             "amplitude_sin",
             "phase_sin",
         ],
-        "accuracy" => &["rms_periods", "arithmetic_share"],
-        "chip" => &["multipliers", "clock_hz", "count_bits"],
-        "formats" => &[
+    ),
+    ("accuracy", &["rms_periods", "arithmetic_share"]),
+    ("chip", &["multipliers", "clock_hz", "count_bits"]),
+    (
+        "formats",
+        &[
             "signal_fraction",
             "phase_bits",
             "sine_phase_bits",
@@ -88,8 +105,21 @@ fn known(section: &str) -> Option<&'static [&'static str]> {
             "harmonic_rows_log2",
             "accumulator_fraction",
         ],
-        _ => return None,
-    })
+    ),
+];
+
+/// Every section of a design, and a key that may stand in it.
+pub fn keys() -> impl Iterator<Item = (&'static str, &'static str)> {
+    let pairs = |&(section, keys): &(&'static str, &'static [&'static str])| {
+        keys.iter().map(move |&key| (section, key))
+    };
+    KEYS.iter().flat_map(pairs)
+}
+
+fn known(section: &str) -> Option<&'static [&'static str]> {
+    KEYS.iter()
+        .find(|(name, _)| *name == section)
+        .map(|(_, keys)| *keys)
 }
 
 impl Spec {

@@ -1,0 +1,100 @@
+//! Fits of one half of interleaved blocks, judged on the other; and what a fit leaves of both.
+
+use nalgebra::DVector;
+
+use super::{Fit, Moments, System, atoms_of};
+use crate::library::Shape;
+use crate::solve::Normal;
+
+/// The sums of either half of interleaved blocks, for some atoms only.
+pub(crate) struct Halves {
+    /// Where each atom stands in the sums.
+    atoms: Vec<usize>,
+    white: [Normal; 2],
+    /// Plain, the rows apart.
+    plain: [[Normal; 3]; 2],
+    /// Samples that count, in each half.
+    counts: [f64; 2],
+    against: bool,
+}
+
+impl System<'_> {
+    /// The sums of either half, for all that some fits are made of.
+    pub(crate) fn halves(&self, shapes: &[Shape]) -> Halves {
+        let atoms = atoms_of(shapes);
+        let make = || self.empty(&atoms);
+        let (mut white, mut plain) = ([make(), make()], [make(), make()]);
+        self.samples.pass(&atoms, 1, &mut |half, parts| {
+            for (row, part) in parts.iter().enumerate() {
+                part.add_products(true, 0, &mut white[half].0[row]);
+                part.add_products(false, 0, &mut plain[half].0[row]);
+            }
+        });
+        let only = |moments: &Moments, row: usize| {
+            let mut one = self.empty(&atoms);
+            one.0[row].copy_from(&moments.0[row]);
+            self.normal(&one, &atoms, false)
+        };
+        Halves {
+            white: white.map(|m| self.normal(&m, &atoms, true)),
+            plain: plain.map(|m| [0, 1, 2].map(|row| only(&m, row))),
+            counts: self.samples.counts(),
+            against: self.context.against_reference.is_some(),
+            atoms,
+        }
+    }
+}
+
+impl Halves {
+    fn mapped(&self, shapes: &[Shape]) -> Vec<Shape> {
+        shapes.iter().map(|s| s.among(&self.atoms)).collect()
+    }
+
+    fn left(&self, half: usize, row: usize, shapes: &[Shape], x: &[f64]) -> f64 {
+        let normal = self.plain[half][row].of(shapes);
+        let x = DVector::from_column_slice(x);
+        normal.power - 2.0 * normal.right.dot(&x) + (&normal.gram * &x).dot(&x)
+    }
+
+    /// Rms of radial and tangential residual together, on blocks that were not fitted.
+    pub(crate) fn held_out(&self, shapes: &[Shape]) -> f64 {
+        let shapes = self.mapped(shapes);
+        let mut sum = 0.0;
+        for half in 0..2 {
+            let x = self.white[half].of(&shapes).solve().x;
+            sum += (0..2)
+                .map(|row| self.left(1 - half, row, &shapes, &x))
+                .sum::<f64>();
+        }
+        let count = 2.0 * (self.counts[0] + self.counts[1]);
+        (sum.max(0.0) / count.max(1.0)).sqrt()
+    }
+
+    /// Rms of radial and tangential residual together.
+    pub(crate) fn rms(&self, fit: &Fit) -> f64 {
+        let sum = self.square(fit, 0) + self.square(fit, 1);
+        let count = 2.0 * (self.counts[0] + self.counts[1]);
+        (sum.max(0.0) / count.max(1.0)).sqrt()
+    }
+
+    /// Log-likelihood of what a fit leaves of either row, its noise free.
+    pub(crate) fn log_likelihood(&self, fit: &Fit) -> f64 {
+        let count = self.counts[0] + self.counts[1];
+        let of = |row| -0.5 * count * (self.square(fit, row) / count).max(1e-300).ln();
+        of(0) + of(1)
+    }
+
+    /// Position error against the reference, rms in radians.
+    pub(crate) fn position_error(&self, fit: &Fit) -> Option<f64> {
+        let count = self.counts[0] + self.counts[1];
+        self.against
+            .then(|| (self.square(fit, 1).max(0.0) / count.max(1.0)).sqrt())
+    }
+
+    fn square(&self, fit: &Fit, row: usize) -> f64 {
+        let shapes = self.mapped(&fit.shapes);
+        (0..2)
+            .map(|half| self.left(half, row, &shapes, &fit.solution.x))
+            .sum()
+    }
+}

@@ -1,0 +1,62 @@
+//! What the model leaves of a recording, and what parts of it do, sample by sample.
+
+use super::{Fit, System, amounts};
+use crate::context::Context;
+use crate::finding::Effect;
+use crate::library::Row;
+
+/// What the model so far leaves of the recording.
+#[derive(Clone, Debug)]
+pub(crate) struct Residual {
+    /// Along the radius, in amplitudes.
+    pub radial: Vec<f64>,
+    /// Along the circle, in radians: above the motion, or against the reference.
+    pub tangential: Vec<f64>,
+    /// What moves faster than the spline, in radians: where real vibration shows; `None` where it is the tangential
+    /// residual.
+    pub motion: Option<Vec<f64>>,
+}
+
+impl Residual {
+    /// Where real vibration shows.
+    pub(crate) fn fast(&self) -> &[f64] {
+        self.motion.as_deref().unwrap_or(&self.tangential)
+    }
+}
+
+impl System<'_> {
+    /// What a fit leaves.
+    pub(crate) fn residual(&self, fit: &Fit) -> Residual {
+        let [radial, tangential, motion] = self.samples.left(&fit.amounts());
+        Residual {
+            radial,
+            tangential,
+            motion: (!motion.is_empty()).then_some(motion),
+        }
+    }
+
+    /// What some of the shapes of a fit do, as it is seen beside the motion.
+    pub(crate) fn effect(&self, fit: &Fit, range: std::ops::Range<usize>) -> Effect {
+        let own = amounts(&fit.shapes[range.clone()], &fit.solution.x[range]);
+        let left = self.samples.left(&own);
+        let taken = |row: Row| {
+            let pairs = self.samples.data[row as usize]
+                .iter()
+                .zip(&left[row as usize]);
+            pairs.map(|(d, l)| (d - l) as f32).collect()
+        };
+        Effect {
+            radial: taken(Row::Radial),
+            tangential: taken(Row::Tangential),
+            motion: taken(Row::Motion),
+        }
+    }
+}
+
+/// What of an angle the spline does not follow.
+pub(crate) fn above_motion(context: &Context, angle: &[f64]) -> Vec<f64> {
+    match &context.spline {
+        Some(spline) => spline.residual(angle, &context.weight),
+        None => vec![0.0; angle.len()],
+    }
+}

@@ -1,0 +1,31 @@
+//! Numbers as engineers write them.
+
+/// A number with three digits and a prefix.
+#[must_use]
+pub fn engineering(value: f64, unit: &str) -> String {
+    // Rounded first: 999.96 is 1.00 k.
+    let value: f64 = format!("{value:.2e}").parse().unwrap_or(value);
+    if value == 0.0 || !value.is_finite() {
+        return format!("{value} {unit}");
+    }
+    let steps = (value.abs().log10() / 3.0).floor().clamp(-5.0, 4.0) as i32;
+    let prefix = ["f", "p", "n", "µ", "m", "", "k", "M", "G", "T"][(steps + 5) as usize];
+    let scaled = value / 1000f64.powi(steps);
+    let digits = (2 - scaled.abs().log10().floor() as i32).clamp(0, 3) as usize;
+    format!("{scaled:.digits$} {prefix}{unit}")
+}
+
+#[test]
+fn prefixes_are_those_of_the_si() {
+    for (value, text) in [
+        (0.0, "0 Hz"),
+        (1.0, "1.00 Hz"),
+        (19e6, "19.0 MHz"),
+        (-4.3e-9, "-4.30 nHz"),
+        (999.96, "1.00 kHz"),
+        (0.9999, "1.00 Hz"),
+        (1e-18, "0.001 fHz"),
+    ] {
+        assert_eq!(engineering(value, "Hz"), text);
+    }
+}

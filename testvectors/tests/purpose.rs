@@ -1,0 +1,64 @@
+//! Each named stimulus shows what it is for, as `nonius build` plays it.
+
+#[path = "../../designs/shipped.rs"]
+mod shipped;
+
+use nonius_model::bits::Bits;
+use nonius_model::chip::Chip;
+use nonius_model::design::Design;
+use nonius_testvectors::stimulus::{Stimulus, named};
+
+/// Samples of each, as `nonius build` writes them.
+const ROWS: usize = 2000;
+
+/// The registers after each sample.
+fn played(design: &Design, name: &str) -> Vec<nonius_model::kernel::State<Bits>> {
+    let stimuli = named(design, ROWS);
+    let found = stimuli.iter().find(|s| s.name == name);
+    let Stimulus { samples, .. } = found.expect("a stimulus");
+    let mut chip = Chip::bit_true(design);
+    let step = |s: &nonius_testvectors::stimulus::Sample| {
+        chip.step_codes(s.cos, s.sin, s.preset, s.calibrate);
+        chip.state
+    };
+    samples.iter().map(step).collect()
+}
+
+/// The waves that a new user opens: locked before the reversal, and to the end.
+#[test]
+fn the_sweep_reverses_in_lock() {
+    for name in shipped::NAMES {
+        let design = shipped::design(name);
+        let states = played(&design, "sweep");
+        assert!(states[ROWS / 6..].iter().all(|s| s.locked), "{name}");
+        let (first, last) = (&states[ROWS / 3], &states[ROWS - 1]);
+        assert!(!first.direction && last.direction, "{name}");
+    }
+}
+
+/// Lock is lost with the signal and remembered until the second preset.
+#[test]
+fn the_loss_is_remembered_until_the_preset() {
+    for name in shipped::NAMES {
+        let states = played(&shipped::design(name), "loss");
+        let preset = ROWS - ROWS / 8;
+        assert!(states[ROWS * 4 / 10 - 1].locked, "{name}: not locked first");
+        assert!(states[ROWS * 59 / 100].signal_lost, "{name}");
+        assert!(!states[ROWS * 59 / 100].locked, "{name}");
+        assert!(states[preset - 1].lock_lost, "{name}: forgotten");
+        assert!(states[preset - 1].locked, "{name}: not locked again");
+        assert!(!states[preset].lock_lost, "{name}: not taken back");
+    }
+}
+
+/// The direction turns once, at speeds so small that its dead band counts.
+#[test]
+fn the_creep_turns_the_direction() {
+    for name in shipped::NAMES {
+        let states = played(&shipped::design(name), "creep");
+        let backwards =
+            |from: usize, to: usize| states[from..to].iter().filter(|s| s.direction).count();
+        assert!(backwards(ROWS / 4, ROWS * 4 / 10) > ROWS / 10, "{name}");
+        assert!(backwards(ROWS * 9 / 10, ROWS) < ROWS / 40, "{name}");
+    }
+}
