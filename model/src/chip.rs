@@ -113,7 +113,7 @@ pub fn registers(structure: &Structure) -> (Vec<&'static str>, Vec<&'static str>
         }
         "theta_6_deviation" | "theta_7_deviation" | "theta_8_deviation" => structure.has_bend(),
         "gamma_gear" | "gear_periods" | "travel_origin" | "travel_low" | "travel_high"
-        | "disturbed" => structure.parameters >= 4,
+        | "disturbed" | "risen" | "held" => structure.parameters >= 4,
         "loop_gear" => structure.loop_gears > 0,
         "theta_9_deviation" | "null_gradient" | "null_gradient_rate" | "travel_samples"
         | "moving" => structure.completion.is_some(),

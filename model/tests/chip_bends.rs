@@ -84,11 +84,54 @@ fn what_no_radius_shows_needs_the_completion() {
     }
 }
 
-/// The same with everything else wrong as well: amplitudes of half the ADC's range and all of it, offsets of 10 %, gain
-/// ratio 1.2, β = 5°; nine parameters.
+/// The signals of `sensor` with offsets of 10 %, these signs.
+fn shifted(sensor: fn(f64) -> (f64, f64), signs: (f64, f64)) -> impl Fn(f64) -> (f64, f64) {
+    move |alpha| {
+        let (c, s) = sensor(alpha);
+        (c + 0.1 * signs.0, s + 0.1 * signs.1)
+    }
+}
+
+/// The figures at amplitudes of the normalised pair from 0.51 to 0.99 (just above a half of the ADC's range it is not doubled
+/// any more), with offsets of 10 %, behind loops of half, once and twice the signal's frequency: cubic terms, from 15 mrad to at
+/// most 0.15 and above 7 without the completion; third harmonics down by at least 25, where the radius alone makes them grow.
+#[test]
+fn the_figures_hold_at_every_amplitude_and_offset() {
+    for (amplitude, signs, bandwidth) in [
+        (0.255, (1.0, 1.0), 2.0),
+        (0.255, (-1.0, 1.0), 0.5),
+        (0.30, (0.0, 0.0), 2.0),
+        (0.35, (1.0, -1.0), 1.0),
+        (0.42, (-1.0, -1.0), 2.0),
+        (0.495, (1.0, 1.0), 2.0),
+        (0.495, (0.0, -1.0), 0.5),
+        (0.70, (-1.0, 1.0), 2.0),
+    ] {
+        for parameters in [8, 9] {
+            let with = |completion| {
+                let mut spec = spec(parameters, completion, bandwidth);
+                spec.adc.full_scale = spec.sensor.amplitude / amplitude;
+                spec
+            };
+            let (cubic, third) = (shifted(cubic, signs), shifted(third_harmonics, signs));
+            let [_, alone, _] = calibrate(&with(false), &cubic);
+            let [before, grown, _] = calibrate(&with(false), &third);
+            let [_, completed, _] = calibrate(&with(true), &cubic);
+            let [_, mended, _] = calibrate(&with(true), &third);
+            println!(
+                "{parameters} parameters, amplitude {amplitude} of the range, offsets {signs:?}, loop {bandwidth} f: cubic {completed:.3} (alone {alone:.1}), third {before:.1} -> {mended:.3} mrad (alone {grown:.1})"
+            );
+            assert!(completed <= 0.15 && alone > 7.0, "{completed} {alone}");
+            assert!(mended * 25.0 <= 30.0 && grown > before, "{mended} {grown}");
+        }
+    }
+}
+
+/// The same with everything else wrong as well: amplitudes of the pair from a half to one, offsets of 10 %, gain ratio 1.2,
+/// β = 5°; nine parameters.
 #[test]
 fn nine_parameters_correct_a_wholly_miscalibrated_sensor() {
-    for amplitude in [0.5, 1.0] {
+    for amplitude in [0.36, 0.5, 0.69, 1.0] {
         let with = |completion| {
             let mut spec = spec(9, completion, 1.0);
             spec.adc.full_scale = 1.4 * spec.sensor.amplitude / amplitude;

@@ -4,8 +4,11 @@ mod chip_support;
 
 use std::f64::consts::TAU;
 
-use chip_support::{Bench, course, fast, largest, optical, rms, sensor};
-use nonius_model::spec::{CalibrationMethod, CalibrationStart};
+use chip_support::shipped::variants::searches_of;
+use chip_support::{Bench, course, fast, figure, largest, optical, sensor};
+use nonius_model::spec::{CalibrationMethod, Spec};
+
+const TEST: &str = "model/tests/on_line_figures.rs";
 
 /// Below 1 % within five periods, whatever the amplitude is of the ADC's range and however wide the loop.
 #[test]
@@ -61,6 +64,7 @@ fn the_steady_state_is_below_a_hundred_thousandth() {
     spec.adc.bits = 16;
     spec.sensor.noise_rms = 0.0;
     spec.accuracy.rms_periods = 5e-6;
+    let mut largest = 0.0f64;
     for signs in [0, 5, 10, 15] {
         let signals = sensor(signs);
         let mut bench = Bench::new(&spec, 1);
@@ -79,135 +83,84 @@ fn the_steady_state_is_below_a_hundred_thousandth() {
             100.0 * worst
         );
         assert!(worst < 1e-5, "{worst}");
+        largest = largest.max(worst);
     }
+    figure(
+        "steady state, quiet 16-bit input: largest error of α̂, % of a period",
+        &format!("{:.5}", 100.0 * largest),
+        TEST,
+    );
 }
 
-/// One offset drifts by 10 % of the amplitude within a minute at 50 periods a second: the miscalibration stays below
-/// 0.02 % of a period.
+/// Largest miscalibration, periods, while one offset drifts by 10 % of the amplitude within a minute at this speed; after the
+/// first tenth.
+fn drifting(spec: &Spec, speed: f64, channel: usize, way: f64, seed: u64) -> f64 {
+    let rate = spec.adc.sample_rate_hz;
+    let mut bench = Bench::new(spec, seed);
+    let mut worst = 0.0f64;
+    let samples = (60.0 * rate) as u32;
+    for k in 0..samples {
+        let drift = way * (0.1 * f64::from(k) / f64::from(samples) - 0.05);
+        let offset = if channel == 0 {
+            (drift, 0.0)
+        } else {
+            (0.0, drift)
+        };
+        let signals = |alpha: f64| (alpha.cos() + offset.0, alpha.sin() + offset.1);
+        bench.step(signals(TAU * speed * f64::from(k) / rate));
+        if k > samples / 10 && k % (samples / 500) == 0 {
+            worst = worst.max(largest(&bench.miscalibration_at(90, &signals)) / TAU);
+        }
+    }
+    worst
+}
+
+/// One offset, either, drifts by 10 % of the amplitude within a minute, either way, at 50 periods a second or faster: with the
+/// last gamma of the shipped designs the miscalibration stays below 0.02 % of a period, with every search.
 #[test]
 fn a_drifting_offset_is_followed() {
-    let mut spec = optical();
-    spec.adc.sample_rate_hz = 20e3;
-    spec.sensor.speed_max_periods_per_s = 1e3;
-    spec.tracking.bandwidth_hz = 200.0;
-    // Where temperature drifts, a last gamma twice the usual one follows twice as fast.
-    spec.calibration.gamma_last = 9;
-    let mut bench = Bench::new(&spec, 2);
-    let mut worst = 0.0f64;
-    let samples = 60 * 20_000;
-    for k in 0..samples {
-        let (turns, drift) = (
-            50.0 * f64::from(k) / 20e3,
-            0.1 * f64::from(k) / f64::from(samples),
+    let mut base = optical();
+    base.adc.sample_rate_hz = 20e3;
+    base.sensor.speed_max_periods_per_s = 1e3;
+    base.tracking.bandwidth_hz = 200.0;
+    for variant in searches_of(&base) {
+        let mut spec = variant.spec;
+        if matches!(spec.calibration.parameters, 4 | 8) {
+            continue;
+        }
+        let calibration = &mut spec.calibration;
+        // The steps of these are half as large, and nine parameters share what the noise leaves: a last gamma more. What
+        // follows once a period, at the pace of a step of Newton's, as much again.
+        calibration.gamma_last -= match (calibration.method, calibration.parameters) {
+            (CalibrationMethod::Batch, 9) => 2,
+            (CalibrationMethod::Exact | CalibrationMethod::Batch, _) | (_, 9) => 1,
+            _ => 0,
+        };
+        let mut worst = [0.0f64; 2];
+        for (speed, worst) in [50.0, 500.0].into_iter().zip(&mut worst) {
+            for (channel, way) in [(0, 1.0), (0, -1.0), (1, 1.0), (1, -1.0)] {
+                *worst = worst.max(drifting(&spec, speed, channel, way, 2));
+            }
+        }
+        println!(
+            "{}, {} parameters, gamma_last {}: drift leaves {:.4} % of a period at 50 periods/s, {:.4} % at 500",
+            variant.what,
+            spec.calibration.parameters,
+            spec.calibration.gamma_last,
+            100.0 * worst[0],
+            100.0 * worst[1]
         );
-        let signals = |alpha: f64| (alpha.cos() + drift - 0.05, alpha.sin());
-        bench.step(signals(TAU * turns));
-        if k > samples / 10 && k % 20_000 == 0 {
-            worst = worst.max(largest(&bench.miscalibration(&signals)) / TAU);
+        if variant.what == "final form" && spec.calibration.parameters == 5 {
+            figure(
+                "an offset drifts by 10 % of the amplitude in a minute: largest miscalibration, % of a period, at 50 and 500 periods/s",
+                &format!("{:.4}; {:.4}", 100.0 * worst[0], 100.0 * worst[1]),
+                TEST,
+            );
         }
-    }
-    println!(
-        "drift: largest miscalibration {:.4} % of a period",
-        100.0 * worst
-    );
-    assert!(worst < 2e-4, "{worst}");
-}
-
-/// The signal goes and comes back: the parameters are no worse than before.
-#[test]
-fn loss_of_signal_leaves_the_parameters() {
-    use CalibrationStart::{Gears, LeastSquares};
-    for (parameters, start) in [(5, Gears), (9, Gears), (5, LeastSquares), (9, LeastSquares)] {
-        let mut spec = optical();
-        spec.calibration.parameters = parameters;
-        spec.calibration.start = start;
-        let signals = sensor(6);
-        let mut bench = Bench::new(&spec, 4);
-        let step = 1.0 / 301.0;
-        for k in 0..200_000u32 {
-            bench.step(signals(TAU * step * f64::from(k)));
-        }
-        let before = rms(&bench.miscalibration(&signals));
-        for cycle in 0..20u32 {
-            for k in 0..5000u32 {
-                let alpha = TAU * (step * f64::from(k) + 0.37 * f64::from(cycle));
-                // It fades out and in again, stays away, and comes back at another place.
-                let fade = match k {
-                    0..1000 => 1.0 - f64::from(k) / 1000.0,
-                    1000..3000 => 0.0,
-                    _ => (f64::from(k - 3000) / 1000.0).min(1.0),
-                };
-                let y = signals(alpha);
-                bench.step((fade * y.0, fade * y.1));
-            }
-        }
-        // Two hundred periods of travel more, for what the fading left: nine parameters take so long.
-        for k in 0..60_000u32 {
-            bench.step(signals(TAU * step * f64::from(k)));
-        }
-        let after = rms(&bench.miscalibration(&signals));
-        println!("{parameters} parameters, {start:?}: {before:.2e} -> {after:.2e} rad rms");
-        assert!(bench.chip.state.locked);
-        // The noise of the parameters themselves is some 5e-5.
-        assert!(after < before.max(1e-4), "{before} {after}");
-    }
-}
-
-/// Standstill and a vibration of a tenth of a period, ten minutes of 5 kHz, with 1 % of even and 3 % of cubic distortion:
-/// no parameter moves by more than three times its noise.
-#[test]
-fn vibration_moves_no_parameter() {
-    for (parameters, start) in [
-        (5, CalibrationStart::Gears),
-        (9, CalibrationStart::Gears),
-        (5, CalibrationStart::LeastSquares),
-    ] {
-        for (name, amplitude) in [("standstill", 0.0), ("vibration", 0.1)] {
-            let mut spec = optical();
-            spec.adc.sample_rate_hz = 5e3;
-            spec.sensor.speed_max_periods_per_s = 500.0;
-            spec.tracking.bandwidth_hz = 300.0;
-            spec.accuracy.rms_periods = 200e-6;
-            spec.calibration.parameters = parameters;
-            spec.calibration.start = start;
-            let bent = |u: f64| u + 0.01 * u * u + 0.03 * u * u * u;
-            let signals = |alpha: f64| (bent(alpha.cos()), bent(alpha.sin()));
-            let mut bench = Bench::new(&spec, 6);
-            let mut turns = 0.0;
-            for _ in 0..200_000 {
-                turns += 50.0 / 5e3;
-                bench.step(signals(TAU * turns));
-            }
-            let before = bench.chip.theta();
-            let mut moved = [0.0f64; 9];
-            for k in 0..600 * 5000u32 {
-                let t = f64::from(k) / 5e3;
-                let place = turns + amplitude * (TAU * 7.3 * t).sin();
-                bench.step(signals(TAU * place));
-                if k % 5000 == 0 {
-                    for (m, (now, old)) in
-                        moved.iter_mut().zip(bench.chip.theta().iter().zip(before))
-                    {
-                        *m = m.max((now - old).abs());
-                    }
-                }
-            }
-            for (i, m) in moved.iter().enumerate() {
-                // The gradient's equaliser is part of a parameter's gamma; the multiplied words have a last bit.
-                let equaliser = [4.0, 1.0, 4.0, 1.0, 16.0, 1.0, 1.0, 1.0, 1.0][i];
-                let gamma = equaliser * 0.5f64.powi(spec.calibration.gamma_last as i32);
-                let noise = spec.sensor.noise_rms * (gamma / 2.0).sqrt();
-                let last_bit = bench.design.structure.formats.theta[0].format.lsb();
-                println!(
-                    "{parameters} parameters, {name}: theta_{} moved {m:.1e}, noise {noise:.1e}",
-                    i + 1
-                );
-                assert!(
-                    *m <= 3.0 * noise + last_bit,
-                    "theta_{} moved {m:.1e}",
-                    i + 1
-                );
-            }
-        }
+        assert!(
+            worst.iter().all(|&w| w < 2e-4),
+            "{}: {worst:?}",
+            variant.what
+        );
     }
 }

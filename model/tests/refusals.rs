@@ -295,3 +295,30 @@ fn the_simulated_encoder_is_what_it_says() {
     assert!(cos.abs() < 1e-12 && (sin - 0.8).abs() < 1e-12);
     assert!((wrapped(0.75) + 0.25).abs() < 1e-12);
 }
+
+#[test]
+fn the_exact_gradient_with_bends_is_refused_with_its_cost() {
+    for parameters in [8, 9] {
+        let mut spec = optical();
+        spec.calibration.method = CalibrationMethod::Exact;
+        spec.calibration.parameters = parameters;
+        let message = Design::new(&spec).expect_err("too dear").to_string();
+        for part in [
+            "calibration.method",
+            "costs 16 or 18 products a sample",
+            "4 or 5 parameters",
+        ] {
+            assert!(message.contains(part), "{message}");
+        }
+    }
+}
+
+#[test]
+fn a_hold_that_noise_would_never_leave_is_widened_and_one_out_of_range_refused() {
+    let mut spec = optical();
+    spec.sensor.noise_rms = 0.03;
+    assert!(spec.hold_residual() >= 0.18);
+    spec.calibration.hold_residual = 2.0;
+    let message = Design::new(&spec).expect_err("no residual").to_string();
+    assert!(message.contains("calibration.hold_residual"), "{message}");
+}

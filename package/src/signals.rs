@@ -115,7 +115,7 @@ const REASONS: &[(&[&str], &str)] = &[
     (&["gamma_gear"], "numbers the gears of gamma"),
     (
         &["gear_periods"],
-        "counts the periods of travel in a gear of gamma",
+        "counts the periods of travel in a gear of gamma, or held",
     ),
     (
         &["start_periods"],

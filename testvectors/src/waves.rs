@@ -262,7 +262,7 @@ pub fn gtkw(name: &str, design: &Design, columns: &[Column], clocks: usize) -> S
         ["theta", "rho_", "travel", "gamma", "gear_"]
             .iter()
             .any(|start| n.starts_with(start))
-            || ["fresh", "whole_period", "disturbed"].contains(&n)
+            || ["fresh", "whole_period", "disturbed", "risen", "held"].contains(&n)
     };
     out += &group("flags and speed", &|n| flags.contains(&n));
     out += &group("loop", &|n| !flags.contains(&n) && !calibrates(n));

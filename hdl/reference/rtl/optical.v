@@ -5,7 +5,7 @@
 // radial residual rho shows what the correction still misses and moves its parameters theta.
 // After S. Balemi, "Automatic calibration of sinusoidal encoder signals", IFAC 2005; equation numbers are the paper's.
 //
-// Design ed57740fe4da: 16 products on 1 multiplier, 19 clocks per sample.
+// Design b2fdb087cd8f: 16 products on 1 multiplier, 19 clocks per sample.
 //
 // Formats: sW.F is a two's complement number of W bits, F of them behind the point; uW.F has no sign and is kept here
 // with a zero in front, so that every number is signed. Angles are in turns of a scale period. A signal that saturates
@@ -18,31 +18,32 @@
 // and samples never overlap. Outputs are those of the last sample from `valid` until the next `sample_valid`; before
 // the first `valid` those that are not registers of the chip are undefined.
 //
-// step | in the multiplier            | computed from it
-// -----+------------------------------+------------------------------------------------------------------------
-//    0 | -                            | sine_phase upper_half odd_quadrant quarter_phase quarter_phase_mirrored
-//      |                              | sin_address sin_inside cos_address cos_inside theta_1 theta_3 theta_5
-//      |                              | last_gear periods_modulo_4 sector sector_relative sector_ahead
-//      |                              | sector_behind
-//    1 | loop_ab * error_previous     | sin_value sin_slope y_c y_s counting whole_period travel_clear
-//    2 | theta_1 * y_c                | cos_value cos_slope drift
-//    3 | cos_slope * cos_inside       | c_exact c
-//    4 | theta_3 * y_s                | cos_magnitude cos_hat c_weak
-//    5 | sin_slope * sin_inside       |
-//    6 | theta_5 * y_c                | sin_magnitude sin_hat
-//    7 | c * cos_hat                  | s_exact s
-//    8 | s * sin_hat                  | s_weak
-//    9 | s * cos_hat                  | rho_exact rho flip rho_limited
-//   10 | c * sin_hat                  | alpha_hat_turned
-//   11 | cos_hat * rho_limited        | e_exact e_seen e
-//   12 | sin_hat * rho_limited        | in_window e_change fresh rho_c residual_large period_tick gamma_restart
-//      |                              | gamma_shift gear_periods_again
-//   13 | loop_a * e_change            | level_moved level_full level_empty narrower rho_s gradient_2 step_2
-//   14 | y_c * rho_c                  | kick gradient_4 step_4
-//   15 | y_s * rho_s                  | speed gradient_1 step_1
-//   16 | y_c * rho_s                  | alpha_hat_sum carry gradient_3 step_3
-//   17 | -                            | gradient_5 step_5
-//   18 | -                            |
+// step | in the multiplier        | computed from it
+// -----+--------------------------+-------------------------------------------------------------------------------
+//    0 | -                        | sine_phase upper_half odd_quadrant quarter_phase quarter_phase_mirrored
+//      |                          | sin_address sin_inside cos_address cos_inside theta_1 theta_3 theta_5
+//      |                          | last_gear periods_modulo_4 sector sector_relative sector_ahead sector_behind
+//      |                          | gamma_settled nominal
+//    1 | loop_ab * error_previous | sin_value sin_slope y_c y_s counting whole_period travel_clear
+//    2 | theta_1 * y_c            | cos_value cos_slope drift
+//    3 | cos_slope * cos_inside   | c_exact c
+//    4 | theta_3 * y_s            | cos_magnitude cos_hat c_weak
+//    5 | sin_slope * sin_inside   |
+//    6 | theta_5 * y_c            | sin_magnitude sin_hat
+//    7 | c * cos_hat              | s_exact s
+//    8 | s * sin_hat              | s_weak
+//    9 | s * cos_hat              | rho_exact rho flip rho_limited
+//   10 | c * sin_hat              | alpha_hat_turned
+//   11 | cos_hat * rho_limited    | e_exact e_seen e
+//   12 | sin_hat * rho_limited    | in_window e_change counted residual_large radius_large rho_c period_tick
+//      |                          | gamma_restart gamma_shift
+//   13 | loop_a * e_change        | level_moved level_full level_empty narrower hold fresh rho_s gradient_2 step_2
+//      |                          | gear_periods_again
+//   14 | y_c * rho_c              | kick gradient_4 step_4
+//   15 | y_s * rho_s              | speed gradient_1 step_1
+//   16 | y_c * rho_s              | alpha_hat_sum carry gradient_3 step_3
+//   17 | -                        | gradient_5 step_5
+//   18 | -                        |
 //
 // Coefficients, by name in the comments below:
 //     loop_a             0.014132976531982422    Loop coefficient a, turns per radian.
@@ -53,16 +54,19 @@
 //     half_bit           0.0000019073486328125   Half a bit of the sine phase: what was cut off, on average.
 //     half_segment       0.001953125             Half a sine table segment.
 //     lock_error         0.375                   Largest |e| in lock, radians.
-//     lock_residual      0.5                     Largest |ρ| in lock.
 //     weak_signal        0.25                    Corrected signals below this are lost.
-//     restart_residual   0.25                    |ρ| above this restarts the γ gears.
+//     restart_residual   0.25                    |ρ| above this begins the search again.
+//     hold_residual      0.0625                  |ρ| above this holds the parameters once γ has settled.
 //     direction_rate     0.0000152587890625      Rate below which the direction does not change, turns per sample.
 //     lock_down          -8                      What a bad sample adds to the lock level.
 //     lock_full          63                      The full lock level.
 //     lock_restart       31                      Lock level after a change of loop gear.
 //     loop_gear_last     3                       Last loop gear.
-//     gamma_gear_last    7                       Last γ gear.
+//     gamma_gear_settled 4                       From this γ gear on γ has settled.
+//     gamma_gear_last    6                       Last γ gear.
 //     gear_periods_last  2                       Periods of travel per γ gear, less one.
+//     held_periods_last  31                      Periods of travel that the parameters are held before the search begins
+//                                                again, less one.
 //     unit_radius        0.9999923706054688      The radius 1, less half a bit of the residual.
 //     zero               0                       0.
 //     one                1                       1.
@@ -74,6 +78,7 @@
 //     minus_one          -1
 //     minus_direction_rate -0.0000152587890625
 //     minus_restart_residual -0.25
+//     minus_hold_residual -0.0625
 
 `default_nettype none
 `timescale 1ns / 1ps
@@ -88,9 +93,9 @@ module optical (
     input  wire calibrate, // this sample may move the parameters
     output wire signed [58:0] position, // periods, s59.27: whole periods and alpha_hat for the next sample
     output reg signed [17:0] theta_1, // θ1 as multiplied. s18.16
-    output reg signed [25:0] theta_2, // θ2. s26.27
+    output reg signed [24:0] theta_2, // θ2. s25.26
     output reg signed [17:0] theta_3, // θ3 as multiplied. s18.16
-    output reg signed [25:0] theta_4, // θ4. s26.27
+    output reg signed [24:0] theta_4, // θ4. s25.26
     output reg signed [17:0] theta_5, // θ5 as multiplied. s18.19
     output reg signed [25:0] speed, // Position increment of this sample, turns: the speed. s26.27
     output reg locked, // The loop follows.
@@ -105,19 +110,21 @@ module optical (
     reg signed [31:0] count; // Whole periods; the unit is the counter's whole range.
     reg signed [25:0] rate; // Phase increment per sample, turns.
     reg signed [17:0] error_previous; // e one sample ago, radians.
-    reg signed [26:0] theta_1_deviation; // θ1 less its nominal value.
-    reg signed [25:0] theta_2_deviation; // θ2.
-    reg signed [26:0] theta_3_deviation; // θ3 less its nominal value.
-    reg signed [25:0] theta_4_deviation; // θ4.
-    reg signed [25:0] theta_5_deviation; // θ5.
+    reg signed [25:0] theta_1_deviation; // θ1 less its nominal value.
+    reg signed [24:0] theta_2_deviation; // θ2.
+    reg signed [25:0] theta_3_deviation; // θ3 less its nominal value.
+    reg signed [24:0] theta_4_deviation; // θ4.
+    reg signed [24:0] theta_5_deviation; // θ5.
     reg signed [6:0] lock_level; // Confidence of the lock detector.
     reg signed [2:0] loop_gear; // Loop gear: 0 widest, the last is the designed bandwidth.
     reg signed [3:0] gamma_gear; // γ gear: 0 largest.
-    reg signed [2:0] gear_periods; // Whole periods travelled in this γ gear.
+    reg signed [5:0] gear_periods; // Whole periods travelled in this γ gear.
     reg signed [7:0] travel_origin; // Position, modulo 4 periods, where the map of sectors was last cleared.
     reg signed [7:0] travel_low; // Lowest sector seen since, relative to the origin.
     reg signed [7:0] travel_high; // Highest sector seen since, relative to the origin.
     reg disturbed; // The residual was large in this period of travel.
+    reg risen; // The radius was too large in this period of travel.
+    reg held; // The residual was large in the period before: the parameters are held.
 
     // The sample's inputs, held
     reg signed [11:0] adc_cos_held; // ADC code of the cosine channel, as a fraction of the ADC's range.
@@ -176,35 +183,49 @@ module optical (
     reg whole_period_condition;
     reg whole_period;
     reg travel_clear;
-    reg fresh_condition_3;
-    reg fresh_condition_2;
+    reg counted_condition_3;
+    reg counted_condition_2;
     reg signed [7:0] travel_low_next_chosen;
     reg signed [7:0] travel_high_next_chosen;
+    reg counted;
+    reg gamma_settled;
+    reg residual_large_condition_7;
+    reg residual_large_condition_6;
+    reg residual_large_condition_3;
+    reg residual_large_condition;
+    reg residual_large;
+    reg hold_condition_2;
+    reg radius_large;
     reg fresh;
     reg signed [14:0] rho_limited;
     reg signed [17:0] rho_c;
     reg signed [17:0] rho_s;
-    reg signed [26:0] step_5;
-    reg signed [24:0] step_1;
-    reg signed [26:0] theta_1_deviation_next;
-    reg signed [22:0] step_2;
-    reg signed [25:0] theta_2_deviation_next;
-    reg signed [24:0] step_3;
-    reg signed [26:0] theta_3_deviation_next;
-    reg signed [22:0] step_4;
-    reg signed [25:0] theta_4_deviation_next;
-    reg residual_large_condition;
-    reg residual_large;
+    reg nominal;
+    reg signed [25:0] step_5;
+    reg signed [23:0] step_1;
+    reg signed [25:0] theta_1_deviation_next;
+    reg signed [21:0] step_2;
+    reg signed [24:0] theta_2_deviation_next;
+    reg signed [23:0] step_3;
+    reg signed [25:0] theta_3_deviation_next;
+    reg signed [21:0] step_4;
+    reg signed [24:0] theta_4_deviation_next;
+    reg gamma_restart_condition_4;
+    reg gamma_restart_condition;
     reg gamma_restart;
     reg gamma_gear_below_gamma_gear_last;
     reg gamma_shift_condition_2;
     reg gamma_shift;
     reg signed [1:0] gear_periods_next_chosen_2;
-    reg gear_periods_again;
+    reg gear_periods_again_condition_2;
+    reg gear_periods_again_condition;
+    reg disturbed_next_condition_2;
+    reg held_next_condition_2;
     reg signed [3:0] gamma_gear_next;
-    reg signed [2:0] gear_periods_next;
-    reg disturbed_next_condition;
+    reg signed [5:0] gear_periods_next;
     reg disturbed_next;
+    reg risen_next;
+    reg held_next;
     reg lock_lost_next_condition_3;
     reg lock_lost_next_condition;
     reg lock_lost_next;
@@ -262,11 +283,11 @@ module optical (
     wire signed [17:0] odd_quadrant_bits = {1'b0, sine_phase[16:0]}; // u17.18, step 0
     wire odd_quadrant = ~($signed(odd_quadrant_bits[17:16]) < 2'sd1); // step 0
     wire signed [16:0] quarter_phase = {1'b0, sine_phase[15:0]}; // u16.18, step 0
-    wire signed [16:0] quarter_phase_mirrored = {1'b0, ~quarter_phase[15:0]}; // s17.18, step 0
+    wire signed [16:0] quarter_phase_mirrored = {1'b0, ~quarter_phase[15:0]}; // s17.18, step 0, with quarter_turn
     wire signed [16:0] sin_address = odd_quadrant ? quarter_phase_mirrored : quarter_phase; // s17.18, step 0
     wire signed [10:0] sin_inside_bits = {1'b0, sin_address[9:0]}; // u10.18, step 0
-    wire signed [11:0] sin_inside_sum = {sin_inside_bits, 1'h1}; // s12.19, step 0
-    wire signed [10:0] sin_inside_now = sin_inside_sum[10:0] - 11'sh400; // s11.19, step 0
+    wire signed [11:0] sin_inside_sum = {sin_inside_bits, 1'h1}; // s12.19, step 0, with half_bit
+    wire signed [10:0] sin_inside_now = sin_inside_sum[10:0] - 11'sh400; // s11.19, step 0, with half_segment
     wire signed [19:0] sin_value_now = {1'b0, sine_table_row[32:14]}; // u19.18, step 1
     wire signed [14:0] sin_slope_now = {1'b0, sine_table_row[13:0]}; // u14.11, step 1
     wire signed [24:0] sin_slope_times_sin_inside = product_0[24:0]; // s25.30, step 6
@@ -274,8 +295,8 @@ module optical (
     wire signed [17:0] sin_magnitude = sin_magnitude_sum[31:14]; // s18.16, step 6
     wire signed [16:0] cos_address_now = odd_quadrant ? quarter_phase : quarter_phase_mirrored; // s17.18, step 0
     wire signed [10:0] cos_inside_bits = {1'b0, cos_address_now[9:0]}; // u10.18, step 0
-    wire signed [11:0] cos_inside_sum = {cos_inside_bits, 1'h1}; // s12.19, step 0
-    wire signed [10:0] cos_inside_now = cos_inside_sum[10:0] - 11'sh400; // s11.19, step 0
+    wire signed [11:0] cos_inside_sum = {cos_inside_bits, 1'h1}; // s12.19, step 0, with half_bit
+    wire signed [10:0] cos_inside_now = cos_inside_sum[10:0] - 11'sh400; // s11.19, step 0, with half_segment
     wire signed [19:0] cos_value_now = {1'b0, sine_table_row[32:14]}; // u19.18, step 2
     wire signed [14:0] cos_slope = {1'b0, sine_table_row[13:0]}; // u14.11, step 2
     wire signed [24:0] cos_slope_times_cos_inside = product_0[24:0]; // s25.30, step 4
@@ -296,20 +317,20 @@ module optical (
     // Parameters as multiplied
     //   theta = nominal + deviation, rounded to the width of the signals
     //   (paper section 5.3)
-    wire signed [28:0] theta_1_rounded = 29'sha000400 + {{2{theta_1_deviation[26]}}, theta_1_deviation};
-    wire signed [17:0] theta_1_now = theta_1_rounded[28:11]; // s18.16, step 0
-    wire signed [28:0] theta_3_rounded = 29'sha000400 + {{2{theta_3_deviation[26]}}, theta_3_deviation};
-    wire signed [17:0] theta_3_now = theta_3_rounded[28:11]; // s18.16, step 0
-    wire signed [18:0] theta_5_rounded = {theta_5_deviation[25], theta_5_deviation[25:8]} + {18'b0, theta_5_deviation[7]};
+    wire signed [27:0] theta_1_rounded = 28'sh5000200 + {{2{theta_1_deviation[25]}}, theta_1_deviation};
+    wire signed [17:0] theta_1_now = theta_1_rounded[27:10]; // s18.16, step 0, with theta_1_nominal
+    wire signed [27:0] theta_3_rounded = 28'sh5000200 + {{2{theta_3_deviation[25]}}, theta_3_deviation};
+    wire signed [17:0] theta_3_now = theta_3_rounded[27:10]; // s18.16, step 0, with theta_3_nominal
+    wire signed [18:0] theta_5_rounded = {theta_5_deviation[24], theta_5_deviation[24:7]} + {18'b0, theta_5_deviation[6]};
     wire signed [17:0] theta_5_now = ((&theta_5_rounded[18:17]) | ~(|theta_5_rounded[18:17])) ? theta_5_rounded[17:0] : {theta_5_rounded[18], {17{~theta_5_rounded[18]}}}; // s18.19, step 0
 
     // Correction
     //   c = theta_1 y_c + theta_2,  s = theta_3 y_s + theta_4 + theta_5 y_c
     //   (paper section 5.3)
     wire signed [28:0] theta_1_times_y_c = product_0[28:0]; // s29.27, step 3
-    wire signed [28:0] c_exact = theta_1_times_y_c + {{3{theta_2_deviation[25]}}, theta_2_deviation}; // s29.27, step 3
+    wire signed [28:0] c_exact = theta_1_times_y_c + {{3{theta_2_deviation[24]}}, theta_2_deviation, 1'b0}; // s29.27, step 3
     wire signed [28:0] theta_3_times_y_s = product_0[28:0]; // s29.27, step 5
-    wire signed [28:0] s_exact_sum_now = theta_3_times_y_s + {{3{theta_4_deviation[25]}}, theta_4_deviation}; // s29.27, step 5
+    wire signed [28:0] s_exact_sum_now = theta_3_times_y_s + {{3{theta_4_deviation[24]}}, theta_4_deviation, 1'b0}; // s29.27, step 5
     wire signed [29:0] theta_5_times_y_c = product_0[29:0]; // s30.30, step 7
     wire signed [32:0] s_exact = {s_exact_sum[28], s_exact_sum, 3'b0} + {{3{theta_5_times_y_c[29]}}, theta_5_times_y_c}; // s33.30, step 7
     wire signed [17:0] c_rounded = c_exact[28:11] + {17'b0, c_exact[10]};
@@ -319,11 +340,11 @@ module optical (
 
     // Loss of signal
     //   |c| and |s| both below the threshold
-    wire c_below_weak_signal_now = $signed(c_now[17:14]) < 4'sd1; // step 3
-    wire c_below_minus_weak_signal_now = ~($signed(~c_now[17:14]) < 4'sd1); // step 3
+    wire c_below_weak_signal_now = $signed(c_now[17:14]) < 4'sd1; // step 3, with weak_signal
+    wire c_below_minus_weak_signal_now = ~($signed(~c_now[17:14]) < 4'sd1); // step 3, with minus_weak_signal
     wire c_weak_now = c_below_weak_signal & ~c_below_minus_weak_signal; // step 4
-    wire s_below_weak_signal_now = $signed(s_now[17:14]) < 4'sd1; // step 7
-    wire s_below_minus_weak_signal_now = ~($signed(~s_now[17:14]) < 4'sd1); // step 7
+    wire s_below_weak_signal_now = $signed(s_now[17:14]) < 4'sd1; // step 7, with weak_signal
+    wire s_below_minus_weak_signal_now = ~($signed(~s_now[17:14]) < 4'sd1); // step 7, with minus_weak_signal
     wire s_weak = s_below_weak_signal & ~s_below_minus_weak_signal; // step 8
     wire signal_lost_next_now = c_weak & s_weak; // step 8
 
@@ -331,7 +352,7 @@ module optical (
     //   rho = c cos(alpha_hat) + s sin(alpha_hat) - 1, the half bit of rounding in the 1
     //   (paper section 5.5.1, n^T r)
     wire signed [34:0] c_times_cos_hat = product_0[34:0]; // s35.32, step 8
-    wire signed [34:0] rho_exact_difference_now = c_times_cos_hat - 35'shffff8000; // s35.32, step 8
+    wire signed [34:0] rho_exact_difference_now = c_times_cos_hat - 35'shffff8000; // s35.32, step 8, with unit_radius
     wire signed [34:0] s_times_sin_hat = product_0[34:0]; // s35.32, step 9
     wire signed [35:0] rho_exact = {rho_exact_difference[34], rho_exact_difference} + {s_times_sin_hat[34], s_times_sin_hat}; // s36.32, step 9
     wire signed [17:0] rho_now = ((&rho_exact[35:33]) | ~(|rho_exact[35:33])) ? rho_exact[33:16] : {rho_exact[35], {17{~rho_exact[35]}}}; // s18.16, step 9
@@ -347,29 +368,30 @@ module optical (
     wire signed [17:0] e_now = signal_lost_next ? 18'sd0 : e_seen; // s18.16, step 11
 
     // Lock window
-    //   |e| and |rho| below their limits, signal present
+    //   |e| and -rho below their limits, signal present
     //   (calibration needs lock: the update would otherwise drive the gains to zero)
-    wire in_window_condition_3_now = ($signed(rho_now[17:15]) < 3'sd1) & ($signed(~rho_now[17:15]) < 3'sd1); // step 9
+    wire in_window_condition_3_now = $signed(~rho_now[17:15]) < 3'sd1; // step 9, with minus_lock_residual
     wire in_window_condition_now = ~signal_lost_next_now; // step 8
-    wire in_window_now = ((($signed(e[17:13]) < 5'sd3) & ($signed(~e[17:13]) < 5'sd3)) & in_window_condition_3) & in_window_condition; // step 12
+    wire in_window_now = ((($signed(e[17:13]) < 5'sd3) & ($signed(~e[17:13]) < 5'sd3)) & in_window_condition_3) & in_window_condition; // step 12, with lock_error, minus_lock_error
     wire flip_condition_now = ~(locked | signal_lost_next_now); // step 8
     wire flip = ~($signed(~rho_now[17:16]) < 2'sd1) & flip_condition; // step 9
 
     // Lock level and loop gear
     //   level' = level + 1 if good, else level - 8; full: narrower loop, empty: widest loop
-    wire signed [3:0] level_moved_chosen = in_window_now ? 4'sd1 : 4'sh8; // s4.0, step 12
+    wire signed [3:0] level_moved_chosen = in_window_now ? 4'sd1 : 4'sh8; // s4.0, step 12, with lock_down
     wire signed [7:0] level_moved_sum_now = {lock_level[6], lock_level} + {{4{level_moved_chosen[3]}}, level_moved_chosen}; // s8.0, step 12
     wire signed [6:0] level_moved = level_moved_sum[7] ? 7'sd0 : (level_moved_sum[6] ? {1'b0, {6{1'b1}}} : {1'b0, level_moved_sum[5:0]}); // u6.0, step 13
-    wire level_full = ~(level_moved < 7'sh3f); // step 13
+    wire level_moved_below_lock_full = level_moved < 7'sh3f; // step 13, with lock_full
+    wire level_full = ~level_moved_below_lock_full; // step 13
     wire level_empty_now = level_moved < 7'sd1; // step 13
-    wire loop_gear_below_loop_gear_last_now = loop_gear < 3'sd3; // step 0
+    wire loop_gear_below_loop_gear_last_now = loop_gear < 3'sd3; // step 0, with loop_gear_last
     wire last_gear_now = ~loop_gear_below_loop_gear_last_now; // step 0
     wire narrower = level_full & loop_gear_below_loop_gear_last; // step 13
     wire signed [1:0] loop_gear_next_chosen_2 = narrower ? 2'sd1 : 2'sd0; // s2.0, step 13
     wire signed [3:0] loop_gear_next_sum = {loop_gear[2], loop_gear} + {{2{loop_gear_next_chosen_2[1]}}, loop_gear_next_chosen_2}; // s4.0, step 13
     wire signed [2:0] loop_gear_next_bits_now = {1'b0, loop_gear_next_sum[1:0]}; // u2.0, step 13
     wire signed [2:0] loop_gear_next_chosen = level_empty ? 3'sd0 : loop_gear_next_bits; // s3.0, step 14
-    wire signed [6:0] lock_level_next_chosen = narrower ? 7'sh1f : level_moved; // s7.0, step 13
+    wire signed [6:0] lock_level_next_chosen = narrower ? 7'sh1f : level_moved; // s7.0, step 13, with lock_restart
     wire locked_next_now = (locked | (level_full & last_gear)) & ~level_empty_now; // step 13
     wire signed [6:0] lock_level_next_now = lock_level_next_chosen; // u6.0, step 13
     wire signed [2:0] loop_gear_next_now = loop_gear_next_chosen; // u2.0, step 14
@@ -410,8 +432,8 @@ module optical (
 
     // Direction
     //   sign of the rate, with a dead band
-    wire speed_below_minus_direction_rate_now = ~($signed(~speed_now[25:11]) < 15'sd1); // step 15
-    wire speed_below_direction_rate_now = $signed(speed_now[25:11]) < 15'sd1; // step 15
+    wire speed_below_minus_direction_rate_now = ~($signed(~speed_now[25:11]) < 15'sd1); // step 15, with minus_direction_rate
+    wire speed_below_direction_rate_now = $signed(speed_now[25:11]) < 15'sd1; // step 15, with direction_rate
     wire direction_next_now = speed_below_minus_direction_rate | (direction & speed_below_direction_rate); // step 16
 
     // Travel
@@ -431,14 +453,28 @@ module optical (
     wire signed [8:0] sector_behind_difference = {travel_high[7], travel_high} - 9'sh40; // s9.6, step 0
     wire sector_behind = (sector_relative < travel_low) & (sector_behind_difference < $signed({sector_relative[7], sector_relative})); // step 0
     wire travel_clear_now = whole_period_now | ~counting_now; // step 1
-    wire fresh_condition_3_now = sector_ahead | sector_behind; // step 0
-    wire fresh_condition_2_now = fresh_condition_3 | travel_clear_now; // step 1
+    wire counted_condition_3_now = sector_ahead | sector_behind; // step 0
+    wire counted_condition_2_now = counted_condition_3 | travel_clear_now; // step 1
     wire signed [7:0] travel_origin_next = travel_clear ? sector : travel_origin; // s8.6, step 18
     wire signed [7:0] travel_low_next_chosen_now = sector_behind ? sector_relative : travel_low; // s8.6, step 0
     wire signed [7:0] travel_low_next = travel_clear ? 8'sd0 : travel_low_next_chosen; // s8.6, step 18
     wire signed [7:0] travel_high_next_chosen_now = sector_ahead ? sector_relative : travel_high; // s8.6, step 0
     wire signed [7:0] travel_high_next = travel_clear ? 8'sd0 : travel_high_next_chosen; // s8.6, step 18
-    wire fresh_now = (counting & in_window_now) & fresh_condition_2; // step 12
+    wire counted_now = (counting & in_window_now) & counted_condition_2; // step 12
+
+    // Hold
+    //   once gamma has settled a residual that is not small, and all until the end of a period without one, moves no parameter
+    wire gamma_gear_below_gamma_gear_settled = $signed(gamma_gear[3:2]) < 2'sd1; // step 0, with gamma_gear_settled
+    wire gamma_settled_now = ~gamma_gear_below_gamma_gear_settled; // step 0
+    wire residual_large_condition_7_now = ~($signed(rho_now[17:14]) < 4'sd1); // step 9, with restart_residual
+    wire residual_large_condition_6_now = residual_large_condition_7_now | ~($signed(~rho_now[17:14]) < 4'sd1); // step 9, with minus_restart_residual
+    wire residual_large_condition_3_now = ~(($signed(rho_now[17:12]) < 6'sd1) & ($signed(~rho_now[17:12]) < 6'sd1)); // step 9, with hold_residual, minus_hold_residual
+    wire residual_large_condition_now = residual_large_condition_6 | (gamma_settled & residual_large_condition_3); // step 10
+    wire residual_large_now = residual_large_condition & counted_now; // step 12
+    wire hold_condition_2_now = (residual_large_now | disturbed) | held; // step 12
+    wire radius_large_now = residual_large_condition_7 & counted_now; // step 12
+    wire hold = (hold_condition_2 | level_moved_below_lock_full) & gamma_settled; // step 13
+    wire fresh_now = counted & ~hold; // step 13
 
     // Gradient along the radius
     //   rho_c = cos(alpha_hat) rho,  rho_s = sin(alpha_hat) rho
@@ -450,6 +486,7 @@ module optical (
     wire signed [31:0] sin_hat_times_rho_limited = product_0[31:0]; // s32.32, step 13
     wire signed [15:0] rho_s_rounded = sin_hat_times_rho_limited[31:16] + {15'b0, sin_hat_times_rho_limited[15]};
     wire signed [17:0] rho_s_now = {{2{rho_s_rounded[15]}}, rho_s_rounded}; // s18.16, step 13
+    wire period_tick = counted_now & whole_period; // step 12
 
     // Parameter update
     //   theta -= gamma gradient, each component times a power of two that lets all parameters converge alike
@@ -457,54 +494,63 @@ module optical (
     wire signed [26:0] gradient_5 = product_0[26:0]; // s27.27, step 17
     wire signed [26:0] y_c_times_rho_c = product_0[26:0]; // s27.27, step 15
     wire signed [26:0] y_s_times_rho_s = product_0[26:0]; // s27.27, step 16
-    wire signed [26:0] step_5_geared = shifted_1; // s27.27, step 17
-    wire signed [26:0] step_5_now = fresh ? step_5_geared : 27'sd0; // s27.27, step 17
-    wire signed [27:0] theta_5_deviation_next_difference = {{2{theta_5_deviation[25]}}, theta_5_deviation} - {step_5[26], step_5}; // s28.27, step 18
-    wire signed [25:0] theta_5_deviation_next = ((&theta_5_deviation_next_difference[27:25]) | ~(|theta_5_deviation_next_difference[27:25])) ? theta_5_deviation_next_difference[25:0] : {theta_5_deviation_next_difference[27], {25{~theta_5_deviation_next_difference[27]}}}; // s26.27, step 18
+    wire nominal_now = (gamma_gear < 4'sd1) & (signal_lost & ~locked); // step 0
+    wire signed [25:0] step_5_geared = shifted_1; // s26.26, step 17
+    wire signed [25:0] step_5_now = fresh ? step_5_geared : 26'sd0; // s26.26, step 17
+    wire signed [26:0] theta_5_deviation_next_difference = {{2{theta_5_deviation[24]}}, theta_5_deviation} - {step_5[25], step_5}; // s27.26, step 18
+    wire signed [24:0] theta_5_deviation_next_bits = ((&theta_5_deviation_next_difference[26:24]) | ~(|theta_5_deviation_next_difference[26:24])) ? theta_5_deviation_next_difference[24:0] : {theta_5_deviation_next_difference[26], {24{~theta_5_deviation_next_difference[26]}}}; // s25.26, step 18
+    wire signed [24:0] theta_5_deviation_next = nominal ? 25'sd0 : theta_5_deviation_next_bits; // s25.26, step 18
     wire signed [26:0] gradient_1 = y_c_times_rho_c; // s27.29, step 15
-    wire signed [26:0] step_1_geared = shifted_1; // s27.27, step 15
-    wire signed [24:0] step_1_now = fresh ? step_1_geared[24:0] : 25'sd0; // s25.27, step 15
-    wire signed [27:0] theta_1_deviation_next_difference = {theta_1_deviation[26], theta_1_deviation} - {{3{step_1[24]}}, step_1}; // s28.27, step 16
-    wire signed [26:0] theta_1_deviation_next_now = ((&theta_1_deviation_next_difference[27:26]) | ~(|theta_1_deviation_next_difference[27:26])) ? theta_1_deviation_next_difference[26:0] : {theta_1_deviation_next_difference[27], {26{~theta_1_deviation_next_difference[27]}}}; // s27.27, step 16
+    wire signed [25:0] step_1_geared = shifted_1; // s26.26, step 15
+    wire signed [23:0] step_1_now = fresh ? step_1_geared[23:0] : 24'sd0; // s24.26, step 15
+    wire signed [26:0] theta_1_deviation_next_difference = {theta_1_deviation[25], theta_1_deviation} - {{3{step_1[23]}}, step_1}; // s27.26, step 16
+    wire signed [25:0] theta_1_deviation_next_bits = ((&theta_1_deviation_next_difference[26:25]) | ~(|theta_1_deviation_next_difference[26:25])) ? theta_1_deviation_next_difference[25:0] : {theta_1_deviation_next_difference[26], {25{~theta_1_deviation_next_difference[26]}}}; // s26.26, step 16
+    wire signed [25:0] theta_1_deviation_next_now = nominal ? 26'sd0 : theta_1_deviation_next_bits; // s26.26, step 16
     wire signed [15:0] gradient_2 = rho_c[15:0]; // s16.20, step 13
-    wire signed [26:0] step_2_geared = shifted_1; // s27.27, step 13
-    wire signed [22:0] step_2_now = fresh ? step_2_geared[22:0] : 23'sd0; // s23.27, step 13
-    wire signed [26:0] theta_2_deviation_next_difference = {theta_2_deviation[25], theta_2_deviation} - {{4{step_2[22]}}, step_2}; // s27.27, step 14
-    wire signed [25:0] theta_2_deviation_next_now = ((&theta_2_deviation_next_difference[26:25]) | ~(|theta_2_deviation_next_difference[26:25])) ? theta_2_deviation_next_difference[25:0] : {theta_2_deviation_next_difference[26], {25{~theta_2_deviation_next_difference[26]}}}; // s26.27, step 14
+    wire signed [25:0] step_2_geared = shifted_1; // s26.26, step 13
+    wire signed [21:0] step_2_now = fresh_now ? step_2_geared[21:0] : 22'sd0; // s22.26, step 13
+    wire signed [25:0] theta_2_deviation_next_difference = {theta_2_deviation[24], theta_2_deviation} - {{4{step_2[21]}}, step_2}; // s26.26, step 14
+    wire signed [24:0] theta_2_deviation_next_bits = ((&theta_2_deviation_next_difference[25:24]) | ~(|theta_2_deviation_next_difference[25:24])) ? theta_2_deviation_next_difference[24:0] : {theta_2_deviation_next_difference[25], {24{~theta_2_deviation_next_difference[25]}}}; // s25.26, step 14
+    wire signed [24:0] theta_2_deviation_next_now = nominal ? 25'sd0 : theta_2_deviation_next_bits; // s25.26, step 14
     wire signed [26:0] gradient_3 = y_s_times_rho_s; // s27.29, step 16
-    wire signed [26:0] step_3_geared = shifted_1; // s27.27, step 16
-    wire signed [24:0] step_3_now = fresh ? step_3_geared[24:0] : 25'sd0; // s25.27, step 16
-    wire signed [27:0] theta_3_deviation_next_difference = {theta_3_deviation[26], theta_3_deviation} - {{3{step_3[24]}}, step_3}; // s28.27, step 17
-    wire signed [26:0] theta_3_deviation_next_now = ((&theta_3_deviation_next_difference[27:26]) | ~(|theta_3_deviation_next_difference[27:26])) ? theta_3_deviation_next_difference[26:0] : {theta_3_deviation_next_difference[27], {26{~theta_3_deviation_next_difference[27]}}}; // s27.27, step 17
+    wire signed [25:0] step_3_geared = shifted_1; // s26.26, step 16
+    wire signed [23:0] step_3_now = fresh ? step_3_geared[23:0] : 24'sd0; // s24.26, step 16
+    wire signed [26:0] theta_3_deviation_next_difference = {theta_3_deviation[25], theta_3_deviation} - {{3{step_3[23]}}, step_3}; // s27.26, step 17
+    wire signed [25:0] theta_3_deviation_next_bits = ((&theta_3_deviation_next_difference[26:25]) | ~(|theta_3_deviation_next_difference[26:25])) ? theta_3_deviation_next_difference[25:0] : {theta_3_deviation_next_difference[26], {25{~theta_3_deviation_next_difference[26]}}}; // s26.26, step 17
+    wire signed [25:0] theta_3_deviation_next_now = nominal ? 26'sd0 : theta_3_deviation_next_bits; // s26.26, step 17
     wire signed [15:0] gradient_4 = rho_s[15:0]; // s16.20, step 14
-    wire signed [26:0] step_4_geared = shifted_1; // s27.27, step 14
-    wire signed [22:0] step_4_now = fresh ? step_4_geared[22:0] : 23'sd0; // s23.27, step 14
-    wire signed [26:0] theta_4_deviation_next_difference = {theta_4_deviation[25], theta_4_deviation} - {{4{step_4[22]}}, step_4}; // s27.27, step 15
-    wire signed [25:0] theta_4_deviation_next_now = ((&theta_4_deviation_next_difference[26:25]) | ~(|theta_4_deviation_next_difference[26:25])) ? theta_4_deviation_next_difference[25:0] : {theta_4_deviation_next_difference[26], {25{~theta_4_deviation_next_difference[26]}}}; // s26.27, step 15
+    wire signed [25:0] step_4_geared = shifted_1; // s26.26, step 14
+    wire signed [21:0] step_4_now = fresh ? step_4_geared[21:0] : 22'sd0; // s22.26, step 14
+    wire signed [25:0] theta_4_deviation_next_difference = {theta_4_deviation[24], theta_4_deviation} - {{4{step_4[21]}}, step_4}; // s26.26, step 15
+    wire signed [24:0] theta_4_deviation_next_bits = ((&theta_4_deviation_next_difference[25:24]) | ~(|theta_4_deviation_next_difference[25:24])) ? theta_4_deviation_next_difference[24:0] : {theta_4_deviation_next_difference[25], {24{~theta_4_deviation_next_difference[25]}}}; // s25.26, step 15
+    wire signed [24:0] theta_4_deviation_next_now = nominal ? 25'sd0 : theta_4_deviation_next_bits; // s25.26, step 15
 
     // Gears of gamma
-    //   gamma halves after some periods of travel, starts again when the residual was large
-    wire residual_large_condition_now = ~(($signed(rho_now[17:14]) < 4'sd1) & ($signed(~rho_now[17:14]) < 4'sd1)); // step 9
-    wire residual_large_now = residual_large_condition & fresh_now; // step 12
-    wire period_tick = whole_period & fresh_now; // step 12
-    wire gamma_restart_now = period_tick & disturbed; // step 12
-    wire gamma_gear_below_gamma_gear_last_now = gamma_gear < 4'sd7; // step 0
-    wire gamma_shift_condition_2_now = ~($signed(gear_periods[2:1]) < 2'sd1); // step 0
-    wire gamma_shift_condition = period_tick & gamma_shift_condition_2; // step 12
-    wire gamma_shift_now = gamma_shift_condition & gamma_gear_below_gamma_gear_last; // step 12
+    //   gamma halves after some periods of travel, starts again when the residual stays large
+    wire gamma_restart_condition_4_now = period_tick & disturbed; // step 12
+    wire gamma_restart_condition_now = (gamma_gear_below_gamma_gear_settled | risen) | (held & ~(gear_periods < 6'sh1f)); // step 0, with held_periods_last
+    wire gamma_restart_now = gamma_restart_condition_4_now & gamma_restart_condition; // step 12
+    wire gamma_gear_below_gamma_gear_last_now = $signed(gamma_gear[3:1]) < 3'sd3; // step 0, with gamma_gear_last
+    wire gamma_shift_condition_2_now = ~($signed(gear_periods[5:1]) < 5'sd1) & ~(disturbed | held); // step 0, with gear_periods_last
+    wire gamma_shift_now = (period_tick & gamma_shift_condition_2) & gamma_gear_below_gamma_gear_last; // step 12
     wire signed [1:0] gamma_gear_next_chosen_2 = gamma_shift ? 2'sd1 : 2'sd0; // s2.0, step 13
     wire signed [4:0] gamma_gear_next_sum = {gamma_gear[3], gamma_gear} + {{3{gamma_gear_next_chosen_2[1]}}, gamma_gear_next_chosen_2}; // s5.0, step 13
     wire signed [3:0] gamma_gear_next_bits = {1'b0, gamma_gear_next_sum[2:0]}; // u3.0, step 13
     wire signed [1:0] gear_periods_next_chosen_2_now = period_tick ? 2'sd1 : 2'sd0; // s2.0, step 12
-    wire signed [3:0] gear_periods_next_sum = {gear_periods[2], gear_periods} + {{2{gear_periods_next_chosen_2[1]}}, gear_periods_next_chosen_2}; // s4.0, step 13
-    wire signed [2:0] gear_periods_next_bits = {1'b0, gear_periods_next_sum[1:0]}; // u2.0, step 13
-    wire gear_periods_again_now = gamma_restart_now | gamma_shift_condition; // step 12
+    wire signed [6:0] gear_periods_next_sum = {gear_periods[5], gear_periods} + {{5{gear_periods_next_chosen_2[1]}}, gear_periods_next_chosen_2}; // s7.0, step 13
+    wire signed [5:0] gear_periods_next_bits = {1'b0, gear_periods_next_sum[4:0]}; // u5.0, step 13
+    wire gear_periods_again_condition_2_now = (gamma_shift_condition_2_now | (disturbed & ~held)) | (held & ~disturbed); // step 0
+    wire gear_periods_again_condition_now = period_tick & gear_periods_again_condition_2; // step 12
+    wire gear_periods_again = gear_periods_again_condition | gamma_restart; // step 13
+    wire disturbed_next_condition_2_now = ~period_tick & counting; // step 12
+    wire held_next_condition_2_now = held & ~period_tick; // step 12
     wire signed [3:0] gamma_gear_next_chosen = gamma_restart ? 4'sd0 : gamma_gear_next_bits; // s4.0, step 13
     wire signed [3:0] gamma_gear_next_now = gamma_gear_next_chosen; // u3.0, step 13
-    wire signed [2:0] gear_periods_next_chosen = gear_periods_again ? 3'sd0 : gear_periods_next_bits; // s3.0, step 13
-    wire signed [2:0] gear_periods_next_now = gear_periods_next_chosen; // u2.0, step 13
-    wire disturbed_next_condition_now = disturbed & ~period_tick; // step 12
-    wire disturbed_next_now = residual_large | disturbed_next_condition; // step 13
+    wire signed [5:0] gear_periods_next_chosen = gear_periods_again ? 6'sd0 : gear_periods_next_bits; // s6.0, step 13
+    wire signed [5:0] gear_periods_next_now = gear_periods_next_chosen; // u5.0, step 13
+    wire disturbed_next_now = residual_large | (disturbed & disturbed_next_condition_2); // step 13
+    wire risen_next_now = radius_large | (risen & disturbed_next_condition_2); // step 13
+    wire held_next_now = ((gamma_restart_condition_4 & ~gamma_restart) | held_next_condition_2) & counting; // step 13
 
     // Flags
     //   what the machine control needs to know
@@ -513,18 +559,18 @@ module optical (
     wire lock_lost_next_now = lock_lost_next_condition_3 | lock_lost_next_condition; // step 14
 
     // Shifter 1, shared: gamma is a power of two
-    reg signed [27:0] unshifted_1;
+    reg signed [26:0] unshifted_1;
     always @*
         case (step)
-            5'd13: unshifted_1 = {{4{gradient_2[15]}}, gradient_2, 8'b0}; // step_2_geared
-            5'd14: unshifted_1 = {{4{gradient_4[15]}}, gradient_4, 8'b0}; // step_4_geared
-            5'd15: unshifted_1 = {{2{gradient_1[26]}}, gradient_1[26:1]}; // step_1_geared
-            5'd16: unshifted_1 = {{2{gradient_3[26]}}, gradient_3[26:1]}; // step_3_geared
-            default: unshifted_1 = {gradient_5, 1'b0};
+            5'd13: unshifted_1 = {{4{gradient_2[15]}}, gradient_2, 7'b0}; // step_2_geared
+            5'd14: unshifted_1 = {{4{gradient_4[15]}}, gradient_4, 7'b0}; // step_4_geared
+            5'd15: unshifted_1 = {{2{gradient_1[26]}}, gradient_1[26:2]}; // step_1_geared
+            5'd16: unshifted_1 = {{2{gradient_3[26]}}, gradient_3[26:2]}; // step_3_geared
+            default: unshifted_1 = gradient_5;
         endcase
-    wire signed [27:0] shift_1 = unshifted_1 >>> gamma_gear[2:0];
-    wire signed [26:0] shifted_1_rounded = shift_1[27:1] + {26'b0, shift_1[0]};
-    wire signed [26:0] shifted_1 = shifted_1_rounded;
+    wire signed [26:0] shift_1 = unshifted_1 >>> gamma_gear[2:0];
+    wire signed [25:0] shifted_1_rounded = shift_1[26:1] + {25'b0, shift_1[0]};
+    wire signed [25:0] shifted_1 = shifted_1_rounded;
 
     // Multiplier 0
     always @(posedge clk)
@@ -532,7 +578,7 @@ module optical (
 
     always @(posedge clk)
         case (step)
-            5'd0: operand_a_0 <= 18'sh13b1b;
+            5'd0: operand_a_0 <= 18'sh13b1b; // loop_ab
             5'd1, 5'd5, 5'd13, 5'd15: operand_a_0 <= {{6{y_c[11]}}, y_c};
             5'd2: operand_a_0 <= {{7{cos_inside[10]}}, cos_inside};
             5'd3, 5'd14: operand_a_0 <= {{6{y_s[11]}}, y_s};
@@ -541,7 +587,7 @@ module optical (
             5'd7: operand_a_0 <= s_now;
             5'd8: operand_a_0 <= s;
             5'd10, 5'd11: operand_a_0 <= {{3{rho_limited[14]}}, rho_limited};
-            default: operand_a_0 <= 18'sh1cf1c;
+            default: operand_a_0 <= 18'sh1cf1c; // loop_a
         endcase
 
     always @(posedge clk)
@@ -574,11 +620,15 @@ module optical (
             last_gear <= last_gear_now;
             sector <= sector_now;
             whole_period_condition <= whole_period_condition_now;
-            fresh_condition_3 <= fresh_condition_3_now;
+            counted_condition_3 <= counted_condition_3_now;
             travel_low_next_chosen <= travel_low_next_chosen_now;
             travel_high_next_chosen <= travel_high_next_chosen_now;
+            gamma_settled <= gamma_settled_now;
+            nominal <= nominal_now;
+            gamma_restart_condition <= gamma_restart_condition_now;
             gamma_gear_below_gamma_gear_last <= gamma_gear_below_gamma_gear_last_now;
             gamma_shift_condition_2 <= gamma_shift_condition_2_now;
+            gear_periods_again_condition_2 <= gear_periods_again_condition_2_now;
             theta_2 <= theta_2_deviation;
             theta_4 <= theta_4_deviation;
         end
@@ -588,7 +638,7 @@ module optical (
             counting <= counting_now;
             whole_period <= whole_period_now;
             travel_clear <= travel_clear_now;
-            fresh_condition_2 <= fresh_condition_2_now;
+            counted_condition_2 <= counted_condition_2_now;
             lock_lost_next_condition_3 <= lock_lost_next_condition_3_now;
         end
         if (step == 5'd2) begin
@@ -626,12 +676,15 @@ module optical (
             rho <= rho_now;
             in_window_condition_3 <= in_window_condition_3_now;
             alpha_hat_turned_chosen <= alpha_hat_turned_chosen_now;
+            residual_large_condition_7 <= residual_large_condition_7_now;
+            residual_large_condition_6 <= residual_large_condition_6_now;
+            residual_large_condition_3 <= residual_large_condition_3_now;
             rho_limited <= rho_limited_now;
-            residual_large_condition <= residual_large_condition_now;
         end
         if (step == 5'd10) begin
             s_times_cos_hat <= s_times_cos_hat_now;
             alpha_hat_turned <= alpha_hat_turned_now;
+            residual_large_condition <= residual_large_condition_now;
         end
         if (step == 5'd11) begin
             e <= e_now;
@@ -639,25 +692,32 @@ module optical (
         if (step == 5'd12) begin
             in_window <= in_window_now;
             level_moved_sum <= level_moved_sum_now;
-            fresh <= fresh_now;
-            rho_c <= rho_c_now;
+            counted <= counted_now;
             residual_large <= residual_large_now;
+            hold_condition_2 <= hold_condition_2_now;
+            radius_large <= radius_large_now;
+            rho_c <= rho_c_now;
+            gamma_restart_condition_4 <= gamma_restart_condition_4_now;
             gamma_restart <= gamma_restart_now;
             gamma_shift <= gamma_shift_now;
             gear_periods_next_chosen_2 <= gear_periods_next_chosen_2_now;
-            gear_periods_again <= gear_periods_again_now;
-            disturbed_next_condition <= disturbed_next_condition_now;
+            gear_periods_again_condition <= gear_periods_again_condition_now;
+            disturbed_next_condition_2 <= disturbed_next_condition_2_now;
+            held_next_condition_2 <= held_next_condition_2_now;
         end
         if (step == 5'd13) begin
             level_empty <= level_empty_now;
             loop_gear_next_bits <= loop_gear_next_bits_now;
             locked_next <= locked_next_now;
             lock_level_next <= lock_level_next_now;
+            fresh <= fresh_now;
             rho_s <= rho_s_now;
             step_2 <= step_2_now;
             gamma_gear_next <= gamma_gear_next_now;
             gear_periods_next <= gear_periods_next_now;
             disturbed_next <= disturbed_next_now;
+            risen_next <= risen_next_now;
+            held_next <= held_next_now;
             lock_lost_next_condition <= lock_lost_next_condition_now;
         end
         if (step == 5'd14) begin
@@ -711,6 +771,8 @@ module optical (
             signal_lost <= 0;
             direction <= 0;
             disturbed <= 0;
+            risen <= 0;
+            held <= 0;
         end else if (last) begin
             alpha_hat <= alpha_hat_next;
             count <= count_next;
@@ -733,6 +795,8 @@ module optical (
             signal_lost <= signal_lost_next;
             direction <= direction_next;
             disturbed <= disturbed_next;
+            risen <= risen_next;
+            held <= held_next;
         end
 
     assign position = {count, alpha_hat[26:0]};
@@ -748,8 +812,8 @@ module optical (
         cos_address[16],
         cos_inside_sum[11],
         cos_magnitude_sum[13:0],
-        theta_1_rounded[10:0],
-        theta_3_rounded[10:0],
+        theta_1_rounded[9:0],
+        theta_3_rounded[9:0],
         c_exact[9:0],
         s_exact[12:0],
         rho_exact[15:0],
@@ -764,14 +828,14 @@ module optical (
         sector_relative_difference[8],
         cos_hat_times_rho_limited[14:0],
         sin_hat_times_rho_limited[14:0],
-        gradient_1[0],
-        step_1_geared[26:25],
-        step_2_geared[26:23],
-        gradient_3[0],
-        step_3_geared[26:25],
-        step_4_geared[26:23],
+        gradient_1[1:0],
+        step_1_geared[25:24],
+        step_2_geared[25:22],
+        gradient_3[1:0],
+        step_3_geared[25:24],
+        step_4_geared[25:22],
         gamma_gear_next_sum[4:3],
-        gear_periods_next_sum[3:2],
+        gear_periods_next_sum[6:5],
         product_0[35]
     };
 

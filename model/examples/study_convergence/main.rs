@@ -8,6 +8,8 @@
 
 mod costs;
 mod figure_7;
+mod figure_7_plot;
+mod limit;
 mod method;
 mod on_chip;
 mod page;
@@ -40,7 +42,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let spec = Spec::from_toml(&std::fs::read_to_string(design)?, design)?;
     let folder = Path::new(folder);
     std::fs::create_dir_all(folder)?;
-    figure_7::figure_7(&spec, folder)?;
+    let course = figure_7::figure_7(&spec)?;
+    write(folder, "figure_7.csv", &figure_7::csv(&course))?;
+    figure_7_plot::plot(&course, &folder.join("figure_7.svg"))?;
     singular::effect(&folder.join("null_direction.svg"))?;
     singular::order_2(&folder.join("third_harmonics.svg"))?;
     let csv = table::methods(&Design::new(&spec)?, &Scenario::ALL, &costs);

@@ -6,6 +6,7 @@ use std::fmt::Write as _;
 use nonius_model::design::Design;
 
 use super::costs::Costs;
+use super::limit;
 use super::method::{Method, Said};
 use super::scenario::{SAMPLES, SENSOR, Scenario, samples};
 
@@ -102,6 +103,17 @@ pub(crate) fn methods(design: &Design, scenarios: &[Scenario], costs: &Costs) ->
         "method,scenario,parameter_error,miscalibration_rms_mrad,miscalibration_largest_mrad,alpha_hat_rms_mrad,alpha_hat_largest_mrad,periods,products,clocks,lut4\n",
     );
     for &scenario in scenarios {
+        for (name, bound) in limit::bounds(design, scenario) {
+            let theta = bound.theta.diagonal().map(f64::sqrt).amax();
+            let rms = 1e3 * bound.angle_by_parameters;
+            // The angle of a single sample: its own noise, and that of the parameters.
+            let alpha_hat = 1e3 * bound.angle_by_parameters.hypot(bound.angle_by_noise);
+            _ = writeln!(
+                csv,
+                "\"{name}\",{},{theta:.2e},{rms:.4},,{alpha_hat:.4},,,,,",
+                scenario.name()
+            );
+        }
         for (name, mut method) in Method::all(design) {
             let found = run(scenario, &mut method);
             let parameter = found

@@ -163,6 +163,13 @@ pub(super) fn check(spec: &Spec) -> Result<(), DesignError> {
         1.5,
         "residual as a fraction of the radius",
     )?;
+    between(
+        "calibration.hold_residual",
+        spec.calibration.hold_residual,
+        0.01,
+        1.5,
+        "residual as a fraction of the radius",
+    )?;
     if let Multipliers::Count(0) = spec.chip.multipliers {
         return refuse(
             "chip.multipliers",

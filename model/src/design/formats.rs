@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 
 use super::{Acquisition, DesignError, Loop, Words, harmonics, normalisation, skew};
 use crate::format::{Format, Quantiser, exp2};
+use crate::kernel::gears::{HELD, SETTLED};
 use crate::kernel::skew::Order;
 use crate::kernel::start::PERIODS as START_PERIODS;
 use crate::kernel::{Coefficients, Constant, Formats, Method, Structure};
@@ -146,7 +147,7 @@ pub(super) fn structure(
         // Two bits even where one would do.
         loop_gear: counting_to(acquisition.gears.max(3)),
         gamma_gear: counting_to(spec.calibration.gamma_last - spec.calibration.gamma_first),
-        gear_periods: counting_to(spec.calibration.gear_periods.saturating_sub(1)),
+        gear_periods: counting_to(spec.calibration.gear_periods.saturating_sub(1).max(HELD)),
     };
     Ok(Structure {
         method: match spec.tracking.method {
@@ -275,6 +276,7 @@ pub(super) fn constants(
         lock_residual: Constant::rounded((1.25 * worst).clamp(0.4, 0.9), 4),
         weak_signal: Constant::rounded(0.25, 2),
         restart_residual: Constant::rounded(spec.calibration.restart_residual, f.min(8)),
+        hold_residual: Constant::rounded(spec.hold_residual(), f.min(8)),
         direction_rate: Constant::rounded(exp2(-i64::from(f)), words.phase_bits),
         lock_down: whole(-8),
         lock_full: whole(full),
@@ -285,8 +287,10 @@ pub(super) fn constants(
             f.min(8),
         ),
         travel_samples_last: whole(travel_samples(spec).into()),
+        gamma_gear_settled: whole(SETTLED.into()),
         gamma_gear_last: whole(structure.gamma_gears.into()),
         gear_periods_last: whole(i64::from(spec.calibration.gear_periods) - 1),
+        held_periods_last: whole(HELD.into()),
         start_periods_last: whole(START_PERIODS.into()),
         start_period: Constant::rounded(62.0 / 64.0, 6),
         unit_radius: corrected(1.0, exp2(-i64::from(f) - 1), f + 1),

@@ -5,7 +5,7 @@
 
 use super::gradient::{self, Bent, Seen};
 use super::sensitivity::Sensitivity;
-use super::{Coefficients, State, Structure, gather, start};
+use super::{Coefficients, State, Structure, gather, gears, start};
 use crate::signal::{Formula, Logic, Signal, Wide};
 use crate::spec::CalibrationMethod;
 
@@ -91,9 +91,11 @@ static UPDATE: Formula = Formula {
 /// Which samples count.
 #[derive(Clone, Copy, Debug)]
 pub struct Gate<S: Signal> {
-    /// This sample counts.
+    /// This sample moves the parameters.
     pub fresh: S::Bool,
-    /// It ends a period of travel.
+    /// A period of travel ends, with a sample that counts, be the parameters held or not.
+    pub tick: S::Bool,
+    /// A period of travel ends.
     pub whole_period: S::Bool,
     /// The map of sectors is cleared: a period ends, or nothing counts.
     pub clear: S::Bool,
@@ -215,6 +217,7 @@ pub fn update<S: Signal, const PLAIN: bool>(
         None => gate.fresh,
     };
     let old = this.theta;
+    let nominal = gears::nominal(state, k);
     let step = |gradient: S::Wide, i: usize, equaliser: i32| {
         let geared = gradient
             .scale(equaliser - structure.gamma_first as i32)
@@ -233,7 +236,8 @@ pub fn update<S: Signal, const PLAIN: bool>(
             _ => geared,
         };
         let step = S::select(due, geared, k.zero).named(STEP[i]);
-        (old[i] - step).quantise(&structure.formats.deviation[i])
+        let moved = (old[i] - step).quantise(&structure.formats.deviation[i]);
+        S::select(nominal, k.zero, moved)
     };
     let by = Equaliser::of(structure);
     if structure.has_phase() {

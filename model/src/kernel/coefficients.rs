@@ -111,12 +111,14 @@ coefficients! {
     half_harmonic_segment,
     /// Largest |e| in lock, radians.
     lock_error,
-    /// Largest |ρ| in lock.
+    /// Largest −ρ in lock.
     lock_residual,
     /// Corrected signals below this are lost.
     weak_signal,
-    /// |ρ| above this restarts the γ gears.
+    /// |ρ| above this begins the search again.
     restart_residual,
+    /// |ρ| above this holds the parameters once γ has settled.
+    hold_residual,
     /// Rate below which the direction does not change, turns per sample.
     direction_rate,
     /// What a bad sample adds to the lock level.
@@ -131,10 +133,14 @@ coefficients! {
     completion_residual,
     /// A period of travel that takes so many samples is too slow for the completion.
     travel_samples_last,
+    /// From this γ gear on γ has settled.
+    gamma_gear_settled,
     /// Last γ gear.
     gamma_gear_last,
     /// Periods of travel per γ gear, less one.
     gear_periods_last,
+    /// Periods of travel that the parameters are held before the search begins again, less one.
+    held_periods_last,
     /// Periods of travel that the start solves.
     start_periods_last,
     /// Travel that the start takes for a period.

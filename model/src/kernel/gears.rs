@@ -1,5 +1,11 @@
 //! γ shifts gear: large first, halved after every few periods of travel, large again when the residual shows that the
 //! signal has changed.
+//!
+//! A residual that was small and is no longer may be a signal that fades. So where γ has settled ([`SETTLED`] gears) it moves
+//! no parameter: they are held to the end of the first period without it, and after a sample out of the lock window until the
+//! lock level is full again. Where the radius is far too large, which it is of no signal that fades, or has been too small for
+//! [`HELD`] periods and lock was not lost, the signal has changed, and the search begins again. A signal that is lost in the
+//! first gear leaves parameters of which nothing is known: they begin again from their nominal values.
 
 use super::calibration::Gate;
 use super::detector::within;
@@ -7,60 +13,148 @@ use super::{Coefficients, State, Structure};
 use crate::format::Quantiser;
 use crate::signal::{Formula, Logic, Signal};
 
-static GEARS: Formula = Formula {
-    title: "Gears of gamma",
-    equation: "gamma halves after some periods of travel, starts again when the residual was large",
+/// From this gear on γ has settled.
+pub const SETTLED: u32 = 4;
+
+/// Periods of travel that parameters are held before the search begins again, less one.
+pub const HELD: u32 = 31;
+
+static HOLD: Formula = Formula {
+    title: "Hold",
+    equation: "once gamma has settled a residual that is not small, and all until the end of a period without one, moves no parameter",
     source: "",
 };
 
-/// γ gear, periods in it, and whether the running period was disturbed.
+static GEARS: Formula = Formula {
+    title: "Gears of gamma",
+    equation: "gamma halves after some periods of travel, starts again when the residual stays large",
+    source: "",
+};
+
+/// γ gear, periods in it, and whether the parameters are held.
 pub struct Gears<S: Signal> {
     /// γ gear.
     pub gear: S,
-    /// Periods of travel in this gear.
+    /// Periods of travel in this gear, or held.
     pub periods: S,
     /// The residual was large in the running period.
     pub disturbed: S::Bool,
+    /// The radius was too large in the running period.
+    pub risen: S::Bool,
+    /// The residual was large in the last period.
+    pub held: S::Bool,
 }
 
-/// A period of travel ends, with a sample that counts.
-pub fn tick<S: Signal>(gate: Gate<S>) -> S::Bool {
-    gate.whole_period.and(gate.fresh).named("period_tick")
+/// What the residual of a sample says about the ones that follow.
+#[derive(Clone, Copy, Debug)]
+pub struct Hold<S: Signal> {
+    /// The residual of a sample that counts is large.
+    pub large: S::Bool,
+    /// And the radius too large, not too small.
+    pub risen: S::Bool,
+    /// No parameter moves.
+    pub held: S::Bool,
 }
 
-/// The period that ends was disturbed: the search begins again.
-pub fn restart<S: Signal>(gate: Gate<S>, state: &State<S>) -> S::Bool {
-    tick::<S>(gate).and(state.disturbed).named("gamma_restart")
+/// Whether the parameters are held; `counted`: the sample counts, `follows`: neither it nor the last ones were out of the
+/// lock window.
+pub fn hold<S: Signal>(
+    rho: S,
+    counted: S::Bool,
+    follows: S::Bool,
+    state: &State<S>,
+    k: &Coefficients<S>,
+    structure: &Structure,
+) -> Hold<S> {
+    rho.begin(&HOLD);
+    let settled = settled(state, k, structure);
+    let risen = rho.less_than(k.restart_residual).not();
+    let large = risen.or(rho.less_than(-k.restart_residual));
+    let small = within(rho, k.hold_residual);
+    let large = large
+        .or(settled.and(small.not()))
+        .and(counted)
+        .named("residual_large");
+    let suspect = large.or(state.disturbed).or(state.held).or(follows.not());
+    Hold {
+        large,
+        risen: risen.and(counted).named("radius_large"),
+        held: suspect.and(settled).named("hold"),
+    }
+}
+
+/// γ has settled. With fewer gears it never has.
+fn settled<S: Signal>(state: &State<S>, k: &Coefficients<S>, structure: &Structure) -> S::Bool {
+    if structure.gamma_gears < SETTLED {
+        return k.never();
+    }
+    let early = state.gamma_gear.less_than(k.gamma_gear_settled);
+    early.not().named("gamma_settled")
+}
+
+/// The signal is lost in the first gear: the parameters are nominal.
+pub fn nominal<S: Signal>(state: &State<S>, k: &Coefficients<S>) -> S::Bool {
+    let lost = state.signal_lost.and(state.locked.not());
+    let first = state.gamma_gear.less_than(k.one);
+    first.and(lost).named("nominal")
+}
+
+/// The search begins again: the residual was large before γ had settled, or the radius too large, or the residual large for
+/// so long that the signal must have changed.
+pub fn restart<S: Signal>(
+    gate: Gate<S>,
+    state: &State<S>,
+    k: &Coefficients<S>,
+    structure: &Structure,
+) -> S::Bool {
+    let early = settled(state, k, structure).not();
+    let long = state.gear_periods.less_than(k.held_periods_last).not();
+    gate.tick
+        .and(state.disturbed)
+        .and(early.or(state.risen).or(state.held.and(long)))
+        .named("gamma_restart")
 }
 
 /// The γ gear after this sample. A period that was solved by least squares (`starting`) is worth a whole gear.
 pub fn gears<S: Signal>(
-    rho: S,
+    hold: Hold<S>,
     gate: Gate<S>,
-    starting: Option<S::Bool>,
+    (counting, starting): (S::Bool, Option<S::Bool>),
     state: &State<S>,
     k: &Coefficients<S>,
     structure: &Structure,
 ) -> Gears<S> {
-    rho.begin(&GEARS);
+    state.gamma_gear.begin(&GEARS);
     let gear_format = Quantiser::wrapping(structure.formats.gamma_gear);
     let period_format = Quantiser::wrapping(structure.formats.gear_periods);
-    let large = within(rho, k.restart_residual)
-        .not()
-        .and(gate.fresh)
-        .named("residual_large");
-    let tick = tick::<S>(gate);
-    let restart = restart(gate, state);
+    let tick = gate.tick;
+    let restart = restart(gate, state, k, structure);
     let last = state.gamma_gear.less_than(k.gamma_gear_last).not();
     let done = state.gear_periods.less_than(k.gear_periods_last).not();
     let done = starting.map_or(done, |starting| done.or(starting));
+    let quiet = state.disturbed.or(state.held).not();
+    let done = done.and(quiet);
     let shift = tick.and(done).and(last.not()).named("gamma_shift");
     let gear = (state.gamma_gear + S::select(shift, k.one, k.zero)).quantise(&gear_format);
     let counted = (state.gear_periods + S::select(tick, k.one, k.zero)).quantise(&period_format);
-    let again = restart.or(tick.and(done)).named("gear_periods_again");
+    // Periods held are counted from the first, and those of a gear from the first after them.
+    let begins = state.disturbed.and(state.held.not());
+    let ends = state.held.and(state.disturbed.not());
+    let again = tick
+        .and(done.or(begins).or(ends))
+        .or(restart)
+        .named("gear_periods_again");
+    let within = tick.not().and(counting);
+    let held = tick
+        .and(state.disturbed)
+        .and(restart.not())
+        .or(state.held.and(tick.not()));
     Gears {
         gear: S::select(restart, k.zero, gear).quantise(&gear_format),
         periods: S::select(again, k.zero, counted).quantise(&period_format),
-        disturbed: large.or(state.disturbed.and(tick.not())),
+        // Where nothing counts, a new period begins without suspicion.
+        disturbed: hold.large.or(state.disturbed.and(within)),
+        risen: hold.risen.or(state.risen.and(within)),
+        held: held.and(counting),
     }
 }

@@ -11,7 +11,7 @@ use crate::signal::{Formula, Logic, Signal};
 
 static WINDOW: Formula = Formula {
     title: "Lock window",
-    equation: "|e| and |rho| below their limits, signal present",
+    equation: "|e| and -rho below their limits, signal present",
     source: "calibration needs lock: the update would otherwise drive the gains to zero",
 };
 
@@ -27,15 +27,18 @@ pub struct Lock<S: Signal> {
     pub level: S,
     /// Loop gear.
     pub gear: S,
+    /// The level is full: no sample was out of the window for some time.
+    pub full: S::Bool,
     /// The loop follows.
     pub locked: S::Bool,
 }
 
-/// Whether this sample looks as in lock.
+/// Whether this sample looks as in lock. A radius that is too large does not speak against it: parameters of a signal that had
+/// faded make one, and only in lock do they find back.
 pub fn in_window<S: Signal>(e: S, rho: S, weak: S::Bool, k: &Coefficients<S>) -> S::Bool {
     e.begin(&WINDOW);
     within(e, k.lock_error)
-        .and(within(rho, k.lock_residual))
+        .and(rho.less_than(-k.lock_residual).not())
         .and(weak.not())
 }
 
@@ -63,6 +66,7 @@ pub fn update<S: Signal>(
         return Lock {
             level,
             gear: k.zero,
+            full,
             locked,
         };
     }
@@ -83,6 +87,7 @@ pub fn update<S: Signal>(
     Lock {
         level: level.quantise(&formats.level),
         gear: gear.quantise(&crate::format::Quantiser::wrapping(formats.loop_gear)),
+        full,
         locked,
     }
 }

@@ -98,7 +98,16 @@ fn advance_of<S: Signal, const PLAIN: bool>(
     let starting = (!PLAIN && structure.least_squares_start).then(|| start::running(state, k));
     let measure = starting.map(|running| start::measure(e, running, k));
     let travel = travel::travel(counting, measure, state, k, structure);
-    let fresh = counting.and(in_window).and(travel.new_sector);
+    let counted = counting.and(in_window).and(travel.new_sector);
+    let hold = gears::hold(
+        rho,
+        counted.named("counted"),
+        lock.full,
+        state,
+        k,
+        structure,
+    );
+    let fresh = counted.and(hold.held.not());
     let estimate = (cos_hat, sin_hat);
     let mut polar = None;
     // What the gradient is made of: the residual, and the pair or its estimate.
@@ -128,6 +137,7 @@ fn advance_of<S: Signal, const PLAIN: bool>(
     };
     let gate = calibration::Gate {
         fresh,
+        tick: counted.and(travel.whole_period).named("period_tick"),
         whole_period: travel.whole_period,
         clear: travel.clear,
     };
@@ -135,15 +145,18 @@ fn advance_of<S: Signal, const PLAIN: bool>(
     let completion = if PLAIN { None } else { structure.completion };
     let completed = completion.map(|_| {
         // What fades or is not yet calibrated along the radius teaches nothing across it.
-        let open = counting.and(detector::within(rho, k.completion_residual));
+        let open = counting
+            .and(detector::within(rho, k.completion_residual))
+            .and(hold.held.not());
         let w = updated.w_null;
         completion::complete((w, e), open, counting, &travel, state, k, structure)
     });
     if let Some(completed) = &completed {
-        updated.theta[8] =
+        let moved =
             (state.theta_9_deviation - completed.step).quantise(&structure.formats.deviation[8]);
+        updated.theta[8] = S::select(gears::nominal(state, k), k.zero, moved);
     }
-    let gears = gears::gears(rho, gate, starting, state, k, structure);
+    let gears = gears::gears(hold, gate, (counting, starting), state, k, structure);
 
     rate.begin(&FLAGS);
     let lost = state
@@ -188,6 +201,8 @@ fn advance_of<S: Signal, const PLAIN: bool>(
     registers.signal_lost = weak;
     registers.direction = direction;
     registers.disturbed = gears.disturbed;
+    registers.risen = gears.risen;
+    registers.held = gears.held;
     if !PLAIN {
         remember(registers, &updated, completed.as_ref());
         registers.start_periods = updated.start_periods;

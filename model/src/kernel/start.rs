@@ -137,14 +137,13 @@ pub fn start<S: Signal>(
         *mean = sum.gradient.scale(-SECTORS);
     }
     let steps = steps(mean, theta, k, structure);
-    let tick = gears::tick::<S>(gate);
-    let solved = tick.and(running(state, k));
+    let solved = gate.fresh.and(gate.whole_period).and(running(state, k));
     let periods = (state.start_periods + S::select(solved, k.one, k.zero))
         .quantise(&Quantiser::wrapping(structure.formats.start_periods));
     Start {
         steps,
         gathered,
-        periods: S::select(gears::restart(gate, state), k.zero, periods)
+        periods: S::select(gears::restart(gate, state, k, structure), k.zero, periods)
             .quantise(&Quantiser::wrapping(structure.formats.start_periods)),
     }
 }

@@ -114,6 +114,10 @@ bundle! {
         direction,
         /// The residual was large in this period of travel.
         disturbed,
+        /// The radius was too large in this period of travel.
+        risen,
+        /// The residual was large in the period before: the parameters are held.
+        held,
         /// Whole periods of travel follow one another fast enough for the completion.
         moving,
     }

@@ -6,6 +6,7 @@ use super::completed::CompletedConfig;
 use super::gate::{Gate, Window};
 use super::gradient::Form;
 use super::harmonics::Harmonics;
+use super::hold::HoldConfig;
 use super::interpolator::{Gamma, Search};
 use super::loops::LoopConfig;
 use super::poles::Poles;
@@ -181,6 +182,12 @@ pub fn config(spec: &Spec) -> Result<Config, ReferenceError> {
         } else {
             Gate::Travelled(window)
         },
+        hold: Some(HoldConfig {
+            residual: spec.hold_residual(),
+            restart: k.restart_residual,
+            settled: 4,
+            periods: 32.0,
+        }),
         bound: Theta::repeat(1.0),
         start: Start::Arctangent {
             samples: settled.min(64),

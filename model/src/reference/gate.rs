@@ -25,7 +25,8 @@ pub enum Gate {
 pub struct Window {
     /// Largest |e|, radians.
     pub e: f64,
-    /// Largest |ρ|.
+    /// Largest −ρ: a radius that is too large does not speak against lock. Parameters of a signal that had faded make one, and
+    /// only in lock do they find back.
     pub rho: f64,
     /// So many samples within it, one after the other.
     pub samples: u32,
@@ -82,7 +83,7 @@ impl GateState {
 
     fn within(&mut self, window: Window, e: f64, rho: f64) -> bool {
         // NaN is not within.
-        let good = e.abs() < window.e && rho.abs() < window.rho;
+        let good = e.abs() < window.e && rho > -window.rho;
         self.good = if good { self.good.saturating_add(1) } else { 0 };
         self.good >= window.samples
     }

@@ -11,6 +11,7 @@ use super::completed::{CompletedConfig, Completion};
 use super::gate::{Gate, GateState, Window};
 use super::gradient::{Form, Observation, ResidualGradient};
 use super::harmonics::Harmonics;
+use super::hold::{Hold, HoldConfig, Verdict};
 use super::loops::{Loop, LoopConfig};
 use super::recursive::{LeastSquaresStart, StartConfig};
 use super::start::{Acquisition, Start};
@@ -78,6 +79,8 @@ pub struct Config {
     pub gamma: Gamma,
     /// When Θ may move.
     pub gate: Gate,
+    /// When Θ is held; never in the paper.
+    pub hold: Option<HoldConfig>,
     /// How far each parameter may go from its start; infinite in the paper.
     pub bound: Theta,
     /// How α̂ starts.
@@ -97,6 +100,7 @@ impl Config {
             search: Search::Residual(Form::Final),
             gamma: Gamma::constant(gamma),
             gate: Gate::EverySample,
+            hold: None,
             bound: Theta::repeat(f64::INFINITY),
             start: Start::At {
                 alpha_hat: 0.0,
@@ -156,6 +160,7 @@ pub struct Reference {
     tracking: Loop,
     searching: Searching,
     gate: GateState,
+    hold: Hold,
     acquisition: Option<Acquisition>,
     /// Samples out of the window, one after the other.
     astray: u32,
@@ -199,6 +204,7 @@ impl Reference {
             tracking,
             searching,
             gate: GateState::new(config.gate),
+            hold: Hold::default(),
             acquisition,
             astray: 0,
             geared: (0, tracking.alpha_hat()),
@@ -223,6 +229,7 @@ impl Reference {
         let seen = self.observe([y_c, y_s]);
         let open = self.gate.step(seen.e, seen.rho, self.tracking.alpha_hat());
         let locked = self.gate.locked();
+        let open = open && self.free(seen.rho, locked);
         let gamma = self.gamma();
         let estimate = self.go_on(&seen, open.then_some(&gamma), locked);
         self.watch(&seen);
@@ -330,6 +337,20 @@ impl Reference {
         estimate
     }
 
+    /// Whether the search goes on; where the signal has changed, γ begins again.
+    fn free(&mut self, rho: f64, locked: bool) -> bool {
+        let Some(config) = &self.config.hold else {
+            return true;
+        };
+        let alpha_hat = self.tracking.alpha_hat();
+        let halvings = locked.then_some(self.geared.0);
+        let verdict = self.hold.step(config, rho, alpha_hat, halvings);
+        if verdict == Verdict::Changed {
+            self.geared = (0, alpha_hat);
+        }
+        verdict != Verdict::Held
+    }
+
     /// γ after its halvings.
     fn gamma(&mut self) -> Steps {
         let Gamma {
@@ -354,7 +375,7 @@ impl Reference {
         else {
             return;
         };
-        let good = seen.e.abs() < e && seen.rho.abs() < rho;
+        let good = seen.e.abs() < e && seen.rho > -rho;
         self.astray = if good {
             0
         } else {

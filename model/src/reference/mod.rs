@@ -17,7 +17,7 @@
 //! | a start within two periods | [`recursive`] |
 //! | harmonics of the scale period | [`harmonics`] |
 //! | the sine sampled later than the cosine | [`skew`] |
-//! | when to calibrate, how to start | [`gate`], [`start`] |
+//! | when to calibrate, how to start | [`gate`], [`hold`], [`start`] |
 //! | all of it together | [`interpolator`] |
 //!
 //! Only [`from_spec`] knows of the chip's `design.toml`, and of it no more than the physical numbers.
@@ -32,6 +32,7 @@ pub mod gate;
 pub mod gradient;
 pub mod harmonics;
 pub mod heydemann;
+pub mod hold;
 pub mod interpolator;
 pub mod loops;
 pub mod poles;

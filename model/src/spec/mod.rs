@@ -162,6 +162,9 @@ pub struct Calibration {
     /// |ρ| above this returns to the first γ.
     #[serde(default = "restart")]
     pub restart_residual: f64,
+    /// |ρ| above this holds the parameters once γ has settled: the signal may be fading. See [`Spec::hold_residual`].
+    #[serde(default = "hold")]
+    pub hold_residual: f64,
 }
 
 fn five() -> u32 {
@@ -180,13 +183,31 @@ fn gamma_first() -> u32 {
     4
 }
 fn gamma_last() -> u32 {
-    11
+    10
 }
 fn gear_periods() -> u32 {
     3
 }
 fn restart() -> f64 {
     0.25
+}
+
+fn hold() -> f64 {
+    0.0625
+}
+
+impl Spec {
+    /// |ρ| from which parameters are held: as the design says, and at least what noise (six σ) and a phase error that is not
+    /// calibrated (sin β sin 2α / 2, and a quarter of that) leave in the radius.
+    #[must_use]
+    pub fn hold_residual(&self) -> f64 {
+        let phase = match self.calibration.parameters {
+            5 | 9 => 0.0,
+            _ => 0.625 * self.sensor.phase_error_max_deg.to_radians().sin(),
+        };
+        let left = 6.0 * self.sensor.noise_rms + phase;
+        self.calibration.hold_residual.max(left)
+    }
 }
 
 impl Calibration {
@@ -242,6 +263,7 @@ impl Default for Calibration {
             gamma_last: gamma_last(),
             gear_periods: gear_periods(),
             restart_residual: restart(),
+            hold_residual: hold(),
         }
     }
 }

@@ -80,6 +80,7 @@ const KEYS: &[(&str, &[&str])] = &[
             "gamma_last",
             "gear_periods",
             "restart_residual",
+            "hold_residual",
         ],
     ),
     ("correction", &["channel_skew_s", "harmonics"]),

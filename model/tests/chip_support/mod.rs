@@ -16,6 +16,13 @@ use nonius_model::physical::Converter;
 use nonius_model::spec::Spec;
 use rand::{Rng, SeedableRng, rngs::StdRng};
 
+/// A row of docs/figures.md.
+#[track_caller]
+pub(crate) fn figure(name: &str, measured: &str, test: &str) {
+    let page = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/figures.md");
+    nonius_kept::figure(std::path::Path::new(page), name, measured, test);
+}
+
 /// White noise of unit variance.
 pub(crate) struct Noise(StdRng);
 
@@ -60,32 +67,50 @@ impl Bench {
         self.chip.step_codes(cos, sin, false, true);
     }
 
-    /// Angle of the noise-free corrected pair less the true one, radians, over a period, the mean removed.
-    pub(crate) fn miscalibration(&self, signals: &dyn Fn(f64) -> (f64, f64)) -> Vec<f64> {
+    /// The corrected pair, of signals in units of the nominal amplitude.
+    pub(crate) fn corrected(&self, y: (f64, f64)) -> (f64, f64) {
+        self.correction()(y)
+    }
+
+    fn correction(&self) -> impl Fn((f64, f64)) -> (f64, f64) {
         let theta = self.chip.theta();
-        let bent = self.design.spec.calibration.parameters >= 8;
         let scale = self.design.spec.sensor.amplitude / self.design.spec.adc.full_scale;
         let power = (1.0 / scale).log2().floor().exp2().max(1.0);
-        let errors: Vec<f64> = (0..POINTS)
+        let bent = self.design.spec.calibration.parameters >= 8;
+        move |y| {
+            let y = (y.0 * scale * power, y.1 * scale * power);
+            if bent {
+                bent_pair(&theta, y)
+            } else {
+                linear_pair(&theta, y)
+            }
+        }
+    }
+
+    /// Angle of the noise-free corrected pair less the true one, radians, over a period, the mean removed.
+    pub(crate) fn miscalibration(&self, signals: &dyn Fn(f64) -> (f64, f64)) -> Vec<f64> {
+        self.miscalibration_at(720, signals)
+    }
+
+    /// The same at so many places of the period.
+    pub(crate) fn miscalibration_at(
+        &self,
+        points: usize,
+        signals: &dyn Fn(f64) -> (f64, f64),
+    ) -> Vec<f64> {
+        let corrected = self.correction();
+        let errors: Vec<f64> = (0..points)
             .map(|k| {
-                let alpha = TAU * k as f64 / POINTS as f64;
-                let y = signals(alpha);
-                let y = (y.0 * scale * power, y.1 * scale * power);
-                let (c, s) = if bent {
-                    bent_pair(&theta, y)
-                } else {
-                    linear_pair(&theta, y)
-                };
+                let alpha = TAU * k as f64 / points as f64;
+                let (c, s) = corrected(signals(alpha));
                 let error = s.atan2(c) - alpha;
                 error - TAU * (error / TAU).round()
             })
             .collect();
-        let mean = errors.iter().sum::<f64>() / POINTS as f64;
+        let mean = errors.iter().sum::<f64>() / points as f64;
         errors.iter().map(|e| e - mean).collect()
     }
 }
-
-const POINTS: usize = 720;
 
 /// Section 5.3 in plain `f64`.
 fn linear_pair(theta: &[f64; 9], (y_c, y_s): (f64, f64)) -> (f64, f64) {
@@ -127,9 +152,14 @@ pub(crate) fn largest(error: &[f64]) -> f64 {
 
 /// Offsets 10 %, gain ratio 1.2, β = 5°, with these signs.
 pub(crate) fn sensor(signs: u32) -> impl Fn(f64) -> (f64, f64) {
+    sensor_of(signs, 5.0)
+}
+
+/// The same with another β, degrees.
+pub(crate) fn sensor_of(signs: u32, beta: f64) -> impl Fn(f64) -> (f64, f64) {
     let sign = move |bit: u32| if signs >> bit & 1 == 0 { 1.0 } else { -1.0 };
     let ratio = 1.2f64.powf(0.5 * sign(0));
-    let beta = 5f64.to_radians() * sign(3);
+    let beta = beta.to_radians() * sign(3);
     move |alpha: f64| {
         (
             ratio * alpha.cos() + 0.1 * sign(1),

@@ -1,0 +1,199 @@
+//! Standstill and vibration: without net travel the parameters stay where they are.
+//!
+//! Between two clearings of the map of sectors each of the 64 sectors moves the parameters once at most, and the map is cleared
+//! where the position is a whole period from where it was last. So what stays within a period can take no more than what is left
+//! of one map, however long it lasts: ten minutes differ from one by chance only, and the tests show both.
+
+mod chip_support;
+
+use std::f64::consts::TAU;
+
+use chip_support::shipped::variants::{Variant, searches};
+use chip_support::{Bench, figure};
+use nonius_model::bits::Bits;
+use nonius_model::design::Design;
+use nonius_model::kernel::State;
+use nonius_model::spec::{CalibrationMethod, Spec};
+
+/// Samples per second.
+const RATE: u32 = 5000;
+
+/// Deviations of θ1 … θ9, every bit of them.
+fn parameters(s: &State<Bits>) -> [f64; 9] {
+    [
+        s.theta_1_deviation,
+        s.theta_2_deviation,
+        s.theta_3_deviation,
+        s.theta_4_deviation,
+        s.theta_5_deviation,
+        s.theta_6_deviation,
+        s.theta_7_deviation,
+        s.theta_8_deviation,
+        s.theta_9_deviation,
+    ]
+    .map(Bits::to_f64)
+}
+
+/// σ √(γ/2) of θ1 … θ9, γ that of the parameter: the last one times the equaliser's power of two.
+fn noise(design: &Design) -> [f64; 9] {
+    let (spec, amplitude) = (&design.spec, design.structure.amplitude_shift as i32);
+    let gain = 1 + amplitude;
+    let phase = if design.structure.has_bend() {
+        2
+    } else {
+        3 + amplitude
+    };
+    let last = -(spec.calibration.gamma_last as i32);
+    let mut gamma = [gain, 0, gain, 0, phase, 0, 0, 0, 0].map(|power| 2f64.powi(power + last));
+    gamma[8] = 2f64.powi(-(spec.calibration.completion_gamma as i32));
+    gamma.map(|gamma| spec.sensor.noise_rms * (gamma / 2.0).sqrt())
+}
+
+fn calibrated_phase(spec: &Spec) -> f64 {
+    match spec.calibration.parameters {
+        5 | 9 => 5f64.to_radians(),
+        _ => 0.0,
+    }
+}
+
+/// Where the parameters are over some time.
+struct Range {
+    low: [f64; 9],
+    high: [f64; 9],
+}
+
+impl Range {
+    fn at(now: [f64; 9]) -> Self {
+        Self {
+            low: now,
+            high: now,
+        }
+    }
+
+    fn take(&mut self, now: [f64; 9]) {
+        for i in 0..9 {
+            self.low[i] = self.low[i].min(now[i]);
+            self.high[i] = self.high[i].max(now[i]);
+        }
+    }
+
+    fn width(&self) -> [f64; 9] {
+        std::array::from_fn(|i| self.high[i] - self.low[i])
+    }
+}
+
+/// How far each parameter goes, in units of its noise, and in units of what it goes in ten periods of motion before, while the scale rests, or vibrates by `amplitude` (turns), about `place`.
+fn moved(variant: &Variant, place: f64, amplitude: f64, seconds: u32, seed: u32) -> [[f64; 9]; 2] {
+    let mut spec = variant.spec.clone();
+    spec.adc.sample_rate_hz = RATE.into();
+    spec.sensor.speed_max_periods_per_s = 500.0;
+    spec.tracking.bandwidth_hz = 300.0;
+    spec.accuracy.rms_periods = 200e-6;
+    let sign = |bit: u32| if seed >> bit & 1 == 0 { 0.1 } else { -0.1 };
+    // What is not calibrated is no part of the sensor.
+    let phase = calibrated_phase(&spec);
+    let linear = |alpha: f64| (alpha.cos() + sign(0), (alpha - phase).sin() + sign(1));
+    let bent = |u: f64| u + 0.01 * u * u + 0.03 * u * u * u;
+    let signals = |alpha: f64| {
+        let (c, s) = linear(alpha);
+        (bent(c), bent(s))
+    };
+    let mut bench = Bench::new(&spec, u64::from(seed));
+    // 50 periods a second for forty seconds, then it stops there.
+    let mut turns = 0.0;
+    let mut motion = Range::at(parameters(&bench.chip.state));
+    while turns < 2000.0 + place {
+        turns += 0.01;
+        bench.step(signals(TAU * turns));
+        if turns < 1990.0 {
+            motion = Range::at(parameters(&bench.chip.state));
+        }
+        motion.take(parameters(&bench.chip.state));
+    }
+    assert!(bench.chip.state.locked);
+    let before = parameters(&bench.chip.state);
+    let mut rest = Range::at(before);
+    for k in 0..seconds * RATE {
+        let t = f64::from(k) / f64::from(RATE);
+        let place = turns + amplitude * (TAU * 7.3 * t).sin();
+        bench.step(signals(TAU * place));
+        if k % 500 == 0 {
+            rest.take(parameters(&bench.chip.state));
+        }
+    }
+    assert!(bench.chip.state.locked);
+    let (noise, motion) = (noise(&bench.design), motion.width());
+    let furthest: [f64; 9] =
+        std::array::from_fn(|i| (rest.high[i] - before[i]).max(before[i] - rest.low[i]));
+    [
+        std::array::from_fn(|i| furthest[i] / noise[i]),
+        // A parameter that never moves has not moved further.
+        std::array::from_fn(|i| furthest[i] / motion[i].max(f64::MIN_POSITIVE)),
+    ]
+}
+
+/// What neither calibrates the bends nor makes one step of a period.
+fn ripples(variant: &Variant) -> bool {
+    let k = &variant.spec.calibration;
+    k.parameters < 8 && k.method != CalibrationMethod::Batch
+}
+
+/// A minute at eight places of the period, sensors with all signs of offsets, 5° of phase where it is calibrated, 1 % of even and
+/// 3 % of cubic distortion: no parameter of any search moves by more than three times its noise, but with four and five parameters
+/// and a step each sector. Those go round with the distortion in every period of motion, and do at rest no more than that.
+#[test]
+fn neither_standstill_nor_vibration_moves_a_parameter() {
+    let mut measured = vec![];
+    for variant in searches() {
+        for (name, amplitude) in [("standstill", 0.0), ("vibration", 0.1)] {
+            let mut furthest = [[0.0f64; 9]; 2];
+            for seed in 0..8 {
+                let place = f64::from(seed) / 8.0;
+                let moved = moved(&variant, place, amplitude, 60, seed);
+                for (to, from) in furthest.iter_mut().flatten().zip(moved.iter().flatten()) {
+                    *to = to.max(*from);
+                }
+            }
+            let [noise, motion] = furthest.map(|f| f.into_iter().fold(0.0, f64::max));
+            if variant.what == "final form" || variant.what == "completed" {
+                let set = variant.spec.calibration.parameters;
+                measured.push(format!("{set} parameters, {name} {noise:.1}"));
+            }
+            println!(
+                "{}, {} parameters, {name}: {noise:.2} of the noise, {motion:.2} of what motion does",
+                variant.what, variant.spec.calibration.parameters
+            );
+            assert!(
+                noise <= 3.0 || ripples(&variant) && motion <= 1.0,
+                "{}",
+                variant.what
+            );
+        }
+    }
+    figure(
+        "a minute at rest or vibrating by ±0.1 periods, at any place, bends of 1 and 3 %: the furthest a parameter moves, in its noise",
+        &measured.join("; "),
+        "model/tests/on_line_rest.rs",
+    );
+}
+
+/// Ten minutes.
+#[test]
+fn ten_minutes_of_vibration_move_no_parameter() {
+    for variant in searches() {
+        if !matches!(variant.what.as_str(), "final form" | "completed") {
+            continue;
+        }
+        let [noise, motion] =
+            moved(&variant, 0.3, 0.1, 600, 2).map(|f| f.into_iter().fold(0.0, f64::max));
+        println!(
+            "{}, {} parameters, ten minutes: {noise:.2} of the noise, {motion:.2} of what motion does",
+            variant.what, variant.spec.calibration.parameters
+        );
+        assert!(
+            noise <= 3.0 || ripples(&variant) && motion <= 1.0,
+            "{}",
+            variant.what
+        );
+    }
+}
