@@ -1,7 +1,11 @@
 //! The optical design with everything that a chip may be built with: one list for tests, campaigns and comparisons.
 
 use nonius_model::design::Design;
-use nonius_model::spec::{All, CalibrationMethod, CalibrationStart, Coding, Multipliers, Spec};
+use std::f64::consts::FRAC_PI_2;
+
+use nonius_model::spec::{
+    All, CalibrationMethod, CalibrationStart, Coding, Harmonic, Multipliers, Spec,
+};
 
 use super::{NAMES, optical, spec};
 use CalibrationMethod::{Batch, Exact, Final, SumOfSquares};
@@ -241,6 +245,70 @@ pub(crate) fn skewed() -> Vec<Variant> {
     .into()
 }
 
+/// One order of the scale period, of any phase.
+fn harmonic(order: u32, cos: (f64, f64), sin: (f64, f64)) -> Harmonic {
+    Harmonic {
+        order,
+        amplitude_cos: cos.0,
+        phase_cos: cos.1,
+        amplitude_sin: sin.0,
+        phase_sin: sin.1,
+    }
+}
+
+/// Third and fifth order of free phase.
+pub(crate) fn third_and_fifth() -> Vec<Harmonic> {
+    vec![
+        harmonic(3, (0.012, 0.7), (0.015, -2.1)),
+        harmonic(5, (0.006, 2.5), (0.004, 1.1)),
+    ]
+}
+
+/// Chips with stored harmonics: each parameter set and method, the phase correction followed not at all, to its first and to
+/// its second order, with a search that gathers, a start, and a sine that is sampled later.
+pub(crate) fn harmonics() -> Vec<Variant> {
+    let one = Multipliers::Count(1);
+    let of = |what: &str, parameters: u32, multipliers: Multipliers, change: &dyn Fn(&mut Spec)| {
+        Variant::of(format!("harmonics, {what}"), |spec| {
+            spec.calibration.parameters = parameters;
+            spec.chip.multipliers = multipliers;
+            spec.correction.harmonics = third_and_fifth();
+            change(spec);
+        })
+    };
+    vec![
+        of("second order", 5, one, &|_| ()),
+        of("first order", 5, ALL, &|spec| {
+            spec.sensor.phase_error_max_deg = 0.5;
+        }),
+        of("no phase by promise", 5, one, &|spec| {
+            spec.sensor.phase_error_max_deg = 0.001;
+        }),
+        of("four parameters", 4, Multipliers::Count(2), &|spec| {
+            spec.tracking.method = 1;
+            spec.correction.harmonics = vec![harmonic(16, (0.2 / 18.0, 0.0), (0.01, 3.0))];
+        }),
+        of("fixed, type 1", 0, one, &type_1),
+        of("completed", 9, one, &|spec| {
+            spec.correction.harmonics = vec![harmonic(2, (0.1, 1.0), (0.1, 1.0 - FRAC_PI_2))];
+        }),
+        of("completed, skew", 9, ALL, &|spec| {
+            spec.correction.channel_skew_s = 3e-7;
+        }),
+        of("started, skew", 5, Multipliers::Count(3), &|spec| {
+            spec.calibration.start = LeastSquares;
+            spec.correction.channel_skew_s = -1e-7;
+        }),
+        of("sum of squares", 5, one, &|spec| {
+            spec.calibration.method = SumOfSquares;
+        }),
+        of("exact, offset binary", 5, one, &|spec| {
+            spec.calibration.method = Exact;
+            spec.adc.coding = Coding::OffsetBinary;
+        }),
+    ]
+}
+
 /// All of these.
 pub(crate) fn everything() -> Vec<Variant> {
     let mut list = shipped();
@@ -254,6 +322,7 @@ pub(crate) fn everything() -> Vec<Variant> {
         adcs(),
         multipliers(),
         skewed(),
+        harmonics(),
     ] {
         list.extend(part);
     }

@@ -93,7 +93,7 @@ fn summary(j: &DesignJson, output: &Path, shown: &str) {
         j.multipliers,
         if j.multipliers == 1 { "" } else { "s" },
         j.products,
-        j.sine_table.bits
+        j.sine_table.bits + j.harmonics.as_ref().map_or(0, |h| h.bits)
     );
     say!(
         "  bandwidth   {} at -3 dB, to {} periods/s",

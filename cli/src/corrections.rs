@@ -1,54 +1,25 @@
 //! What a diagnosis switches on in a design: the corrections that the chip can make.
 
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
+mod harmonics;
+
+use std::f64::consts::TAU;
 
 use anyhow::{Context, Result};
 use nonius_diagnosis::Diagnosis;
 use nonius_model::design::{Design, DesignError};
 use nonius_model::spec::Spec;
-use toml_edit::{DocumentMut, value};
+use toml_edit::{ArrayOfTables, DocumentMut, Item, Table, value};
 
 /// Room above the largest bend that was found.
 const ROOM: f64 = 1.5;
 
-/// Phase by which a harmonic may miss that of a bend, radians.
-const PHASE: f64 = 0.3;
-
-/// Largest coefficient of T2 or T3 in either channel, as a fraction of the amplitude; `None` if no bend was found. A
-/// harmonic of order 2 or 3 is a bend where its phase is that of the channel's power: the chip mends both alike.
+/// Largest coefficient of T2 or T3 in either channel, as a fraction of the amplitude; `None` if no bend was found.
 fn bend(found: &Diagnosis) -> Option<f64> {
-    let amounts = found.findings.iter().filter_map(|f| {
-        let of = |name: &str| {
-            f.parameters
-                .iter()
-                .find(|p| p.name == name)
-                .map(|p| p.value)
-        };
-        let largest = |a: Option<f64>, b: Option<f64>| Some(a?.abs().max(b?.abs()));
-        match f.cause.as_str() {
-            // u² = (1 + T2)/2 and u³ = (3 u + T3)/4.
-            "even_nonlinearity" => Some(largest(of("k_cos"), of("k_sin"))? / 2.0),
-            "odd_nonlinearity" => Some(largest(of("k_cos"), of("k_sin"))? / 4.0),
-            "spatial_harmonic" => {
-                let order = of("order")?;
-                let beta = found.context.ellipse.beta;
-                // T2(sin) and T3(sin) are -cos 2 and -sin 3 of the angle less the phase error.
-                let sine = if order == 3.0 { FRAC_PI_2 } else { 0.0 } - order * beta;
-                let fits = |amplitude: f64, phase: f64, of_bend: f64| {
-                    let off = phase - of_bend;
-                    let off = off - PI * (off / PI).round();
-                    (off.abs() < PHASE).then_some(amplitude)
-                };
-                if order != 2.0 && order != 3.0 {
-                    return None;
-                }
-                let cos = fits(of("amplitude_cos")?, of("phase_cos")?, 0.0);
-                let sin = fits(of("amplitude_sin")?, of("phase_sin")?, sine);
-                largest(cos, sin)
-            }
-            _ => None,
-        }
-    });
+    let beta = found.context.ellipse.beta;
+    let amounts = found
+        .findings
+        .iter()
+        .filter_map(|f| harmonics::bend(f, beta));
     amounts.reduce(f64::max)
 }
 
@@ -86,6 +57,8 @@ pub(crate) fn switch_on(text: &str, found: &Diagnosis) -> Result<(String, Vec<St
     let (text, mut notes) = correct_skew(text, found)?;
     let (text, more) = correct_bends(&text, found)?;
     notes.extend(more);
+    let (text, more) = correct_harmonics(&text, found)?;
+    notes.extend(more);
     Ok((text, notes))
 }
 
@@ -116,6 +89,55 @@ fn correct_skew(text: &str, found: &Diagnosis) -> Result<(String, Vec<String>)> 
     })
 }
 
+/// The table of harmonics, for what no parameter on line mends. Those that were measured are of the raw signals, so they take
+/// the place of what the design had.
+fn correct_harmonics(text: &str, found: &Diagnosis) -> Result<(String, Vec<String>)> {
+    let spec = Spec::from_toml(text, "design.toml")?;
+    let (list, mut notes) = harmonics::table(found, spec.calibration.parameters >= 8);
+    if list.is_empty() {
+        return Ok((text.to_owned(), notes));
+    }
+    let mut entries = ArrayOfTables::new();
+    for h in &list {
+        let mut entry = Table::new();
+        entry["order"] = value(i64::from(h.order));
+        entry["amplitude_cos"] = value(h.amplitude_cos);
+        entry["phase_cos"] = value(h.phase_cos);
+        entry["amplitude_sin"] = value(h.amplitude_sin);
+        entry["phase_sin"] = value(h.phase_sin);
+        entries.push(entry);
+    }
+    let mut document: DocumentMut = text.parse().context("the design is no TOML")?;
+    let section = document.entry("correction").or_insert_with(|| {
+        let mut section = Table::new();
+        section.set_implicit(true);
+        Item::Table(section)
+    });
+    if let Some(inline) = section.as_inline_table().cloned() {
+        *section = Item::Table(inline.into_table());
+    }
+    if let Some(table) = section.as_table_mut() {
+        table.set_dotted(false);
+    }
+    section["harmonics"] = Item::ArrayOfTables(entries);
+    let orders: Vec<String> = list.iter().map(|h| h.order.to_string()).collect();
+    let orders = orders.join(", ");
+    Ok(match designed(&document)? {
+        Ok(changed) => {
+            notes.push(format!(
+                "design.toml takes harmonics of the scale period off by a table: order {orders}"
+            ));
+            (changed, notes)
+        }
+        Err(error) => {
+            notes.push(format!(
+                "harmonics of order {orders} were found, but a table of them does not fit the design: {error}"
+            ));
+            (text.to_owned(), notes)
+        }
+    })
+}
+
 /// Nine parameters for channels that bend.
 fn correct_bends(text: &str, found: &Diagnosis) -> Result<(String, Vec<String>)> {
     let unchanged = |notes| Ok((text.to_owned(), notes));
@@ -129,7 +151,7 @@ fn correct_bends(text: &str, found: &Diagnosis) -> Result<(String, Vec<String>)>
     if spec.sensor.periods_per_revolution == Some(1.0) {
         return unchanged(vec![
             "the channels bend, but a scale period is a revolution: motion at two cycles per revolution would be learnt \
-             as a bend, so the design keeps its parameters"
+             as a bend, so the design keeps its parameters, and the bend goes into the table of harmonics"
                 .into(),
         ]);
     }

@@ -126,7 +126,7 @@ fn settle(draft: &mut Draft) -> Result<Design> {
 
 fn names_the_name(error: &anyhow::Error) -> bool {
     let field = error.downcast_ref::<DesignError>();
-    matches!(field, Some(DesignError::Field { field: "name", .. }))
+    matches!(field, Some(DesignError::Field { field, .. }) if field == "name")
 }
 
 fn designed(draft: &Draft) -> Result<Design> {
@@ -350,6 +350,9 @@ impl Draft {
         );
         out += "\n# [correction]\n";
         out += "# channel_skew_s = 1e-6                 # sin is sampled so much later than cos\n";
+        out += "# [[correction.harmonics]]              # one for each order: amplitude * cos(order * angle + phase) more\n";
+        out += "# order = 4\n# amplitude_cos = 0.01                  # of the amplitude\n# phase_cos = 0.5                       # rad\n";
+        out += "# amplitude_sin = 0.01\n# phase_sin = -1.0\n";
         out += "\n[accuracy]\n";
         out += &line(
             "rms_periods",

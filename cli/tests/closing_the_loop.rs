@@ -56,14 +56,28 @@ fn bent_encoder(bends: [f64; 2]) -> String {
     text
 }
 
-/// A recording of a sensor whose sine is sampled so many seconds later, as `sensor.toml` has it, up to 550 periods a second
-/// in both directions, with its true angle: that at which the cosine is sampled.
-fn skewed_encoder(delay_s: f64) -> String {
+/// A sine that is sampled so many seconds later.
+fn skew(delay_s: f64) -> String {
+    format!("[[cause]]\nname = \"channel_skew\"\ndelay_s = {delay_s:e}\n")
+}
+
+/// An order of the scale period with amplitude and phase in each channel.
+fn harmonic((order, cos, sin): (u32, (f64, f64), (f64, f64))) -> String {
+    format!(
+        "[[cause]]\nname = \"spatial_harmonic\"\norder = {order}\namplitude_cos = {}\nphase_cos = {:?}\n\
+         amplitude_sin = {}\nphase_sin = {:?}\n",
+        cos.0, cos.1, sin.0, sin.1
+    )
+}
+
+/// A recording of a sensor with a cause as `sensor.toml` has it, up to 550 periods a second in both directions, with its true
+/// angle: that at which the cosine is sampled.
+fn simulated_encoder(cause: &str) -> String {
     let sensor = format!(
         "[signals]\na_c = 0.7\nb_c = 0.03\na_s = 0.66\nb_s = -0.02\nbeta = 0.05\nnoise_rms = 0.001\n\
          [adc]\nbits = 14\nlsb = {}\ncentre = 0.0\nsample_rate_hz = 50000.0\n\
          [motion]\nperiods_travelled = 840.0\nspeed_max_periods_per_s = 550.0\nperiods_per_revolution = 64\n\
-         [[cause]]\nname = \"channel_skew\"\ndelay_s = {delay_s:e}\n",
+         {cause}",
         1.0 / 8192.0
     );
     let sensor = Sensor::from_toml(&sensor, "sensor.toml").expect("a sensor");
@@ -167,6 +181,14 @@ fn closed(recording: &str, simulated: bool) -> Closed {
 const BENDS: [[f64; 2]; 2] = [[0.04, 0.02], [0.03, -0.03]];
 const DELAYS: [f64; 3] = [10e-6, -6e-6, 0.0];
 
+/// Order, amplitude and phase in the cosine, in the sine.
+type Harmonic = (u32, (f64, f64), (f64, f64));
+
+const HARMONICS: [Harmonic; 2] = [
+    (4, (0.015, 0.4), (0.015, -1.2)),
+    (3, (0.012, 0.9), (0.008, -2.3)),
+];
+
 #[test]
 fn what_is_found_is_corrected_by_the_chip() {
     let mut table = String::from(
@@ -180,12 +202,16 @@ fn what_is_found_is_corrected_by_the_chip() {
          | bends y + k y³ (cos, sin) | named | chip of `new --from` | chip of the diagnosis |\n|---|---|---|---|\n",
     );
     // Simulators run side by side.
-    let (bent, skewed) = std::thread::scope(|scope| {
+    let (bent, skewed, harmonics) = std::thread::scope(|scope| {
         let bent = BENDS.map(|b| scope.spawn(move || closed(&bent_encoder(b), b[0] == 0.04)));
-        let skewed = DELAYS.map(|d| scope.spawn(move || closed(&skewed_encoder(d), d == 10e-6)));
+        let skewed =
+            DELAYS.map(|d| scope.spawn(move || closed(&simulated_encoder(&skew(d)), d == 10e-6)));
+        let harmonics = HARMONICS
+            .map(|h| scope.spawn(move || closed(&simulated_encoder(&harmonic(h)), h.0 == 4)));
         (
             bent.map(|it| it.join().expect("it closes")),
             skewed.map(|it| it.join().expect("it closes")),
+            harmonics.map(|it| it.join().expect("it closes")),
         )
     });
     for (bends, closed) in BENDS.into_iter().zip(bent) {
@@ -244,6 +270,35 @@ fn what_is_found_is_corrected_by_the_chip() {
             "{value} ± {std_error}"
         );
         assert!(closed.left() < 0.1, "{}", closed.errors());
+    }
+    table += "\n## Harmonics of the scale period that are no bend\n\n\
+         The same motion. What looks like a gain or a phase error along the radius also moves the calibration of the chip that does\n\
+         not know.\n\n\
+         | order, amplitude and phase (cos; sin) | measured | chip of `new --from` | chip of the diagnosis |\n|---|---|---|---|\n";
+    for (harmonic, closed) in HARMONICS.into_iter().zip(harmonics) {
+        let found = &closed.first;
+        println!("{harmonic:?}: {}, {found:#}", closed.errors());
+        assert!(closed.said.contains("by a table"), "{}", closed.said);
+        assert_eq!(found["cause"], "spatial_harmonic");
+        assert_eq!(found["chip"], "corrects");
+        let number = |i: usize| found["parameters"][i]["value"].as_f64().expect("a number");
+        let (order, cos, sin) = harmonic;
+        assert_eq!(number(0), f64::from(order));
+        let _ = writeln!(
+            table,
+            "| {order}: {:.2} %, {:.2} rad; {:.2} %, {:.2} rad | {:.3} %, {:.3} rad; {:.3} %, {:.3} rad | {:.2} | {:.2} |",
+            100.0 * cos.0,
+            cos.1,
+            100.0 * sin.0,
+            sin.1,
+            100.0 * number(1),
+            number(2),
+            100.0 * number(3),
+            number(4),
+            closed.before,
+            closed.after
+        );
+        assert!(closed.left() < 0.15, "{}", closed.errors());
     }
     nonius_kept::same(
         Path::new(KEPT),

@@ -108,14 +108,19 @@ pub(crate) fn lines(w: &Writer, id: NodeId) -> Vec<String> {
                 .iter()
                 .map(|c| c.format.width)
                 .sum();
-            let own = rom.columns[column].format.width;
+            let format = rom.columns[column].format;
+            let own = format.width;
             let row = format!("{}_row", rom.name);
             w.read(&row, below + own - 1, below);
-            let whole = own == rom.row_width();
-            one(if whole {
-                format!("{{1'b0, {row}}}")
+            let word = if own == rom.row_width() {
+                row
             } else {
-                format!("{{1'b0, {row}[{}:{below}]}}", below + own - 1)
+                format!("{row}[{}:{below}]", below + own - 1)
+            };
+            one(if format.signed {
+                word
+            } else {
+                format!("{{1'b0, {word}}}")
             })
         }
     }

@@ -10,6 +10,7 @@ use crate::model::{Fit, System, atoms_of};
 use crate::select::{Beside, KINDS, RIVALS, SHOWN, Scored, both, score};
 use crate::selection::{Accepted, Unnamed};
 use crate::statistics::{after_trials, log_tail};
+use crate::steps::{self, Change};
 
 /// A drift must hold more: steps and bursts are mostly slow, too.
 const SLOWLY: f64 = 0.9;
@@ -69,9 +70,10 @@ pub(crate) fn contender(
         } else {
             HOLDS
         };
+        let slow = own.candidate.domain != Domain::Time || slowly(system, fit, &own);
         let listed = |name: &str| name != ACCELERATION_GAIN;
         let nameable = listed(own.candidate.name) && rivals.iter().all(|r| listed(r));
-        if nameable && rivals.len() <= 1 && held.share >= least {
+        if nameable && slow && rivals.len() <= 1 && held.share >= least {
             system.retain(|i| i < mark);
             cause.confounded = rivals;
             match &named {
@@ -86,6 +88,8 @@ pub(crate) fn contender(
         let nearest = own.candidate.name.replace('_', " ");
         let why = if !listed(own.candidate.name) {
             "the catalogue holds no such cause".to_owned()
+        } else if !slow {
+            "steps explain more".to_owned()
         } else if held.share < least {
             format!(
                 "it holds {:.0} % of what any shape there explains",
@@ -168,6 +172,17 @@ fn rivals(beside: &Beside, best: &Scored, others: &[&Scored]) -> Vec<String> {
         }
     }
     names
+}
+
+/// Whether a drift is slow: no steps in time explain more of the radius than what changes slowly does.
+fn slowly(system: &System, fit: &Fit, drift: &Scored) -> bool {
+    let change = if drift.candidate.name == "gain_drift" {
+        Change::Gains
+    } else {
+        Change::Offsets
+    };
+    let left = system.residual(fit);
+    steps::slowly(system.context, &left.radial, system.noise(), change)
 }
 
 /// How far a name holds, and the generic shapes that tell.

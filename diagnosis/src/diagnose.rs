@@ -8,7 +8,7 @@ use crate::checks::{self, Checked};
 use crate::context::{Context, ContextError};
 use crate::exact;
 use crate::finding::{Finding, Parameter};
-use crate::flicker::{self, FLICKER, Flicker};
+use crate::flicker::{self, Flicker};
 use crate::library::Row;
 use crate::model::System;
 use crate::noise;
@@ -96,13 +96,13 @@ pub fn diagnose(recording: &Recording) -> Result<Diagnosis, ContextError> {
     let checked = checks::check(recording);
     let repaired = repair(recording, &checked);
     let context = Context::new(&repaired.recording, repaired.weight.clone())?;
-    let found = search(context, &checked, &repaired, true);
-    if !found.findings.iter().any(|f| f.cause == FLICKER) {
+    let (found, slow) = search(context, &checked, &repaired, true);
+    if !slow {
         return Ok(found);
     }
-    // A cause that is slow looks like such noise before it is known: names that explain it all are preferred.
+    // A cause that is slow looks like flicker noise before it is known: names that explain it all are preferred.
     let context = Context::new(&repaired.recording, repaired.weight.clone())?;
-    let other = search(context, &checked, &repaired, false);
+    let (other, _) = search(context, &checked, &repaired, false);
     let known = |name: &str| found.findings.iter().any(|f| f.cause == name);
     let names_more = other.findings.iter().any(|f| !known(&f.cause));
     if !names_more || other.unexplained.significant {
@@ -112,13 +112,14 @@ pub fn diagnose(recording: &Recording) -> Result<Diagnosis, ContextError> {
     Ok(if left.is_none() { other } else { found })
 }
 
-/// Looks at a recording until nothing new is found in it; `coloured`: there may be flicker noise.
+/// Looks at a recording until nothing new is found in it, and whether there is noise like flicker noise then; `coloured`:
+/// there may be.
 fn search(
     mut context: Context,
     checked: &Checked,
     repaired: &Repaired,
     coloured: bool,
-) -> Diagnosis {
+) -> (Diagnosis, bool) {
     let recording = &repaired.recording;
     let mut carried: Vec<Accepted> = vec![];
     // Large causes are taken off the signals themselves, and what is left is looked at anew.
@@ -133,9 +134,10 @@ fn search(
         }
         let selection = select(&context, &mut system, &catalogue, carried.clone(), last);
         if selection.again.is_empty() {
+            let slow = system.flicker.is_some();
             let concluded = conclude(&system, &selection, checked, repaired);
             drop(system);
-            return concluded(context);
+            return (concluded(context), slow);
         }
         // Its samples are not needed any longer, and the next look has its own.
         drop(system);
@@ -175,13 +177,17 @@ fn conclude(
     let named = extended.findings(system, &halves);
     let left = system.residual(&selection.fit);
     // Only what is noise can be noise of a kind.
-    let (mut noisy, strange) = if selection.unnamed.is_empty() {
+    let (mut noisy, mut strange) = if selection.unnamed.is_empty() {
         noise::findings(system, &left)
     } else {
         (vec![], vec![])
     };
+    match system.flicker.as_ref().map(Flicker::finding) {
+        Some(Ok(finding)) => noisy.push(finding),
+        Some(Err(unnamed)) => strange.push(unnamed),
+        None => {}
+    }
     let unnamed = || selection.unnamed.iter().chain(&strange);
-    noisy.extend(system.flicker.iter().map(Flicker::finding));
     let (held_before, held_after) = (
         halves.held_out(&selection.base.shapes),
         halves.held_out(&extended.fit.shapes),

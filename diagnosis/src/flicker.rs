@@ -4,14 +4,17 @@
 //! number z, the radius has Re(z e^{−iα}), so twice the radial residual times e^{iα} is z + z* e^{2iα}: the spectrum of z,
 //! and its image about twice the angle. The spectrum is compared with what white noise and 1/f make of that (Whittle's
 //! likelihood). The name is given only where they hold nine tenths of what a spectrum of any shape explains: correlated
-//! noise, drift and hum are not 1/f.
+//! noise, drift and hum are not 1/f. Nor are offsets that jump between two levels, though their spectrum may be: there the
+//! levels explain more than the spectrum does, and leave none of it.
 
 use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
 
 use crate::context::Context;
 use crate::finding::{Chip, Finding, Gain, Parameter};
+use crate::selection::Unnamed;
 use crate::statistics::{after_trials, log_tail};
+use crate::telegraph;
 
 /// Its name.
 pub(crate) const FLICKER: &str = "flicker_noise";
@@ -29,6 +32,8 @@ const HUM: f64 = 6.0;
 const NEAR: usize = 8;
 /// Share of what any spectrum explains that 1/f has to hold.
 const HOLDS: f64 = 0.9;
+/// Share of what flicker noise explains that two levels in its place may leave to it.
+const LEFT: f64 = 0.25;
 /// Shapes of noise that could have been claimed.
 const TRIALS: f64 = 30.0;
 /// Global probability below which it is shown.
@@ -43,6 +48,8 @@ pub(crate) struct Flicker {
     pub(crate) corner: f64,
     gain: f64,
     log_p: f64,
+    /// Two levels explain it: whatever it is, it has no name.
+    jumps: bool,
 }
 
 /// Lines that a band counts for at most where the shape is judged: so every octave weighs alike.
@@ -219,6 +226,17 @@ pub(crate) fn gathered(context: &Context, radial: &[f64]) -> Vec<Band> {
     bands(&lines)
 }
 
+/// Whether two levels explain more of the radius than flicker noise with a gain in log-likelihood does, and leave no such noise.
+fn jumps(context: &Context, radial: &[f64], gain: f64) -> bool {
+    let Some(two) = telegraph::two_levels(context, radial).filter(|two| two.gain > gain) else {
+        return false;
+    };
+    let mut lines = spectrum(context, &two.left);
+    without_hum(&mut lines);
+    let bands = bands(&lines);
+    corner(&lines, &bands).1 - beside(&bands, 0.0).1 < LEFT * gain
+}
+
 /// Flicker noise in what everything else leaves of the radius.
 pub(crate) fn find(context: &Context, radial: &[f64]) -> Option<Flicker> {
     let n = radial.len();
@@ -257,14 +275,22 @@ pub(crate) fn find(context: &Context, radial: &[f64]) -> Option<Flicker> {
         corner: best.0,
         gain,
         log_p,
+        jumps: jumps(context, radial, gain),
     })
 }
 
 impl Flicker {
-    /// The finding; its gain in the residual is for the caller to say.
-    pub(crate) fn finding(&self) -> Finding {
+    /// The finding, whose gain in the residual is for the caller to say; or what it is where it has no name.
+    pub(crate) fn finding(&self) -> Result<Finding, Unnamed> {
+        if self.jumps {
+            return Err(Unnamed {
+                log_p: self.log_p,
+                gain: self.gain,
+                signature: "the noise of the channels rises towards low frequencies; nearest likeness: flicker noise, but two levels between which the offsets jump explain more".into(),
+            });
+        }
         let [density, error] = self.density;
-        Finding {
+        Ok(Finding {
             cause: FLICKER.into(),
             confounded_with: vec![],
             p_value: self.log_p.exp(),
@@ -286,6 +312,6 @@ impl Flicker {
             weight: self.gain,
             effect: None,
             place: None,
-        }
+        })
     }
 }

@@ -23,15 +23,18 @@ enum Colour {
     Flicker(f64),
     /// First-order autoregression of that coefficient, and rms.
     Regression(f64, f64),
+    /// Two levels so far either side of zero; it leaves one where white noise of unit rms exceeds 2.4, about every
+    /// 120 samples.
+    Telegraph(f64),
 }
 
-/// A sum of first-order relaxations: coefficient per sample, rms of each, state.
-struct Relaxations(Vec<(f64, f64, f64)>);
+/// A sum of first-order relaxations: coefficient per sample, rms of each, state; and a level that jumps.
+struct Relaxations(Vec<(f64, f64, f64)>, f64);
 
 impl Relaxations {
     fn new(colour: &Colour) -> Self {
         let list = match colour {
-            Colour::White => vec![],
+            Colour::White | Colour::Telegraph(_) => vec![],
             // From a tenth of a hertz to ten kilohertz, three to the factor of ten.
             Colour::Flicker(rms) => (0..16)
                 .map(|i| {
@@ -41,7 +44,11 @@ impl Relaxations {
                 .collect(),
             Colour::Regression(coefficient, rms) => vec![(*coefficient, *rms, 0.0)],
         };
-        Self(list)
+        let level = match colour {
+            Colour::Telegraph(level) => *level,
+            _ => 0.0,
+        };
+        Self(list, level)
     }
 
     fn next(&mut self, normal: &mut impl FnMut() -> f64) -> f64 {
@@ -49,7 +56,10 @@ impl Relaxations {
             let fresh = *rms * (1.0 - *coefficient * *coefficient).sqrt();
             *state = *coefficient * *state + fresh * normal();
         }
-        self.0.iter().map(|r| r.2).sum()
+        if self.1 != 0.0 && normal() > 2.4 {
+            self.1 = -self.1;
+        }
+        self.0.iter().map(|r| r.2).sum::<f64>() + self.1
     }
 }
 
@@ -57,6 +67,8 @@ fn diagnosed(colour: &Colour, seed: u64, motion: OfTime, drift: OfTime) -> Diagn
     let mut random = StdRng::seed_from_u64(seed);
     let mut normal = || -> f64 { StandardNormal.sample(&mut random) };
     let mut noises = [Relaxations::new(colour), Relaxations::new(colour)];
+    // Two that jump by themselves have four levels, and are not told from flicker noise.
+    noises[1].1 = 0.0;
     for _ in 0..SAMPLES {
         noises.iter_mut().for_each(|n| {
             n.next(&mut normal);
@@ -150,5 +162,31 @@ fn it_is_not_claimed_of_anything_else() {
                 found.findings
             );
         }
+    }
+}
+
+#[test]
+fn offsets_that_jump_between_two_levels_are_not_flicker_noise() {
+    for seed in 0..3 {
+        let found = diagnosed(&Colour::Telegraph(0.0004), seed, |_| 0.0, |_| 0.0);
+        assert_eq!(names(&found), Vec::<&str>::new(), "seed {seed}");
+        assert!(found.unexplained.significant, "seed {seed}");
+    }
+}
+
+/// A polynomial of time would follow them nearly as well as they do themselves.
+#[test]
+fn steps_are_no_drift() {
+    let steps: OfTime = |t| match t {
+        t if t < 0.05 => 0.0,
+        t if t < 0.11 => 0.0015,
+        t if t < 0.2 => -0.001,
+        t if t < 0.31 => 0.002,
+        _ => 0.0005,
+    };
+    for seed in 0..3 {
+        let found = diagnosed(&Colour::White, seed, |_| 0.0, steps);
+        assert_eq!(names(&found), Vec::<&str>::new(), "seed {seed}");
+        assert!(found.unexplained.significant, "seed {seed}");
     }
 }

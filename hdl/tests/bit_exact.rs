@@ -98,3 +98,11 @@ fn skews_in_icarus_and_verilator() {
         agrees(variant, 120, if i % 3 == 0 { &BOTH } else { &ICARUS });
     }
 }
+
+/// Two tables in a chip, one of them with words that have a sign.
+#[test]
+fn harmonics_in_icarus_and_verilator() {
+    variants::harmonics()
+        .par_iter()
+        .for_each(|variant| agrees(variant, 120, &BOTH));
+}

@@ -261,6 +261,67 @@ fn skew_faults() -> Vec<Fault> {
     ]
 }
 
+/// Faults in the correction of stored harmonics.
+fn harmonic_faults() -> Vec<Fault> {
+    let fault = |name, change: fn(&str) -> String| -> Fault { (name, Box::new(change)) };
+    vec![
+        fault("harmonics of the cosine added", |v| {
+            replaced(v, &["wire", " c_difference ="], "} - {{", "} + {{")
+        }),
+        fault("harmonics of the sine added", |v| {
+            replaced(v, &["wire", " s_difference_2_now ="], "} - {{", "} + {{")
+        }),
+        fault(
+            "phase correction of the harmonics the other way round",
+            |v| replaced(v, &["wire", " s_rounded ="], "} - {{", "} + {{"),
+        ),
+        fault(
+            "second order of the phase correction with the wrong sign",
+            |v| replaced(v, &["wire", " harmonic_through ="], "} + {{", "} - {{"),
+        ),
+        fault("expanded about the segment's beginning", |v| {
+            replaced(v, &["wire", " harmonic_inside_now ="], "'sh400;", "'sh000;")
+        }),
+    ]
+}
+
+#[test]
+fn vectors_catch_every_fault_in_the_correction_of_harmonics() {
+    let mut spec = optical();
+    spec.correction.harmonics = chip::shipped::variants::third_and_fifth();
+    let files = files(&spec);
+    all_caught(
+        "the correction of harmonics",
+        &files,
+        RTL,
+        &harmonic_faults(),
+    );
+    // One entry of the table: first, last and some between, in each column.
+    let path = "coefficients/harmonic_table.mem";
+    let design = Design::new(&spec).expect("a design that works");
+    let table = &design.structure.harmonics.as_ref().expect("a table").table;
+    let widths = table.columns.iter().map(|c| c.format.width);
+    let ends: Vec<u32> = widths
+        .rev()
+        .scan(0, |end, width| {
+            *end += width;
+            Some(*end)
+        })
+        .collect();
+    let last = table.rows() - 1;
+    // Two bits below the sign: what the vectors, which meet each row some times, cannot miss.
+    let faults = [(0, ends[0]), (last, ends[1]), (13, ends[2]), (137, ends[3])];
+    faults.par_iter().for_each(|&(row, end)| {
+        let rows = text(&files, path);
+        let mut rows: Vec<String> = rows.lines().map(ToOwned::to_owned).collect();
+        let word = u128::from_str_radix(&rows[row], 16).expect("hex") ^ (1 << (end - 3));
+        rows[row] = format!("{word:0digits$x}", digits = rows[row].len());
+        let (passed, _) = verdict(&altered(&files, path, &(rows.join("\n") + "\n")));
+        assert!(!passed, "row {row}, bit {}: not caught", end - 3);
+    });
+    kept("the table of harmonics", faults.len());
+}
+
 const RTL: &str = "rtl/optical.v";
 const TABLE: &str = "coefficients/sine_table.mem";
 

@@ -140,6 +140,7 @@ pub fn probes(structure: &Structure) -> (Vec<&'static str>, Vec<&'static str>) {
         "theta_5" => structure.has_phase(),
         "theta_6" | "theta_7" => structure.has_bend(),
         "skew" => structure.skew.is_some(),
+        "harmonic_cos" | "harmonic_sin" => structure.harmonics.is_some(),
         "theta_2" | "theta_4" | "rho_c" | "rho_s" | "fresh" | "whole_period" => {
             structure.parameters >= 4
         }

@@ -14,6 +14,7 @@ use nonius_model::chip::Chip;
 use nonius_model::design::Design;
 use nonius_model::reference::gate::{Gate, GateState, Window};
 use nonius_model::spec::{Coding, Spec};
+use support::shipped::variants::third_and_fifth;
 use support::{Encoder, optical};
 
 /// Each structure of the chip that differs in an equation.
@@ -62,11 +63,24 @@ fn structures() -> Vec<(String, Spec)> {
             format!("method {method} type {filter_type}, {parameters} parameters, skew {delay} s");
         list.push((name, spec));
     }
+    // Harmonics, with a skew too.
+    for (method, parameters, delay) in [(3, 5, 0.0), (3, 4, 0.0), (1, 0, 0.0), (1, 5, 1e-7)] {
+        let mut spec = optical();
+        spec.tracking.method = method;
+        spec.calibration.parameters = parameters;
+        spec.correction.channel_skew_s = delay;
+        spec.correction.harmonics = third_and_fifth();
+        let name = format!("method {method}, {parameters} parameters, harmonics, skew {delay} s");
+        list.push((name, spec));
+    }
     let mut binary = optical();
     binary.adc.coding = Coding::OffsetBinary;
     binary.adc.bits = 14;
     binary.sensor.amplitude = 0.3;
     list.push(("offset binary, 14 bits, amplitude 0.3".into(), binary));
+    for name in ["magnetic", "interferometer"] {
+        list.push((name.into(), support::shipped::spec(name)));
+    }
     list
 }
 
@@ -131,6 +145,9 @@ fn the_equations_agree() {
     for (name, mut spec) in structures() {
         spec.formats.signal_fraction = Some(24);
         spec.formats.sine_rows_log2 = Some(13);
+        if !spec.correction.harmonics.is_empty() {
+            spec.formats.harmonic_rows_log2 = Some(12);
+        }
         let design = Design::new(&spec).expect("a design that works");
         let found = compare(
             &design,

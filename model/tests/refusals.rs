@@ -240,9 +240,24 @@ proptest! {
         let (section, key) = keys().nth(field).expect("a field");
         let mut design: toml::Table = text().parse().expect("a shipped design");
         let value: toml::Table = format!("it = {value}").parse().expect("a value");
-        let fields = design.entry(section).or_insert(toml::Table::new().into());
-        let fields = fields.as_table_mut().expect("a section");
-        fields.insert(key.into(), value["it"].clone());
+        let fields = match section.split_once('.') {
+            // One entry of a list, sound but for this field.
+            Some((section, list)) => {
+                let mut entry: toml::Table = keys()
+                    .filter(|(of, _)| of.ends_with(list))
+                    .map(|(_, key)| (key.to_owned(), if key == "order" { 3.into() } else { 0.01.into() }))
+                    .collect();
+                entry.insert(key.into(), value["it"].clone());
+                let fields = design.entry(section).or_insert(toml::Table::new().into());
+                fields.as_table_mut().expect("a section").insert(list.into(), vec![entry].into());
+                None
+            }
+            None => Some(design.entry(section).or_insert(toml::Table::new().into())),
+        };
+        if let Some(fields) = fields {
+            let fields = fields.as_table_mut().expect("a section");
+            fields.insert(key.into(), value["it"].clone());
+        }
         if let Ok(spec) = Spec::from_toml(&design.to_string(), "d.toml") {
             let _ = Design::new(&spec);
         }

@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use crate::channel_skew::ChannelSkew;
 use crate::coefficient::Coefficient;
+use crate::harmonics::HarmonicTable;
 use crate::signals::Signal;
 use crate::simulation::Accuracy;
 use crate::sine::{SineError, sine_error};
@@ -35,6 +36,9 @@ pub struct DesignJson {
     /// The correction of channel skew, where the design has one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub channel_skew: Option<ChannelSkew>,
+    /// The table of harmonics, where the design has one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub harmonics: Option<HarmonicTable>,
     /// The position at the output.
     pub position: Position,
     /// Every coefficient with its rounding error.
@@ -173,6 +177,7 @@ impl DesignJson {
             },
             tracking: Tracking::of(design),
             channel_skew: ChannelSkew::of(design),
+            harmonics: HarmonicTable::of(design),
             position: Position::of(design),
             coefficients: Coefficient::all(design),
             formats: crate::signals::signals(design),

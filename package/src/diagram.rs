@@ -6,7 +6,7 @@ use nonius_model::spec::{CalibrationMethod, Spec};
 #[derive(Debug, PartialEq)]
 pub(crate) struct Diagram {
     /// What the correction does, in order.
-    pub(crate) correction: &'static str,
+    pub(crate) correction: String,
     /// Its parameters.
     pub(crate) thetas: String,
     /// The equation of the search; `None` where nothing is calibrated.
@@ -28,14 +28,20 @@ impl Diagram {
             CalibrationMethod::SumOfSquares => ("δΘ = −γ ∇(c² + s² − 1)²", "c² + s²"),
             CalibrationMethod::Batch => ("once per period", "c² + s²"),
         };
+        let corrected = match (thetas.is_empty(), bent, thetas.contains(&5)) {
+            (true, ..) => "nominal gains",
+            (_, true, true) => "offset, gain, bend, phase",
+            (_, true, false) => "offset, gain, bend",
+            (_, false, true) => "offset, gain, phase",
+            (_, false, false) => "offset, gain",
+        };
+        let more = if spec.correction.harmonics.is_empty() {
+            ""
+        } else {
+            ", table"
+        };
         Self {
-            correction: match (thetas.is_empty(), bent, thetas.contains(&5)) {
-                (true, ..) => "nominal gains",
-                (_, true, true) => "offset, gain, bend, phase",
-                (_, true, false) => "offset, gain, bend",
-                (_, false, true) => "offset, gain, phase",
-                (_, false, false) => "offset, gain",
-            },
+            correction: corrected.to_owned() + more,
             thetas: ranges(thetas),
             search: (!thetas.is_empty()).then_some(search),
             seen,

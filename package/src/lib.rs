@@ -6,6 +6,7 @@ mod curves;
 mod design_json;
 mod diagram;
 mod engineering;
+mod harmonics;
 mod report;
 mod signals;
 mod simulation;

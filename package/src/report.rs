@@ -79,6 +79,17 @@ fn said(design: &Design, j: &DesignJson) -> Vec<(&'static str, String, String)> 
             ),
         )
     });
+    let harmonics = j.harmonics.as_ref().map(|h| {
+        let orders: Vec<String> = h.orders.iter().map(ToString::to_string).collect();
+        (
+            "Harmonics corrected",
+            format!("orders {}", orders.join(", ")),
+            format!(
+                "{:.2e} periods rms are left of {:.2e}",
+                h.left_periods, h.uncorrected_periods
+            ),
+        )
+    });
     let mut list = vec![
         (
             PREDICTED,
@@ -166,6 +177,7 @@ fn said(design: &Design, j: &DesignJson) -> Vec<(&'static str, String, String)> 
         ),
     ];
     list.extend(skew);
+    list.extend(harmonics);
     list
 }
 

@@ -137,6 +137,18 @@ const REASONS: &[(&[&str], &str)] = &[
     ),
     (&["sectors"], "sectors passed in a sample, up to a period"),
     (
+        &["harmonic_cos", "harmonic_sin", "harmonic_turned"],
+        "harmonics: a quarter of the amplitude at most, to a signal's resolution",
+    ),
+    (
+        &["harmonic_phase_late"],
+        "phase in the table of harmonics, as that in the sine, where the sine is sampled later",
+    ),
+    (
+        &["skew_turns"],
+        "phase of the sine's delay in turns, to the resolution of the phase",
+    ),
+    (
         &["skew_rate"],
         "speed up to a quarter above the design's largest, as wide as a signal",
     ),
@@ -150,7 +162,11 @@ const REASONS: &[(&[&str], &str)] = &[
 fn why(design: &Design, name: &str, node: &Entry) -> Option<&'static str> {
     match node.op {
         Op::Lookup { .. } => {
-            return Some("word of the sine table: the budget's rounding of the table");
+            return Some(if name.starts_with("harmonic") {
+                "word of the table of harmonics: two bits finer than a signal, with its slope"
+            } else {
+                "word of the sine table: the budget's rounding of the table"
+            });
         }
         Op::Input | Op::Quantise(..) | Op::QuantiseGeared { .. } => {}
         _ => return Some("exact: every bit of the operation, range by interval analysis"),

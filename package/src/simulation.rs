@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use nonius_model::chip::Chip;
 use nonius_model::design::Design;
 use nonius_model::physical::Converter;
+use nonius_model::spec::Harmonic;
 use serde::Serialize;
 
 /// Angle errors of the bit-true chip in periods.
@@ -144,6 +145,8 @@ struct Sensor {
     beta: f64,
     /// The sine is sampled so many samples later.
     late: f64,
+    /// What stands in the channels beside them, in amplitudes.
+    harmonics: Vec<Harmonic>,
     middle: f64,
     noise: f64,
     random: Noise,
@@ -170,6 +173,7 @@ impl Sensor {
             offset: o * a,
             beta: s.phase_error_max_deg.to_radians() / 2.0,
             late: spec.correction.channel_skew_s * spec.adc.sample_rate_hz,
+            harmonics: spec.correction.harmonics.clone(),
             middle: spec.adc.middle,
             noise: a * s.noise_rms,
             random: Noise(1),
@@ -178,8 +182,14 @@ impl Sensor {
 
     fn sample(&mut self, at: f64, speed: f64) -> Sample {
         let (alpha, alpha_of_sin) = (at * TAU, (at + self.late * speed) * TAU);
-        let cos = self.amplitudes[0] * alpha.cos() + self.offset + self.noise * self.random.next();
-        let sin = self.amplitudes[1] * (alpha_of_sin - self.beta).sin() - self.offset
+        let more = |which: usize, alpha: f64| -> f64 {
+            self.harmonics.iter().map(|h| h.at(which, alpha).0).sum()
+        };
+        let (more_cos, more_sin) = (more(0, alpha), more(1, alpha_of_sin));
+        let cos = self.amplitudes[0] * (alpha.cos() + more_cos)
+            + self.offset
+            + self.noise * self.random.next();
+        let sin = self.amplitudes[1] * ((alpha_of_sin - self.beta).sin() + more_sin) - self.offset
             + self.noise * self.random.next();
         Sample {
             cos: self.converter.code(self.middle + cos),

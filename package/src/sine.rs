@@ -23,23 +23,28 @@ pub struct SineError {
     pub phases: u64,
 }
 
+/// The phases of so many bits that are tried, and one of how many that is.
+pub(crate) fn phases(bits: u32) -> (u64, impl Iterator<Item = u64>) {
+    let step = 1u64 << bits.saturating_sub(EXHAUSTIVE_BITS);
+    // An odd stride reaches every position within a segment.
+    let stride = if step == 1 { 1 } else { step + 1 };
+    (step, (0..1u64 << bits).step_by(stride as usize))
+}
+
 /// Sine and cosine against the exact ones, for every phase of the sine unit (each stands for the middle of what it
 /// cuts off).
 #[must_use]
 pub fn sine_error(design: &Design) -> SineError {
     let (coefficients, structure) = (design.constants.bits(), &design.structure);
     let bits = structure.formats.sine_phase.format.fraction;
-    let step = 1u64 << bits.saturating_sub(EXHAUSTIVE_BITS);
+    let (step, places) = phases(bits);
     let mut result = SineError {
         largest: 0.0,
         largest_angle_turns: 0.0,
         exhaustive: step == 1,
         phases: 0,
     };
-    // An odd stride reaches every position within a segment.
-    let stride = if step == 1 { 1 } else { step + 1 };
-    let mut phase = 0u64;
-    while phase < 1 << bits {
+    for phase in places {
         let exact = (phase as f64 + 0.5) / 2f64.powi(bits as i32) * TAU;
         let (s, c) = sine(Bits::from_raw(phase as i64, bits), &coefficients, structure);
         let (s, c) = (s.to_f64(), c.to_f64());
@@ -49,7 +54,6 @@ pub fn sine_error(design: &Design) -> SineError {
         let angle = (s * cos - c * sin).atan2(c * cos + s * sin) / TAU;
         result.largest_angle_turns = result.largest_angle_turns.max(angle.abs());
         result.phases += 1;
-        phase += stride;
     }
     result
 }

@@ -47,12 +47,8 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
     let per_channel = |n: usize| (0..2).map(|i| of_channel(i, &u[i].power(n))).collect();
     let of = |name, shapes: Vec<Shape>, what: &'static str| Candidate {
         trials: 2.0,
-        // By the bends of 8 and 9 parameters, where a scale period is not a whole revolution.
-        chip: if context.periods_per_revolution == Some(1) {
-            Chip::CannotCorrect
-        } else {
-            Chip::Corrects
-        },
+        // By the bends of 8 and 9 parameters, or by the table of harmonics.
+        chip: Chip::Corrects,
         parameters: each(&["k_cos", "k_sin"], "amplitude"),
         evidence: Rc::new(move |p| {
             format!(
@@ -76,6 +72,7 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
             .collect();
         list.push(Candidate {
             trials: 6.0,
+            chip: Chip::Corrects,
             parameters: Rc::new(move |e| {
                 let (a_c, d_c, p_c, e_c) = polar(&e.x[..2], &e.error[..2]);
                 let (a_s, d_s, p_s, e_s) = polar(&e.x[2..], &e.error[2..]);

@@ -7,7 +7,7 @@ use super::Catalogue;
 use crate::block::Block;
 use crate::cause::{Candidate, Domain, polar};
 use crate::context::Context;
-use crate::finding::Parameter;
+use crate::finding::{Chip, Parameter};
 use crate::library::{Shape, Use};
 
 /// Orders of the revolution that a generic error has.
@@ -69,6 +69,12 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
             let shapes: Vec<Shape> = [first, first + 1].map(|i| place.tangential(i)).into();
             list.push(Candidate {
                 trials: ORDERS as f64,
+                // Where a scale period is a revolution, it is two harmonics, which the chip's table takes.
+                chip: if context.periods_per_revolution == Some(1) && order >= 3 {
+                    Chip::Corrects
+                } else {
+                    Chip::CannotCorrect
+                },
                 parameters: harmonic(order, "amplitude", "rad"),
                 evidence: Rc::new(move |p| format!("against the reference the angle is off by {:.3e} rad of a scale period, {order} time(s) per revolution", p[1].value)),
                 ..Candidate::new("graduation_error", Domain::Revolution, shapes)

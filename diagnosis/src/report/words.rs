@@ -65,10 +65,13 @@ pub(super) fn chip(finding: &Finding) -> &'static str {
     let order = finding.parameter("order");
     match (finding.chip, finding.cause.as_str()) {
         (Chip::Corrects, "even_nonlinearity" | "odd_nonlinearity") => {
-            "The chip corrects it with nine parameters on line; design.toml switches them on where it can."
+            "The chip corrects it with nine parameters on line, or from its table of harmonics where a scale period is a revolution; design.toml switches them on where it can."
         }
-        (_, "spatial_harmonic") if order == Some(2.0) || order == Some(3.0) => {
-            "The chip corrects the part of it that is a bend of the channel, with nine parameters on line; design.toml switches them on where phase and design allow it."
+        (Chip::Corrects, "spatial_harmonic") if order == Some(2.0) || order == Some(3.0) => {
+            "The chip corrects it: with nine parameters on line where it is a bend of the channels, else from its table of harmonics; design.toml switches either on."
+        }
+        (Chip::Corrects, "spatial_harmonic" | "graduation_error") => {
+            "The chip corrects it from its table of harmonics, which design.toml holds."
         }
         (Chip::Corrects, "channel_skew") => {
             "The chip corrects it: it turns the sine back by the speed times this delay, which design.toml tells it."

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use super::{DesignError, Loop, normalisation};
+use super::{DesignError, Loop, harmonics, normalisation};
 use crate::format::exp2;
 use crate::spec::{Overrides, Spec};
 
@@ -17,6 +17,8 @@ pub struct Words {
     pub sine_phase_bits: u32,
     /// log2 of the rows of the quarter-wave table.
     pub sine_rows_log2: u32,
+    /// log2 of the rows of the table of harmonics, where there is one.
+    pub harmonic_rows_log2: u32,
     /// Fraction bits of the parameter accumulators.
     pub accumulator_fraction: u32,
 }
@@ -106,7 +108,7 @@ fn uncorrected(spec: &Spec) -> f64 {
 }
 
 /// Rms of a value rounded to this many fraction bits.
-fn rounding(fraction: u32) -> f64 {
+pub(super) fn rounding(fraction: u32) -> f64 {
     exp2(-i64::from(fraction)) / 12f64.sqrt()
 }
 
@@ -120,7 +122,7 @@ fn terms(words: &Words, spec: &Spec, tracking: &Loop) -> Vec<Term> {
     let segment = TAU * exp2(-i64::from(words.sine_rows_log2) - 3);
     // The sine is rounded once more, and the gain that takes the second order off.
     let skew = rounding(f) * (0.5f64 + 0.125).sqrt();
-    let list = [
+    let mut list = vec![
         ("corrected signals", rounding(f)),
         ("sine table rounding", rounding(f)),
         (
@@ -136,12 +138,13 @@ fn terms(words: &Words, spec: &Spec, tracking: &Loop) -> Vec<Term> {
         ),
         ("phase and its increments", dead_band),
         ("parameter accumulators", accumulator(words, spec)),
-        ("channel skew", skew),
     ];
-    let absent = usize::from(spec.correction.is_none());
-    list.iter()
-        .take(list.len() - absent)
-        .map(|&(source, radians)| Term {
+    if spec.correction.has_skew() {
+        list.push(("channel skew", skew));
+    }
+    list.extend(harmonics::terms(words, spec));
+    list.into_iter()
+        .map(|(source, radians)| Term {
             source,
             rms_periods: radians / TAU,
         })
@@ -169,7 +172,7 @@ pub(super) fn choose(spec: &Spec, tracking: &Loop) -> Result<(Words, Budget), De
     let unavoidable = (adc * adc + noise * noise + allowed * allowed).sqrt();
     if unavoidable > spec.accuracy.rms_periods {
         return Err(DesignError::Field {
-            field: "accuracy.rms_periods",
+            field: "accuracy.rms_periods".into(),
             value: spec.accuracy.rms_periods.to_string(),
             limit: format!("{unavoidable:.3e}"),
             reason: format!(
@@ -197,7 +200,7 @@ pub(super) fn choose(spec: &Spec, tracking: &Loop) -> Result<(Words, Budget), De
                 set: &dyn Fn(u32) -> Words| match chosen {
         Some(n) if (low..=high).contains(&n) => Ok(set(n)),
         Some(n) => Err(DesignError::Field {
-            field,
+            field: field.into(),
             value: n.to_string(),
             // The other end depends on the other words.
             limit: if n > high {
@@ -217,7 +220,7 @@ pub(super) fn choose(spec: &Spec, tracking: &Loop) -> Result<(Words, Budget), De
                 .map(set)
                 .find(|w| budget(w).arithmetic() <= enough)
                 .ok_or_else(|| DesignError::Field {
-                    field,
+                    field: field.into(),
                     value: format!("more than {high} bits"),
                     limit: format!("{high} bits"),
                     reason: "the accuracy asked for needs longer words than the chip has".into(),
@@ -229,6 +232,7 @@ pub(super) fn choose(spec: &Spec, tracking: &Loop) -> Result<(Words, Budget), De
         phase_bits: o.phase_bits.unwrap_or(44),
         sine_phase_bits: o.sine_phase_bits.unwrap_or((f + 8).min(30)),
         sine_rows_log2: o.sine_rows_log2.unwrap_or(13),
+        harmonic_rows_log2: o.harmonic_rows_log2.unwrap_or(harmonics::ROWS_LOG2_MAX),
         accumulator_fraction: o.accumulator_fraction.unwrap_or(44),
     };
     let field = "formats.signal_fraction";
@@ -239,12 +243,24 @@ pub(super) fn choose(spec: &Spec, tracking: &Loop) -> Result<(Words, Budget), De
         ..w
     };
     let w = pick(o.sine_rows_log2, 4, 13, field, &rows)?;
+    let field = "formats.harmonic_rows_log2";
+    let w = pick(
+        o.harmonic_rows_log2,
+        4,
+        harmonics::ROWS_LOG2_MAX,
+        field,
+        &|n| Words {
+            harmonic_rows_log2: n,
+            ..w
+        },
+    )?;
     let field = "formats.sine_phase_bits";
     let phase = |n| Words {
         sine_phase_bits: n,
         ..w
     };
-    let w = pick(o.sine_phase_bits, w.sine_rows_log2 + 3, 30, field, &phase)?;
+    let low = (w.sine_rows_log2 + 3).max(w.harmonic_rows_log2 + 1);
+    let w = pick(o.sine_phase_bits, low, 30, field, &phase)?;
     let (field, low) = (
         "formats.phase_bits",
         w.sine_phase_bits.max(w.signal_fraction + 3),

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use super::{Acquisition, DesignError, Loop, Words, normalisation, skew};
+use super::{Acquisition, DesignError, Loop, Words, harmonics, normalisation, skew};
 use crate::format::{Format, Quantiser, exp2};
 use crate::kernel::gears::{HELD, SETTLED};
 use crate::kernel::skew::Order;
@@ -117,6 +117,7 @@ pub(super) fn structure(
         // A quarter of a turn each way, and twice that where the design comes near it.
         rate: Quantiser::saturating(Format::signed(if fast { fp } else { fp - 1 }, fp)),
         rate_high: Quantiser::grid(Format::signed(width, if fast { width } else { width + 1 })),
+        harmonic: Quantiser::saturating(Format::signed(f - 1, f)),
         skew_rate: held(top, width, fp),
         skew: held(2.5 * skew::phase_max(spec), width, f + 6),
         sine_phase: Quantiser::truncating(Format::unsigned(
@@ -161,7 +162,8 @@ pub(super) fn structure(
         forgetting: spec.calibration.forgetting,
         completion: (spec.calibration.parameters >= 8 && spec.calibration.completion)
             .then_some(spec.calibration.completion_gamma),
-        skew: (!spec.correction.is_none()).then_some(Order::Second),
+        skew: spec.correction.has_skew().then_some(Order::Second),
+        harmonics: harmonics::structure(spec, words)?,
         offset_binary,
         formats,
         sine: sine_table(words)?,
@@ -186,7 +188,7 @@ fn sine_table(words: &Words) -> Result<Rom, DesignError> {
     let slopes = (0..1usize << rows).map(|i| TAU * centre(i).cos()).collect();
     let slope_fraction = (f + 1).saturating_sub(rows).max(1);
     let unfit = |row: usize| DesignError::Field {
-        field: "formats.sine_rows_log2",
+        field: "formats.sine_rows_log2".into(),
         value: rows.to_string(),
         limit: "13".into(),
         reason: format!("row {row} of the sine table does not fit its word"),
@@ -257,13 +259,18 @@ pub(super) fn constants(
         theta_1_nominal: nominal,
         theta_3_nominal: nominal,
         skew_delay: Constant::normalised(skew::delay(spec), width, 40),
-        skew_amplitude: Constant::normalised(normalisation(spec).0, width, 40),
+        nominal_amplitude: Constant::normalised(normalisation(spec).0, width, 40),
+        turns_per_radian: Constant::normalised(1.0 / TAU, width, 40),
         quarter_turn: corrected(0.25, 2.0 * half_bit, p),
         half_bit: Constant {
             ideal: 0.0,
             ..Constant::rounded(half_bit, p + 1)
         },
         half_segment: Constant::rounded(half_segment, words.sine_rows_log2 + 3),
+        half_harmonic_segment: Constant::rounded(
+            exp2(-i64::from(words.harmonic_rows_log2) - 1),
+            words.harmonic_rows_log2 + 1,
+        ),
         // Limits of few bits make short comparators.
         lock_error: Constant::rounded((0.75 * worst).clamp(0.35, 0.6), 4),
         lock_residual: Constant::rounded((1.25 * worst).clamp(0.4, 0.9), 4),

@@ -3,14 +3,18 @@
 mod budget;
 mod check;
 mod formats;
+mod harmonics;
 mod keywords;
 mod poles;
 mod refuse;
 mod skew;
 
 pub use budget::{Budget, Term, Words};
+pub use harmonics::{Harmonics, ORDER_MAX};
 pub use poles::{Acquisition, Loop};
 pub use skew::{PHASE_MAX, Skew};
+
+use std::borrow::Cow;
 
 use thiserror::Error;
 
@@ -26,7 +30,7 @@ pub enum DesignError {
     #[error("{field} = {value}: {reason} (limit: {limit})")]
     Field {
         /// The key in `design.toml`.
-        field: &'static str,
+        field: Cow<'static, str>,
         /// What it says.
         value: String,
         /// What it may say.
@@ -54,6 +58,8 @@ pub struct Design {
     pub budget: Budget,
     /// Correction of channel skew, where there is one.
     pub skew: Option<Skew>,
+    /// Correction of stored harmonics, where there are any.
+    pub harmonics: Option<Harmonics>,
     /// Structure and formats.
     pub structure: Structure,
     /// The numbers.
@@ -71,11 +77,13 @@ impl Design {
         check::check(spec)?;
         let tracking = Loop::new(spec)?;
         skew::check(spec, &tracking)?;
+        harmonics::check(spec)?;
         let acquisition = Acquisition::new(spec, &tracking);
-        let (words, budget) = budget::choose(spec, &tracking)?;
+        let (words, mut budget) = budget::choose(spec, &tracking)?;
         let mut structure = formats::structure(spec, &tracking, &acquisition, &words)?;
         let constants = formats::constants(spec, &tracking, &acquisition, &words, &structure);
         let skew = skew::settle(spec, &budget, &mut structure, &constants);
+        let harmonics = harmonics::settle(spec, &mut budget, &mut structure, &constants);
         let graph = record(&structure, &constants, chip_kernel)?;
         check::apart(&spec.name, &graph)?;
         check::used(spec.chip.multipliers, &graph)?;
@@ -86,6 +94,7 @@ impl Design {
             words,
             budget,
             skew,
+            harmonics,
             structure,
             constants,
             graph,

@@ -1,14 +1,17 @@
 //! How a field is refused: its value and its limit, in short.
 
+use std::borrow::Cow;
+
 use super::DesignError;
 
 /// A refusal of what `field` says.
 pub(super) fn refuse<T>(
-    field: &'static str,
+    field: impl Into<Cow<'static, str>>,
     value: impl ToString,
     limit: impl ToString,
     reason: impl ToString,
 ) -> Result<T, DesignError> {
+    let field = field.into();
     let (value, limit, reason) = (value.to_string(), limit.to_string(), reason.to_string());
     Err(DesignError::Field {
         field,
@@ -20,7 +23,7 @@ pub(super) fn refuse<T>(
 
 /// Refuses a number outside `low` … `high`, and what is no number.
 pub(super) fn between(
-    field: &'static str,
+    field: impl Into<Cow<'static, str>>,
     value: f64,
     low: f64,
     high: f64,

@@ -45,7 +45,7 @@ pub(super) fn phase_max(spec: &Spec) -> f64 {
 
 /// Refuses a delay that the chip cannot correct.
 pub(super) fn check(spec: &Spec, tracking: &Loop) -> Result<(), DesignError> {
-    if spec.correction.is_none() {
+    if !spec.correction.has_skew() {
         return Ok(());
     }
     let delay = spec.correction.channel_skew_s;

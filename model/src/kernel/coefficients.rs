@@ -98,13 +98,17 @@ coefficients! {
     /// Delay of the sine: radians of phase per turn of speed and sample.
     skew_delay,
     /// Nominal amplitude of the cosine.
-    skew_amplitude,
+    nominal_amplitude,
+    /// Turns in a radian.
+    turns_per_radian,
     /// A quarter turn, less one bit of the sine phase.
     quarter_turn,
     /// Half a bit of the sine phase: what was cut off, on average.
     half_bit,
     /// Half a sine table segment.
     half_segment,
+    /// Half a segment of the table of harmonics.
+    half_harmonic_segment,
     /// Largest |e| in lock, radians.
     lock_error,
     /// Largest −ρ in lock.

@@ -105,3 +105,32 @@ pub fn correct<S: Signal>(y_c: S, y_s: S, theta: [S; 5], structure: &Structure) 
         s.named("s_exact").quantise(signal),
     )
 }
+
+/// tan β: θ5 where it acts on the corrected cosine, else θ5/θ1 by a step of Newton's from the nominal amplitude. `None` without
+/// phase.
+pub fn tan_beta<S: Signal>(
+    theta_1: S,
+    theta_5: S,
+    k: &Coefficients<S>,
+    structure: &Structure,
+) -> Option<S> {
+    let signal = &structure.formats.signal;
+    if !structure.has_phase() {
+        return None;
+    }
+    if structure.has_bend() {
+        return Some(theta_5);
+    }
+    let gain = (k.nominal_amplitude * theta_1)
+        .quantise(signal)
+        .named("relative_gain");
+    let less = (k.one.scale(1) - gain)
+        .quantise(signal)
+        .named("relative_gain_inverse");
+    let cross = (theta_5 * less).quantise(signal).named("relative_cross");
+    Some(
+        (k.nominal_amplitude * cross)
+            .quantise(signal)
+            .named("tan_beta"),
+    )
+}

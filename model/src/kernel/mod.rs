@@ -12,6 +12,7 @@ pub mod detector;
 pub mod gather;
 pub mod gears;
 pub mod gradient;
+pub mod harmonics;
 pub mod lock;
 pub mod loop_filter;
 pub mod position;
@@ -62,6 +63,8 @@ pub struct Structure {
     pub completion: Option<u32>,
     /// How far channel skew is corrected; `None`: the sine is sampled with the cosine.
     pub skew: Option<skew::Order>,
+    /// Stored harmonics of the scale period; `None`: the channels are pure.
+    pub harmonics: Option<harmonics::Harmonics>,
     /// The ADC codes run from 0 (offset binary) instead of around 0.
     pub offset_binary: bool,
     /// Formats of the signals.
@@ -85,11 +88,12 @@ impl Structure {
         matches!(self.parameters, 5 | 9)
     }
 
-    /// Neither bends, nor skew, nor another gradient than the final form, nor another start than its gears.
+    /// Neither bends, nor skew, nor harmonics, nor another gradient than the final form, nor another start than its gears.
     #[must_use]
     pub fn is_plain(&self) -> bool {
         let searches = self.gradient != CalibrationMethod::Final || self.least_squares_start;
-        !(self.has_bend() || self.skew.is_some() || searches)
+        let known = self.skew.is_some() || self.harmonics.is_some();
+        !(self.has_bend() || known || searches)
     }
 
     /// Gradients are gathered over samples: by the search or by its start.
@@ -136,6 +140,8 @@ pub struct Formats {
     pub skew_rate: Quantiser,
     /// Phase by which the sine is sampled later, radians.
     pub skew: Quantiser,
+    /// Stored harmonics, as a fraction of the amplitude.
+    pub harmonic: Quantiser,
     /// Phase that addresses the sine table.
     pub sine_phase: Quantiser,
     /// Count of whole periods; the unit is the whole range of the counter.

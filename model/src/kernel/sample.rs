@@ -2,8 +2,8 @@
 
 use super::{Coefficients, Input, Method, Probes, State, Structure};
 use super::{
-    bend, calibration, completion, correction, detector, gears, gradient, lock, loop_filter,
-    position, sine, skew, start, sum_of_squares, travel,
+    bend, calibration, completion, correction, detector, gears, gradient, harmonics, lock,
+    loop_filter, position, sine, skew, start, sum_of_squares, travel,
 };
 use crate::format::Quantiser;
 use crate::signal::{Formula, Logic, Signal};
@@ -34,7 +34,7 @@ pub fn advance<S: Signal>(
     k: &Coefficients<S>,
     structure: &Structure,
 ) -> Probes<S> {
-    // The same code twice: where the design has neither bends nor skew nor another gradient than the final form, the
+    // The same code twice: where the design has neither bends nor skew nor harmonics nor another gradient than the final form, the
     // compiler leaves them out, which makes the bit-true model faster by two thirds.
     if structure.is_plain() {
         advance_of::<S, true>(input, state, k, structure)
@@ -56,20 +56,31 @@ fn advance_of<S: Signal, const PLAIN: bool>(
     let y_s = correction::normalise(input.adc_sin, k, structure);
     let theta = correction::parameters(state, k, structure);
     let mut bends = None;
-    let (c, mut s) = if !PLAIN && structure.has_bend() {
+    let (mut c, mut s) = if !PLAIN && structure.has_bend() {
         let bends = bends.insert(bend::parameters(state, structure));
         correction::correct_bent(y_c, y_s, theta, bends, k, structure)
     } else {
         correction::correct(y_c, y_s, theta, structure)
     };
-    let mut ahead = k.zero;
-    if let (false, Some(order)) = (PLAIN, structure.skew) {
-        ahead = skew::skew(order, state, k, structure);
-        let [theta_1, _, _, _, theta_5] = theta;
-        s = skew::correct((c, s), (order, ahead), (theta_1, theta_5), k, structure);
+    let [theta_1, _, _, _, theta_5] = theta;
+    let late = structure.skew.filter(|_| !PLAIN);
+    let late = late.map(|order| (order, skew::skew(order, state, k, structure)));
+    let ahead = late.map(|(_, ahead)| ahead);
+    let (measured, mut stored) = ((c, s), None);
+    if let (false, Some(known)) = (PLAIN, &structure.harmonics) {
+        let of = (structure, known);
+        let pair = stored.insert(harmonics::stored(state.alpha_hat, ahead, k, of));
+        let of = (structure, known.order);
+        (c, s) = harmonics::correct((c, s), *pair, (theta_1, theta_5), k, of);
     }
+    if let Some(late) = late {
+        s = skew::correct((c, s), late, (theta_1, theta_5), k, structure);
+    }
+    let (harmonic_cos, harmonic_sin) = stored.unwrap_or((k.zero, k.zero));
 
-    let weak = detector::weak(c, s, k);
+    // What the table takes off is no signal.
+    let (strong_c, strong_s) = stored.map_or((c, s), |_| measured);
+    let weak = detector::weak(strong_c, strong_s, k);
     let rho = detector::radial_residual(c, s, cos_hat, sin_hat, k, structure);
     let seen = detector::phase_error(c, s, cos_hat, sin_hat, structure).named("e_seen");
     // Without a signal the loop coasts at its last rate.
@@ -210,7 +221,9 @@ fn advance_of<S: Signal, const PLAIN: bool>(
         theta_7: bends.map_or(k.zero, |b| b.theta_7),
         c,
         s,
-        skew: ahead,
+        harmonic_cos,
+        harmonic_sin,
+        skew: ahead.unwrap_or(k.zero),
         cos_hat,
         sin_hat,
         e,

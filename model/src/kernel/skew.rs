@@ -16,7 +16,7 @@
 //! κ³/12 and of κ T times the square of the cosine's relative gain error (with bends that of κ T²): see
 //! [`Skew`](crate::design::Skew), which says what is left at the largest speed.
 
-use super::{Coefficients, State, Structure, loop_filter};
+use super::{Coefficients, State, Structure, correction, loop_filter};
 use crate::signal::{Formula, Signal, Wide};
 
 /// How far the series in κ goes.
@@ -74,7 +74,7 @@ pub fn correct<S: Signal>(
         return (s.widen() - turned).quantise(signal);
     }
     let half = skew.scale(-1);
-    let slope = match tan_beta(theta_1, theta_5, k, structure) {
+    let slope = match correction::tan_beta(theta_1, theta_5, k, structure) {
         Some(tan_beta) => half - tan_beta,
         None => half,
     };
@@ -91,33 +91,4 @@ fn formula(order: Order) -> &'static Formula {
         Order::First => &FIRST,
         Order::Second => &SKEW,
     }
-}
-
-/// T: θ5 where it acts on the corrected cosine, else θ5/θ1 by a step of Newton's from the nominal amplitude. `None` without
-/// phase.
-fn tan_beta<S: Signal>(
-    theta_1: S,
-    theta_5: S,
-    k: &Coefficients<S>,
-    structure: &Structure,
-) -> Option<S> {
-    let signal = &structure.formats.signal;
-    if !structure.has_phase() {
-        return None;
-    }
-    if structure.has_bend() {
-        return Some(theta_5);
-    }
-    let gain = (k.skew_amplitude * theta_1)
-        .quantise(signal)
-        .named("relative_gain");
-    let less = (k.one.scale(1) - gain)
-        .quantise(signal)
-        .named("relative_gain_inverse");
-    let cross = (theta_5 * less).quantise(signal).named("relative_cross");
-    Some(
-        (k.skew_amplitude * cross)
-            .quantise(signal)
-            .named("tan_beta"),
-    )
 }

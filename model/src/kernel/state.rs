@@ -163,6 +163,10 @@ bundle! {
         c,
         /// Corrected sine.
         s,
+        /// Stored harmonics of the cosine at the estimate, as a fraction of the amplitude.
+        harmonic_cos,
+        /// The same of the sine.
+        harmonic_sin,
         /// Phase by which the sine is sampled later than the cosine, radians.
         skew,
         /// cos α̂.

@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use super::completed::CompletedConfig;
 use super::gate::{Gate, Window};
 use super::gradient::Form;
+use super::harmonics::Harmonics;
 use super::hold::HoldConfig;
 use super::interpolator::{Gamma, Search};
 use super::loops::LoopConfig;
@@ -63,6 +64,19 @@ pub fn tracking(spec: &Spec) -> Result<LoopConfig, ReferenceError> {
     let ts = 1.0 / spec.adc.sample_rate_hz;
     let poles = Poles::new(TAU * t.bandwidth_hz, t.damping, ts)?;
     LoopConfig::named(t.method, t.filter_type, t.pole, &poles, ts)
+}
+
+/// What the design knows of the channels' harmonics.
+#[must_use]
+pub fn harmonics(spec: &Spec) -> Harmonics {
+    let list = spec.correction.harmonics.iter();
+    list.fold(Harmonics::NONE, |all, h| {
+        let (cosine, sine) = (
+            (h.amplitude_cos, h.phase_cos),
+            (h.amplitude_sin, h.phase_sin),
+        );
+        all.with(h.order as usize, cosine, sine)
+    })
 }
 
 /// The gradient's modes are 1/2 for offsets, 1/4 and 1/2 for gains, 1/8 for the phase: brought to about one speed as the
@@ -155,6 +169,7 @@ pub fn config(spec: &Spec) -> Result<Config, ReferenceError> {
         theta: parameters.nominal(1.0),
         tracking,
         skew: spec.correction.channel_skew_s,
+        harmonics: harmonics(spec),
         search: search(spec),
         gamma: Gamma {
             first: Steps::from_diagonal(&equaliser)

@@ -10,6 +10,7 @@
 
 use nalgebra::{RowSVector, Vector2};
 
+use super::harmonics::Harmonics;
 use super::loops::Filter;
 use super::{Jacobian, Parameters, Theta, skew};
 
@@ -34,25 +35,29 @@ impl Observation {
     /// Looks at the sample y with Θ and α̂.
     #[must_use]
     pub fn new(parameters: Parameters, theta: &Theta, y: [f64; 2], alpha_hat: f64) -> Self {
-        Self::skewed(parameters, theta, y, alpha_hat, 0.0)
+        Self::known(parameters, theta, y, alpha_hat, (0.0, &Harmonics::NONE))
     }
 
-    /// The same where the sine's phase runs `kappa` radians ahead because it is sampled later. M stays as it is without: what
-    /// κ changes of it is small, and no fixed point of the search depends on it.
+    /// The same where the sine's phase runs `kappa` radians ahead because it is sampled later, and with harmonics in the
+    /// channels. M stays as it is without: what both change of it is small, and no fixed point of the search depends on it.
     #[must_use]
-    pub fn skewed(
+    pub fn known(
         parameters: Parameters,
         theta: &Theta,
         y: [f64; 2],
         alpha_hat: f64,
-        kappa: f64,
+        (kappa, harmonics): (f64, &Harmonics),
     ) -> Self {
         let (sin_hat, cos_hat) = alpha_hat.sin_cos();
-        let late = parameters.corrected(theta, y);
+        let tan_beta = skew::tan_beta(parameters, theta);
+        let mut late = parameters.corrected(theta, y);
+        if !harmonics.is_none() {
+            late = harmonics.removed(late, (alpha_hat, alpha_hat + kappa), tan_beta);
+        }
         let [c, s] = if kappa == 0.0 {
             late
         } else {
-            skew::together(late, kappa, skew::tan_beta(parameters, theta))
+            skew::together(late, kappa, tan_beta)
         };
         Self {
             m: parameters.jacobian(theta, y),

@@ -10,6 +10,7 @@ use nalgebra::SMatrix;
 use super::completed::{CompletedConfig, Completion};
 use super::gate::{Gate, GateState, Window};
 use super::gradient::{Form, Observation, ResidualGradient};
+use super::harmonics::Harmonics;
 use super::hold::{Hold, HoldConfig, Verdict};
 use super::loops::{Loop, LoopConfig};
 use super::recursive::{LeastSquaresStart, StartConfig};
@@ -70,6 +71,8 @@ pub struct Config {
     pub tracking: LoopConfig,
     /// The sine is sampled so much later than the cosine, seconds; 0 in the paper.
     pub skew: f64,
+    /// What stands in the channels beside the paper's signals; none there.
+    pub harmonics: Harmonics,
     /// The search.
     pub search: Search,
     /// γ.
@@ -93,6 +96,7 @@ impl Config {
             theta: parameters.nominal(1.0),
             tracking,
             skew: 0.0,
+            harmonics: Harmonics::NONE,
             search: Search::Residual(Form::Final),
             gamma: Gamma::constant(gamma),
             gate: Gate::EverySample,
@@ -227,7 +231,7 @@ impl Reference {
         let locked = self.gate.locked();
         let open = open && self.free(seen.rho, locked);
         let gamma = self.gamma();
-        let estimate = self.go_on([y_c, y_s], &seen, open.then_some(&gamma), locked);
+        let estimate = self.go_on(&seen, open.then_some(&gamma), locked);
         self.watch(&seen);
         Estimate { locked, ..estimate }
     }
@@ -242,7 +246,7 @@ impl Reference {
         complete: bool,
     ) -> Estimate {
         let seen = self.observe([y_c, y_s]);
-        self.go_on([y_c, y_s], &seen, gamma, complete)
+        self.go_on(&seen, gamma, complete)
     }
 
     /// What is known of the next sample before it comes: e and ρ are not, and are 0.
@@ -291,16 +295,11 @@ impl Reference {
         } else {
             0.0
         };
-        Observation::skewed(parameters, &self.theta, y, phase, kappa)
+        let known = (kappa, &self.config.harmonics);
+        Observation::known(parameters, &self.theta, y, phase, known)
     }
 
-    fn go_on(
-        &mut self,
-        y: [f64; 2],
-        seen: &Observation,
-        gamma: Option<&Steps>,
-        complete: bool,
-    ) -> Estimate {
+    fn go_on(&mut self, seen: &Observation, gamma: Option<&Steps>, complete: bool) -> Estimate {
         let theta = self.theta;
         let estimate = Estimate {
             e: seen.e,
@@ -315,7 +314,7 @@ impl Reference {
             Searching::Residual(gradient) => along(gradient.step(seen)),
             // A closed gate takes no sample into the sum.
             Searching::SumOfSquares(_) if gamma.is_none() => Theta::zeros(),
-            Searching::SumOfSquares(sum) => along(sum.step(parameters, &theta, y)),
+            Searching::SumOfSquares(sum) => along(sum.step_of(&seen.m, seen.corrected)),
             Searching::Completed(completion) => {
                 let alpha_hat = estimate.alpha_hat;
                 let missing = completion.step(parameters, &theta, seen, alpha_hat, complete);

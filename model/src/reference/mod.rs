@@ -15,6 +15,7 @@
 //! | 5.5, (8) to (11) and the final form | [`gradient`] |
 //! | what the paper lacks: the direction that no radius shows | [`completed`] |
 //! | a start within two periods | [`recursive`] |
+//! | harmonics of the scale period | [`harmonics`] |
 //! | the sine sampled later than the cosine | [`skew`] |
 //! | when to calibrate, how to start | [`gate`], [`hold`], [`start`] |
 //! | all of it together | [`interpolator`] |
@@ -29,6 +30,7 @@ pub mod extremes;
 pub mod from_spec;
 pub mod gate;
 pub mod gradient;
+pub mod harmonics;
 pub mod heydemann;
 pub mod hold;
 pub mod interpolator;

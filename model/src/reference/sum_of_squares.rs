@@ -1,13 +1,20 @@
 //! Sections 5.2 to 5.4: the gradient search that eliminates α by c² + s² = 1. No loop is needed for it.
 
-use super::{Parameters, Theta};
+use super::{Jacobian, Parameters, Theta};
 
 /// ∇ε² of one sample: 4 MᵀMΘ (ΘᵀMᵀMΘ − 1), where ε = |MΘ|² − 1. In the Chebyshev sets M is the derivative and MΘ the
 /// corrected pair.
 #[must_use]
 pub fn gradient(parameters: Parameters, theta: &Theta, y: [f64; 2]) -> Theta {
-    let corrected = nalgebra::Vector2::from(parameters.corrected(theta, y));
-    let m = parameters.jacobian(theta, y);
+    gradient_of(
+        &parameters.jacobian(theta, y),
+        parameters.corrected(theta, y),
+    )
+}
+
+/// The same of M and of the corrected pair.
+fn gradient_of(m: &Jacobian, corrected: [f64; 2]) -> Theta {
+    let corrected = nalgebra::Vector2::from(corrected);
     m.transpose() * corrected * (4.0 * (corrected.norm_squared() - 1.0))
 }
 
@@ -57,7 +64,15 @@ impl SumOfSquares {
 
     /// Takes a sample; ∇J where an update is due, zero otherwise.
     pub fn step(&mut self, parameters: Parameters, theta: &Theta, y: [f64; 2]) -> Theta {
-        let gradient = gradient(parameters, theta, y);
+        self.step_of(
+            &parameters.jacobian(theta, y),
+            parameters.corrected(theta, y),
+        )
+    }
+
+    /// The same of M and of a pair from which more than Θ has been taken.
+    pub(super) fn step_of(&mut self, m: &Jacobian, corrected: [f64; 2]) -> Theta {
+        let gradient = gradient_of(m, corrected);
         match self.smoothing {
             Smoothing::Forgetting { lambda } => {
                 self.sum = gradient + self.sum * lambda;

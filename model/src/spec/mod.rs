@@ -1,7 +1,9 @@
 //! `design.toml`: what the user asks for, in physical units.
 
+mod correction;
 mod read;
 
+pub use correction::{Correction, Harmonic};
 pub use read::{SpecError, keys, line_of_field};
 
 use serde::{Deserialize, Serialize};
@@ -222,23 +224,6 @@ impl Calibration {
     }
 }
 
-/// `[correction]`
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Correction {
-    /// sin is sampled so much later than cos, seconds; negative: earlier. 0: at the same instant, and the chip is the one
-    /// without this correction.
-    #[serde(default)]
-    pub channel_skew_s: f64,
-}
-
-impl Correction {
-    /// Nothing to correct.
-    #[must_use]
-    pub fn is_none(&self) -> bool {
-        self.channel_skew_s == 0.0
-    }
-}
-
 /// The gradient searches of the paper.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -378,6 +363,9 @@ pub struct Overrides {
     /// Rows of the quarter-wave table: 2^`sine_rows_log2`.
     #[serde(default)]
     pub sine_rows_log2: Option<u32>,
+    /// Rows of the table of harmonics: 2^`harmonic_rows_log2`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub harmonic_rows_log2: Option<u32>,
     /// Fraction bits of the parameter accumulators.
     #[serde(default)]
     pub accumulator_fraction: Option<u32>,

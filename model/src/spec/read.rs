@@ -83,7 +83,17 @@ const KEYS: &[(&str, &[&str])] = &[
             "hold_residual",
         ],
     ),
-    ("correction", &["channel_skew_s"]),
+    ("correction", &["channel_skew_s", "harmonics"]),
+    (
+        "correction.harmonics",
+        &[
+            "order",
+            "amplitude_cos",
+            "phase_cos",
+            "amplitude_sin",
+            "phase_sin",
+        ],
+    ),
     ("accuracy", &["rms_periods", "arithmetic_share"]),
     ("chip", &["multipliers", "clock_hz", "count_bits"]),
     (
@@ -93,6 +103,7 @@ const KEYS: &[(&str, &[&str])] = &[
             "phase_bits",
             "sine_phase_bits",
             "sine_rows_log2",
+            "harmonic_rows_log2",
             "accumulator_fraction",
         ],
     ),
@@ -162,14 +173,24 @@ fn plain(message: &str) -> String {
 fn unknown_keys(table: &Table, text: &str, file: &str) -> Result<(), SpecError> {
     check(table.keys().map(String::as_str), TOP, None, text, file)?;
     for (section, value) in table {
-        if let (Some(names), Value::Table(inner)) = (known(section), value) {
-            check(
-                inner.keys().map(String::as_str),
-                names,
-                Some(section),
-                text,
-                file,
-            )?;
+        let (Some(names), Value::Table(inner)) = (known(section), value) else {
+            continue;
+        };
+        let of = |inner: &Table, names: &[&str], section: &str| {
+            let keys = inner.keys().map(String::as_str);
+            check(keys, names, Some(section), text, file)
+        };
+        of(inner, names, section)?;
+        for (key, value) in inner {
+            let list = format!("{section}.{key}");
+            let (Some(names), Value::Array(entries)) = (known(&list), value) else {
+                continue;
+            };
+            for (n, entry) in (1..).zip(entries) {
+                if let Value::Table(entry) = entry {
+                    of(entry, names, &format!("{list}[{n}]"))?;
+                }
+            }
         }
     }
     Ok(())
@@ -205,29 +226,39 @@ fn check<'a>(
     })
 }
 
-/// The line of a `design.toml`, counted from 1, that gives `field` (`loop.type`, say); `None` where none does.
+/// The line of a `design.toml`, counted from 1, that gives `field` (`loop.type`, say, or `correction.harmonics[2].order` in
+/// the second of them); `None` where none does.
 #[must_use]
 pub fn line_of_field(text: &str, field: &str) -> Option<usize> {
-    let (section, key) = match field.split_once('.') {
+    let (section, key) = match field.rsplit_once('.') {
         Some((section, key)) => (Some(section), key),
         None => (None, field),
     };
     let line = line_of(text, section, key);
     let there = text.lines().nth(line - 1)?.trim();
-    there.starts_with(key).then_some(line)
+    let header = there.trim_matches(['[', ']']).trim() == field;
+    (header || there.starts_with(key)).then_some(line)
 }
 
 /// The line that defines `key` in `section`; 1 if it cannot be told (a dotted key, say).
 fn line_of(text: &str, section: Option<&str>, key: &str) -> usize {
+    let full = section.map_or_else(|| key.to_owned(), |s| format!("{s}.{key}"));
     let mut current: Option<String> = None;
+    let mut entries: Vec<&str> = vec![];
     for (number, line) in text.lines().enumerate() {
         let line = line.trim();
         if let Some(header) = line.strip_prefix('[') {
             let name = header.trim_matches(['[', ']']).trim();
-            if section.is_none() && name == key {
+            if name == full {
                 return number + 1;
             }
-            current = Some(name.to_owned());
+            current = Some(if header.starts_with('[') {
+                entries.push(name);
+                let n = entries.iter().filter(|e| **e == name).count();
+                format!("{name}[{n}]")
+            } else {
+                name.to_owned()
+            });
         } else if current.as_deref() == section && line.starts_with(key) {
             return number + 1;
         }

@@ -92,6 +92,7 @@ fn reference(design: &Design, registers: &State<f64>, position: f64) -> Referenc
         // They stand at their nominal values where the comparison begins, and may go as far as their words.
         bound: Theta::from_fn(|i, _| design.structure.formats.deviation[i].format.max()),
         skew: spec.correction.channel_skew_s,
+        harmonics: from_spec::harmonics(spec),
         search: match spec.calibration.parameters {
             0 => Search::None,
             _ => Search::Residual(Form::Final),

@@ -50,7 +50,16 @@ impl WorstCase {
         let skew = design.skew.map_or(0.0, |skew| {
             skew.sine_error_max + 2.0 * half_lsb + half_bit(f.skew.format.fraction)
         });
-        let rho = half_lsb + 2f64.sqrt() * (RADIUS * sine + corrected) + skew;
+        // What table and series of the harmonics leave; each channel rounded twice, and the sine twice more behind the phase.
+        let harmonics = design.harmonics.map_or(0.0, |harmonics| {
+            let list = &design.spec.correction.harmonics;
+            let steepest = list
+                .iter()
+                .map(|h| f64::from(h.order) * h.amplitude_cos.max(h.amplitude_sin));
+            let phase = steepest.sum::<f64>() * TAU * half_bit(words.sine_phase_bits);
+            harmonics.pair_error_max + harmonics.interpolation_max + phase + 3.5 * half_lsb
+        });
+        let rho = half_lsb + 2f64.sqrt() * (RADIUS * sine + corrected + harmonics) + skew;
         // Coefficients of `width` bits; they are multiplied by e, and a and a + b each contribute.
         let width = words.signal_fraction as i32 + 2;
         let coefficients = 2.0 * ERROR * 0.5f64.powi(width - 1);

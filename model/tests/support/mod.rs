@@ -7,7 +7,7 @@ pub(crate) mod shipped;
 #[allow(unused_imports, reason = "each test binary uses its own part")]
 pub(crate) use shipped::optical;
 
-use nonius_model::spec::Spec;
+use nonius_model::spec::{Harmonic, Spec};
 
 /// Equation (4), as fractions of the ADC's range, and the ADC.
 pub(crate) struct Encoder {
@@ -15,6 +15,8 @@ pub(crate) struct Encoder {
     pub(crate) offset: [f64; 2],
     pub(crate) beta: f64,
     pub(crate) bits: u32,
+    /// Those that the design knows of.
+    pub(crate) harmonics: Vec<Harmonic>,
 }
 
 impl Encoder {
@@ -25,6 +27,7 @@ impl Encoder {
             offset: [0.0, 0.0],
             beta: 0.0,
             bits: spec.adc.bits,
+            harmonics: spec.correction.harmonics.clone(),
         }
     }
 
@@ -35,6 +38,7 @@ impl Encoder {
             offset: [0.08 * a, -0.07 * a],
             beta: 4f64.to_radians(),
             bits: spec.adc.bits,
+            harmonics: spec.correction.harmonics.clone(),
         }
     }
 
@@ -45,9 +49,12 @@ impl Encoder {
     /// Each channel at an angle of its own, as where they are sampled one after the other.
     fn volts_of(&self, turns: [f64; 2]) -> [f64; 2] {
         let [cos, sin] = turns.map(|turns| turns * std::f64::consts::TAU);
+        let more = |which: usize, alpha: f64| -> f64 {
+            self.harmonics.iter().map(|h| h.at(which, alpha).0).sum()
+        };
         [
-            self.amplitude[0] * cos.cos() + self.offset[0],
-            self.amplitude[1] * (sin - self.beta).sin() + self.offset[1],
+            self.amplitude[0] * (cos.cos() + more(0, cos)) + self.offset[0],
+            self.amplitude[1] * ((sin - self.beta).sin() + more(1, sin)) + self.offset[1],
         ]
     }
 

@@ -1,0 +1,155 @@
+//! What was found to repeat with the scale period, as the chip's table of harmonics has it.
+
+use std::collections::BTreeMap;
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+use nonius_diagnosis::{Diagnosis, Finding};
+use nonius_model::design::ORDER_MAX;
+use nonius_model::spec::Harmonic;
+
+/// Phase by which a harmonic may miss that of a bend, radians.
+const PHASE: f64 = 0.3;
+
+/// A channel with less than this part of the other's amplitude does not say whether a harmonic is a bend.
+const FAINT: f64 = 0.2;
+
+/// The largest share of an amplitude that its standard error may have: beyond it a correction may add more than it takes.
+const UNSURE: f64 = 1.0 / 3.0;
+
+/// Real and imaginary part of amplitude · exp(i phase), of the cosine and of the sine channel.
+type Pair = [[f64; 2]; 2];
+
+/// Amplitude and phase.
+type Wave = (f64, f64);
+
+/// Largest coefficient of T2 or T3 in either channel, as a fraction of the amplitude, where the finding is a bend. A
+/// harmonic of order 2 or 3 is one where its phase is that of the channel's power: the chip mends both alike.
+pub(super) fn bend(finding: &Finding, beta: f64) -> Option<f64> {
+    let of = |name: &str| finding.parameter(name);
+    let largest = |a: Option<f64>, b: Option<f64>| Some(a?.abs().max(b?.abs()));
+    match finding.cause.as_str() {
+        // u² = (1 + T2)/2 and u³ = (3 u + T3)/4.
+        "even_nonlinearity" => Some(largest(of("k_cos"), of("k_sin"))? / 2.0),
+        "odd_nonlinearity" => Some(largest(of("k_cos"), of("k_sin"))? / 4.0),
+        "spatial_harmonic" => {
+            let order = of("order")?;
+            if order != 2.0 && order != 3.0 {
+                return None;
+            }
+            let (cos, sin) = (of("amplitude_cos")?, of("amplitude_sin")?);
+            let fits = |amplitude: f64, phase: f64, of_bend: f64| {
+                let off = phase - of_bend;
+                let off = off - PI * (off / PI).round();
+                off.abs() < PHASE || amplitude < FAINT * cos.max(sin)
+            };
+            let bent = fits(cos, of("phase_cos")?, 0.0)
+                && fits(sin, of("phase_sin")?, sine_phase(order, beta));
+            bent.then_some(cos.max(sin))
+        }
+        _ => None,
+    }
+}
+
+/// Phase of T2 and T3 of the sine channel: they are −cos 2 and −sin 3 of the angle less the phase error.
+fn sine_phase(order: f64, beta: f64) -> f64 {
+    let quarter = if order == 3.0 { FRAC_PI_2 } else { 0.0 };
+    quarter - order * beta
+}
+
+/// What the finding adds to the channels, by order; nothing where it does not repeat with the scale period.
+fn waves(finding: &Finding, beta: f64, whole_revolution: bool) -> Vec<(u32, Wave, Wave)> {
+    let of = |name: &str| finding.parameter(name).unwrap_or(0.0);
+    let order = of("order");
+    match finding.cause.as_str() {
+        "spatial_harmonic" => vec![(
+            order as u32,
+            (of("amplitude_cos"), of("phase_cos")),
+            (of("amplitude_sin"), of("phase_sin")),
+        )],
+        // cos² = (1 + cos 2)/2, sin² = (1 − cos 2)/2.
+        "even_nonlinearity" => vec![(
+            2,
+            (of("k_cos") / 2.0, 0.0),
+            (-of("k_sin") / 2.0, sine_phase(2.0, beta)),
+        )],
+        // cos³ = (3 cos + cos 3)/4, sin³ = (3 sin − sin 3)/4.
+        "odd_nonlinearity" => vec![(
+            3,
+            (of("k_cos") / 4.0, 0.0),
+            (of("k_sin") / 4.0, sine_phase(3.0, beta)),
+        )],
+        // The angle is off by ε = amplitude · cos(order α + phase): −ε sin α and ε cos α.
+        "graduation_error" if whole_revolution && order >= 3.0 => {
+            let (half, phase) = (of("amplitude") / 2.0, of("phase"));
+            [(1.0, FRAC_PI_2), (-1.0, -FRAC_PI_2)]
+                .map(|(beside, turned)| {
+                    let order = (order + beside) as u32;
+                    (order, (half, phase + turned), (half, phase))
+                })
+                .into()
+        }
+        _ => vec![],
+    }
+}
+
+/// Amplitudes of the finding with standard errors that are too large for a correction.
+fn unsure(finding: &Finding) -> bool {
+    let amplitudes = finding
+        .parameters
+        .iter()
+        .filter(|p| p.unit != "1" && !p.name.starts_with("phase"));
+    let (value, error) = amplitudes.fold((0.0f64, 0.0f64), |(value, error), p| {
+        (value.hypot(p.value), error.hypot(p.std_error))
+    });
+    error.is_nan() || value.is_nan() || error > UNSURE * value
+}
+
+/// The table for what was found and what no bend mends, by order; `bends`: the design has parameters for those. With it what
+/// was left out because it is not measured well enough.
+pub(super) fn table(found: &Diagnosis, bends: bool) -> (Vec<Harmonic>, Vec<String>) {
+    let beta = found.context.ellipse.beta;
+    let whole = found.context.periods_per_revolution == Some(1);
+    let mut orders: BTreeMap<u32, Pair> = BTreeMap::new();
+    let mut left_out = vec![];
+    for finding in &found.findings {
+        let waves = waves(finding, beta, whole);
+        if waves.is_empty() || (bends && bend(finding, beta).is_some()) {
+            continue;
+        }
+        if unsure(finding) {
+            left_out.push(format!(
+                "{} is not in the table of harmonics: its standard error is more than a third of it",
+                finding.cause
+            ));
+            continue;
+        }
+        for (order, cos, sin) in waves {
+            if !(2..=ORDER_MAX).contains(&order) {
+                continue;
+            }
+            let sum = orders.entry(order).or_default();
+            for (sum, (amplitude, phase)) in sum.iter_mut().zip([cos, sin]) {
+                sum[0] += amplitude * phase.cos();
+                sum[1] += amplitude * phase.sin();
+            }
+        }
+    }
+    let list = orders.into_iter().map(|(order, pair)| {
+        let [(amplitude_cos, phase_cos), (amplitude_sin, phase_sin)] =
+            pair.map(|[re, im]| (short(re.hypot(im), 1e-6), short(im.atan2(re) % TAU, 1e-4)));
+        Harmonic {
+            order,
+            amplitude_cos,
+            phase_cos,
+            amplitude_sin,
+            phase_sin,
+        }
+    });
+    (list.collect(), left_out)
+}
+
+/// Rounded to a multiple of `step`, as short as it can be written.
+fn short(value: f64, step: f64) -> f64 {
+    let per_one = (1.0 / step).round();
+    (value * per_one).round() / per_one + 0.0
+}

@@ -1,0 +1,148 @@
+//! Whether what changes with time does so in steps, as a gain that is switched or a contact that gives does, and not slowly,
+//! as a drift: a polynomial of time follows a few steps nearly as well. Steps at the best places, found by dynamic
+//! programming over stretches of the recording, stand against straight lines between evenly spaced knots; the numbers of
+//! either are paid for (Bayesian information criterion). Whatever shape a slow change has, lines follow it with fewer
+//! numbers than steps do.
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::context::Context;
+use crate::generic::hat;
+use crate::solve::Normal;
+
+/// Stretches of the recording between which a step may stand.
+const STRETCHES: usize = 200;
+/// Most steps.
+const MOST: usize = 24;
+/// Knots of the lines: as few as follow it are the best.
+const KNOTS: [usize; 8] = [2, 3, 4, 6, 8, 12, 20, 40];
+/// Numbers of a step, beside its place, and of a knot.
+const CHANNELS: usize = 2;
+
+/// What changes.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum Change {
+    Gains,
+    Offsets,
+}
+
+/// Normal equations of the amounts of both channels.
+type Sums = [f64; 5];
+
+/// What a radial residual holds of both channels, in units of the noise.
+struct Changing<'a> {
+    context: &'a Context,
+    radial: &'a [f64],
+    /// Rms.
+    noise: f64,
+    change: Change,
+}
+
+/// Whether lines explain as much of a radial residual, with noise of that rms, as steps do.
+pub(crate) fn slowly(context: &Context, radial: &[f64], noise: f64, change: Change) -> bool {
+    let count = STRETCHES.min(radial.len() / 8);
+    if count < 2 || noise <= 0.0 {
+        return true;
+    }
+    let changing = Changing {
+        context,
+        radial,
+        noise,
+        change,
+    };
+    let stretches: Vec<Sums> = (0..count)
+        .map(|i| changing.sums(i * radial.len() / count..(i + 1) * radial.len() / count))
+        .collect();
+    // Of a number.
+    let price = 0.5 * (radial.len() as f64).ln();
+    let lines = KNOTS.into_iter().map(|knots| changing.lines(knots, price));
+    let steps = steps(&stretches, CHANNELS as f64 * price + (count as f64).ln());
+    lines.fold(f64::MIN, f64::max) >= steps
+}
+
+impl Changing<'_> {
+    /// What amounts of one make of a sample, and the sample.
+    fn sample(&self, k: usize) -> [f64; 3] {
+        let (cos, sin) = (self.context.cos[k], self.context.sin[k]);
+        let [c, s] = match self.change {
+            Change::Gains => [cos * cos, sin * sin],
+            Change::Offsets => [cos, sin],
+        };
+        [c, s, self.radial[k] / self.noise].map(|v| v * self.context.weight[k])
+    }
+
+    fn sums(&self, of: std::ops::Range<usize>) -> Sums {
+        let mut sums = Sums::default();
+        for k in of {
+            let [c, s, r] = self.sample(k);
+            let terms = [c * c, c * s, s * s, r * c, r * s];
+            sums.iter_mut().zip(terms).for_each(|(t, term)| *t += term);
+        }
+        sums
+    }
+
+    /// Log-likelihood that lines between so many knots explain, each number beyond the first of a channel at its price.
+    fn lines(&self, knots: usize, price: f64) -> f64 {
+        let m = CHANNELS * knots;
+        let (mut gram, mut right) = (DMatrix::zeros(m, m), DVector::zeros(m));
+        let last = (self.radial.len() - 1) as f64;
+        for k in 0..self.radial.len() {
+            let [c, s, r] = self.sample(k);
+            let when = k as f64 / last;
+            let first = ((when * (knots - 1) as f64) as usize).min(knots - 2);
+            // Two knots are near, each with both channels.
+            let near = [first, first + 1].map(|i| hat(knots, i, when));
+            let all = [near[0] * c, near[0] * s, near[1] * c, near[1] * s];
+            for (i, a) in all.iter().enumerate() {
+                right[CHANNELS * first + i] += a * r;
+                for (j, b) in all.iter().enumerate() {
+                    gram[(CHANNELS * first + i, CHANNELS * first + j)] += a * b;
+                }
+            }
+        }
+        // Knots while the scale stands still have no numbers.
+        let lines = Normal::new(gram, right, 0.0).solve();
+        lines.gain() - price * (lines.rank as f64 - CHANNELS as f64)
+    }
+}
+
+/// Log-likelihood that steps between stretches explain, each at its price; nothing where more of them would explain more
+/// still: a stair that follows a curve has no end.
+fn steps(stretches: &[Sums], price: f64) -> f64 {
+    let count = stretches.len();
+    let mut total = Sums::default();
+    let mut up_to = vec![total];
+    for sums in stretches {
+        total.iter_mut().zip(sums).for_each(|(t, s)| *t += s);
+        up_to.push(total);
+    }
+    let within =
+        |from: usize, to: usize| explained(std::array::from_fn(|j| up_to[to][j] - up_to[from][j]));
+    let one: Vec<Vec<f64>> = (0..count)
+        .map(|from| (from + 1..=count).map(|to| within(from, to)).collect())
+        .collect();
+    // The most that so many steps explain up to the end of each stretch.
+    let mut best: Vec<f64> = one[0].clone();
+    let (mut most, mut enough) = (best[count - 1], 0);
+    for steps in 1..=MOST.min(count - 1) {
+        best = (0..count)
+            .map(|end| {
+                let with = (0..end).map(|before| best[before] + one[before + 1][end - before - 1]);
+                with.fold(best[end], f64::max)
+            })
+            .collect();
+        let gain = best[count - 1] - price * steps as f64;
+        if gain > most {
+            (most, enough) = (gain, steps);
+        }
+    }
+    if enough < MOST { most } else { f64::MIN }
+}
+
+/// Gain in log-likelihood of the best amounts.
+fn explained([cc, cs, ss, rc, rs]: Sums) -> f64 {
+    let ridge = 1e-6 * (cc + ss) + f64::MIN_POSITIVE;
+    let (cc, ss) = (cc + ridge, ss + ridge);
+    let determinant = cc * ss - cs * cs;
+    0.5 * (ss * rc * rc - 2.0 * cs * rc * rs + cc * rs * rs) / determinant
+}

@@ -1,0 +1,237 @@
+//! Whether slow noise of the channels jumps between two levels, as popcorn noise and stray light do. Its spectrum can be
+//! that of flicker noise; its likelihood is another: the levels are a hidden Markov chain (Baum and Welch) that shows in
+//! the radius, r = cₛ cos α + dₛ sin α in state s, beside white noise.
+//!
+//! It is no cause of the catalogue. It is fitted so that flicker noise is not named for it.
+
+use crate::context::Context;
+
+/// Most samples that are looked at.
+const ENOUGH: usize = 60_000;
+/// Samples of the stretches whose levels a fit starts from; about as long as it stays.
+const STRETCHES: [usize; 3] = [16, 64, 256];
+/// Steps of a fit.
+const STEPS: usize = 12;
+/// Numbers of the model: two levels of two channels, two rates, beside the noise.
+const FREEDOM: f64 = 6.0;
+
+/// Offsets of both channels.
+type Level = [f64; 2];
+
+/// Two levels, the chance to leave either, variance of the noise.
+struct Chain {
+    level: [Level; 2],
+    leave: [f64; 2],
+    variance: f64,
+}
+
+/// What two levels make of a radial residual.
+pub(crate) struct TwoLevels {
+    /// Log-likelihood that they explain beyond white noise, their numbers paid for.
+    pub(crate) gain: f64,
+    /// What they leave of the residual.
+    pub(crate) left: Vec<f64>,
+}
+
+/// The best two levels; none where they explain nothing.
+pub(crate) fn two_levels(context: &Context, radial: &[f64]) -> Option<TwoLevels> {
+    let n = radial.len().min(ENOUGH);
+    let part = &radial[..n];
+    let white = part.iter().map(|r| r * r).sum::<f64>() / n.max(1) as f64;
+    if white.is_nan() || white <= 0.0 {
+        return None;
+    }
+    let of_white = -0.5 * n as f64 * (white.ln() + 1.0);
+    let price = 0.5 * FREEDOM * (n as f64).ln();
+    let (likelihood, chain) = STRETCHES
+        .into_iter()
+        .filter_map(|length| Chain::start(context, part, length, white))
+        .filter_map(|chain| chain.fitted(context, part))
+        .max_by(|a, b| a.0.total_cmp(&b.0))?;
+    let gain = (likelihood - of_white - price) / n as f64 * radial.len() as f64;
+    (gain > 0.0).then(|| TwoLevels {
+        gain,
+        left: chain.step(context, radial).left,
+    })
+}
+
+/// What a step of a fit says.
+struct Step {
+    /// Log-likelihood of the chain before it.
+    likelihood: f64,
+    /// The chain after it.
+    next: Chain,
+    /// What the chain before it leaves.
+    left: Vec<f64>,
+}
+
+/// Least squares of r = c cos α + d sin α: cos², cos sin, sin², r cos, r sin.
+#[derive(Clone, Copy, Default)]
+struct Sums([f64; 5]);
+
+impl Sums {
+    fn add(&mut self, cos: f64, sin: f64, r: f64, weight: f64) {
+        let terms = [cos * cos, cos * sin, sin * sin, r * cos, r * sin];
+        for (sum, term) in self.0.iter_mut().zip(terms) {
+            *sum += weight * term;
+        }
+    }
+
+    /// The level; what is not seen, at standstill, is zero.
+    fn level(&self) -> Level {
+        let [cc, cs, ss, rc, rs] = self.0;
+        // A little of a level of zero keeps it finite.
+        let ridge = 1e-6 * (cc + ss) + f64::MIN_POSITIVE;
+        let (cc, ss) = (cc + ridge, ss + ridge);
+        let determinant = cc * ss - cs * cs;
+        [
+            (ss * rc - cs * rs) / determinant,
+            (cc * rs - cs * rc) / determinant,
+        ]
+    }
+}
+
+impl Chain {
+    /// Levels from stretches of the recording, split in two along the line on which they differ most.
+    fn start(context: &Context, radial: &[f64], length: usize, white: f64) -> Option<Self> {
+        let levels: Vec<Level> = (0..radial.len() / length)
+            .map(|i| {
+                let mut sums = Sums::default();
+                let own = i * length..(i + 1) * length;
+                for (k, r) in own.clone().zip(&radial[own]) {
+                    sums.add(context.cos[k], context.sin[k], *r, context.weight[k]);
+                }
+                // Where only one offset is seen, the other does not count.
+                let ridge = 0.1 * length as f64;
+                sums.0[0] += ridge;
+                sums.0[2] += ridge;
+                sums.level()
+            })
+            .collect();
+        let count = levels.len() as f64;
+        let mean: Level = [0, 1].map(|i| levels.iter().map(|l| l[i]).sum::<f64>() / count);
+        let moment = |i: usize, j: usize| -> f64 {
+            levels
+                .iter()
+                .map(|l| (l[i] - mean[i]) * (l[j] - mean[j]))
+                .sum()
+        };
+        let turn = 0.5 * (2.0 * moment(0, 1)).atan2(moment(0, 0) - moment(1, 1));
+        let along = |l: &Level| (l[0] - mean[0]) * turn.cos() + (l[1] - mean[1]) * turn.sin();
+        let spread = (levels.iter().map(|l| along(l).powi(2)).sum::<f64>() / count).sqrt();
+        // Where one side is rare it is further away.
+        let skew = levels
+            .iter()
+            .map(|l| (along(l) / spread).powi(3))
+            .sum::<f64>()
+            / count;
+        let far = 0.5 * (skew + (skew * skew + 4.0).sqrt());
+        let at = |by: f64| [mean[0] + by * turn.cos(), mean[1] + by * turn.sin()];
+        let share = 1.0 / (1.0 + far * far);
+        let rate = 0.5 / length as f64;
+        (spread > 0.0 && far.is_finite()).then(|| Self {
+            level: [at(-spread / far), at(spread * far)],
+            leave: [rate * share, rate * (1.0 - share)],
+            variance: white,
+        })
+    }
+
+    /// The best chain near, and its log-likelihood.
+    fn fitted(self, context: &Context, radial: &[f64]) -> Option<(f64, Self)> {
+        let mut best: Option<(f64, Self)> = None;
+        let mut now = self;
+        for _ in 0..STEPS {
+            let step = now.step(context, radial);
+            if !step.likelihood.is_finite() {
+                break;
+            }
+            if best.as_ref().is_none_or(|b| step.likelihood > b.0) {
+                best = Some((step.likelihood, now));
+            }
+            now = step.next;
+        }
+        best
+    }
+
+    /// What each state makes of a sample, up to a common factor.
+    fn density(&self, cos: f64, sin: f64, r: f64) -> [f64; 2] {
+        self.level.map(|[c, d]| {
+            let off = r - c * cos - d * sin;
+            (-0.5 * off * off / self.variance)
+                .exp()
+                .max(f64::MIN_POSITIVE)
+        })
+    }
+
+    /// A step of expectation and maximisation.
+    fn step(&self, context: &Context, radial: &[f64]) -> Step {
+        let n = radial.len();
+        let stay = self.leave.map(|l| 1.0 - l);
+        let mut now = [0.5, 0.5];
+        let mut forward = Vec::with_capacity(n);
+        let mut likelihood = -0.5 * n as f64 * self.variance.ln();
+        for (k, r) in radial.iter().enumerate() {
+            let density = self.density(context.cos[k], context.sin[k], *r);
+            let come = [
+                now[0] * stay[0] + now[1] * self.leave[1],
+                now[1] * stay[1] + now[0] * self.leave[0],
+            ];
+            let both = [come[0] * density[0], come[1] * density[1]];
+            let total = both[0] + both[1];
+            likelihood += total.ln();
+            now = both.map(|b| b / total);
+            forward.push(now);
+        }
+        let (mut sums, mut left, mut stood) = ([Sums::default(); 2], [0.0; 2], [0.0; 2]);
+        let mut back = [1.0, 1.0];
+        let mut off = radial.to_vec();
+        for k in (0..n).rev() {
+            let (cos, sin, r) = (context.cos[k], context.sin[k], radial[k]);
+            let both = [forward[k][0] * back[0], forward[k][1] * back[1]];
+            let total = both[0] + both[1];
+            for ((sums, share), [c, d]) in sums.iter_mut().zip(both).zip(self.level) {
+                sums.add(cos, sin, r, share / total);
+                off[k] -= share / total * (c * cos + d * sin);
+            }
+            let Some(before) = k.checked_sub(1).map(|b| forward[b]) else {
+                break;
+            };
+            let density = self.density(cos, sin, r);
+            let on = [density[0] * back[0], density[1] * back[1]];
+            let moved = [
+                before[0] * self.leave[0] * on[1],
+                before[1] * self.leave[1] * on[0],
+            ];
+            let stood_still = [before[0] * stay[0] * on[0], before[1] * stay[1] * on[1]];
+            let all = moved[0] + moved[1] + stood_still[0] + stood_still[1];
+            for i in 0..2 {
+                left[i] += moved[i] / all;
+                stood[i] += stood_still[i] / all;
+            }
+            back = [
+                stay[0] * on[0] + self.leave[0] * on[1],
+                stay[1] * on[1] + self.leave[1] * on[0],
+            ];
+            let scale = back[0].max(back[1]).max(f64::MIN_POSITIVE);
+            back = back.map(|b| b / scale);
+        }
+        let level = sums.map(|s| s.level());
+        let explained: f64 = sums
+            .iter()
+            .zip(level)
+            .map(|(s, [c, d])| c * s.0[3] + d * s.0[4])
+            .sum();
+        let power: f64 = radial.iter().map(|r| r * r).sum();
+        let rate = |i: usize| (left[i] / (left[i] + stood[i])).clamp(1e-6, 0.5);
+        let next = Self {
+            level,
+            leave: [rate(0), rate(1)],
+            variance: ((power - explained) / n as f64).max(f64::MIN_POSITIVE),
+        };
+        Step {
+            likelihood,
+            next,
+            left: off,
+        }
+    }
+}
