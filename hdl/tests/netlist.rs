@@ -121,7 +121,7 @@ fn a_comparison_that_is_synthesised_wrong_is_seen() {
         let file = dir.join("rtl/optical.v");
         let text = fs::read_to_string(&file).expect("the chip");
         let wrong = text.replace(
-            "($signed(~rho_now[17:15]) < 3'sd1)",
+            "$signed(~rho_now[17:15]) < 3'sd1",
             "~($signed(rho_now[17:15]) < 3'sh6)",
         );
         assert_ne!(text, wrong);

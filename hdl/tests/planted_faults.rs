@@ -140,10 +140,10 @@ fn faults() -> Vec<Fault> {
             replaced(v, &["wire", " c_rounded ="], "c_exact[10]", "1'b0")
         }),
         fault("rounding of theta_1: cut off", |v| {
-            replaced(v, &["wire", " theta_1_rounded ="], "400 +", "000 +")
+            replaced(v, &["wire", " theta_1_rounded ="], "200 +", "000 +")
         }),
         fault("half of theta_1's last bit rounds down", |v| {
-            replaced(v, &["wire", " theta_1_rounded ="], "a000400 +", "a0003ff +")
+            replaced(v, &["wire", " theta_1_rounded ="], "5000200 +", "50001ff +")
         }),
         fault("half of theta_5's last bit rounds down", |v| {
             half_down(v, "theta_5")
@@ -165,14 +165,14 @@ fn faults() -> Vec<Fault> {
             replaced(v, &["wire", " s_now = "], &all, &kept)
         }),
         fault("saturation of theta_2: wraps", |v| {
-            let words = ["wire", " theta_2_deviation_next_now = "];
+            let words = ["wire", " theta_2_deviation_next_bits = "];
             let kept = between(v, &words, "? ", " :");
             let all = between(v, &words, "= ", ";");
             replaced(v, &words, &all, &kept)
         }),
         fault("saturation of theta_4: at the other end", |v| {
-            let words = ["wire", " theta_4_deviation_next_now = "];
-            replaced(v, &words, "{25{~", "{25{")
+            let words = ["wire", " theta_4_deviation_next_bits = "];
+            replaced(v, &words, "{24{~", "{24{")
         }),
         fault("sign extension of a product", |v| {
             let words = ["wire", " sin_magnitude_sum ="];

@@ -71,9 +71,10 @@ impl Range {
     }
 
     fn take(&mut self, now: [f64; 9]) {
-        for i in 0..9 {
-            self.low[i] = self.low[i].min(now[i]);
-            self.high[i] = self.high[i].max(now[i]);
+        let ends = self.low.iter_mut().zip(&mut self.high);
+        for ((low, high), now) in ends.zip(now) {
+            *low = low.min(now);
+            *high = high.max(now);
         }
     }
 

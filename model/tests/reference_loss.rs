@@ -33,7 +33,7 @@ fn around(spec: &Spec, fade: u32) -> [f64; 3] {
         let seen = reference.step(left * c + noise_c, left * s + noise_s);
         if k > lost - 100 * PERIOD && seen.updated {
             let signals = |alpha| MISCALIBRATED.signals(alpha);
-            let now = miscalibration(parameters, reference.theta(), &signals).1;
+            let now = miscalibration(parameters, reference.theta(), signals).1;
             let part = usize::from(k >= lost);
             worst[part] = worst[part].max(now);
             if k >= end - 10 * PERIOD {
