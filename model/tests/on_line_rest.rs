@@ -71,9 +71,9 @@ impl Range {
     }
 
     fn take(&mut self, now: [f64; 9]) {
-        for i in 0..9 {
-            self.low[i] = self.low[i].min(now[i]);
-            self.high[i] = self.high[i].max(now[i]);
+        for ((low, high), now) in self.low.iter_mut().zip(&mut self.high).zip(now) {
+            *low = low.min(now);
+            *high = high.max(now);
         }
     }
 
