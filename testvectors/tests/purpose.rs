@@ -6,13 +6,14 @@ mod shipped;
 use nonius_model::bits::Bits;
 use nonius_model::chip::Chip;
 use nonius_model::design::Design;
+use nonius_model::kernel::State;
 use nonius_testvectors::stimulus::{Stimulus, named};
 
 /// Samples of each, as `nonius build` writes them.
 const ROWS: usize = 2000;
 
 /// The registers after each sample.
-fn played(design: &Design, name: &str) -> Vec<nonius_model::kernel::State<Bits>> {
+fn played(design: &Design, name: &str) -> Vec<State<Bits>> {
     let stimuli = named(design, ROWS);
     let found = stimuli.iter().find(|s| s.name == name);
     let Stimulus { samples, .. } = found.expect("a stimulus");
@@ -60,5 +61,28 @@ fn the_creep_turns_the_direction() {
             |from: usize, to: usize| states[from..to].iter().filter(|s| s.direction).count();
         assert!(backwards(ROWS / 4, ROWS * 4 / 10) > ROWS / 10, "{name}");
         assert!(backwards(ROWS * 9 / 10, ROWS) < ROWS / 40, "{name}");
+    }
+}
+
+type Register = fn(&State<Bits>) -> Bits;
+const THETA: [Register; 4] = [
+    |s| s.theta_1_deviation,
+    |s| s.theta_2_deviation,
+    |s| s.theta_3_deviation,
+    |s| s.theta_4_deviation,
+];
+
+/// Offsets and gains of the optical chip, in which saturations are altered to see whether it shows, come to their bounds.
+#[test]
+fn the_bounds_are_met() {
+    let design = shipped::design("optical");
+    let states = played(&design, "bounds");
+    for (i, of) in THETA.iter().enumerate() {
+        let format = design.structure.formats.deviation[i].format;
+        let ends = [format.min_raw(), format.max_raw()];
+        let raw = |s| i128::from(of(s).raw(format.fraction));
+        let met = states.iter().filter(|s| ends.contains(&raw(s))).count();
+        println!("theta_{} at its bounds in {met} samples", i + 1);
+        assert!(met > 0, "theta_{} meets no bound", i + 1);
     }
 }
