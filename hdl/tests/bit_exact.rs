@@ -25,11 +25,11 @@ fn agrees(Variant { what, spec }: &Variant, rows: usize, options: &Options) {
     }
 }
 
-/// Nobody's linter has anything to say, without waivers: Verilator -Wall, Icarus -Wall, Yosys check. Of each kind of
-/// variant every other one; simulators warn below of the rest.
+/// Nobody's linter has anything to say, without waivers: Verilator -Wall, Icarus -Wall, Yosys check. Of all
+/// variants every third; what else a simulator warns of is seen below.
 #[test]
 fn variants_are_clean() {
-    let some: Vec<Variant> = variants::everything().into_iter().step_by(2).collect();
+    let some: Vec<Variant> = variants::everything().into_iter().step_by(3).collect();
     some.par_iter().for_each(|Variant { what, spec }| {
         let dir = tempfile::tempdir().expect("scratch folder");
         write(spec, 2, dir.path());
@@ -102,7 +102,9 @@ fn skews_in_icarus_and_verilator() {
 /// Two tables in a chip, one of them with words that have a sign.
 #[test]
 fn harmonics_in_icarus_and_verilator() {
-    variants::harmonics()
+    let harmonics = variants::harmonics();
+    harmonics
         .par_iter()
-        .for_each(|variant| agrees(variant, 120, &BOTH));
+        .enumerate()
+        .for_each(|(i, variant)| agrees(variant, 120, if i % 3 == 0 { &BOTH } else { &ICARUS }));
 }
