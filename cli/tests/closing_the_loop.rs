@@ -9,7 +9,6 @@ use std::f64::consts::TAU;
 use std::fmt::Write;
 use std::fs;
 use std::path::Path;
-use std::time::Duration;
 
 use nonius_hdl::progress::silent;
 use nonius_hdl::verify::{Options, verify};
@@ -156,12 +155,7 @@ fn closed(recording: &str, simulated: bool) -> Closed {
         let rows = recording.split_inclusive('\n').take(5 + PLAYED);
         fs::write(dir.join("head.csv"), rows.collect::<String>()).expect("its beginning");
         done(dir, &["build", design, "-o", "chip", "--play", "head.csv"]);
-        // As `nonius verify`, but however long a busy machine takes.
-        let options = Options {
-            time_limit: Some(Duration::from_secs(3600)),
-            ..Options::default()
-        };
-        let report = verify(dir.join("chip"), &options, &silent).expect("two simulators");
+        let report = verify(dir.join("chip"), &Options::PATIENT, &silent).expect("two simulators");
         assert!(report.passed && report.runs.len() == 2, "{report:#?}");
         let played = fs::read_to_string(dir.join("chip/vectors/recording.vec"));
         assert_eq!(

@@ -4,6 +4,7 @@
 //! expression per operation, the templates hold ports, resets, step counter, memories and the testbench. No number of
 //! the chip is computed here.
 
+mod condition;
 pub mod evaluate;
 mod expression;
 mod names;

@@ -95,9 +95,8 @@ impl Netlist {
             {
                 continue;
             }
-            w.coefficients();
-            let mut lines = expression::lines(w, id);
-            let with = w.coefficients().join(", ");
+            let (mut lines, with) = w.with_coefficients(|| expression::lines(w, id));
+            let with = with.join(", ");
             if let (Some(last), false) = (lines.last_mut(), with.is_empty()) {
                 *last += &format!(", with {with}");
             }

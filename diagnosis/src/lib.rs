@@ -21,6 +21,7 @@ mod library;
 mod lines;
 mod model;
 mod noise;
+mod pair;
 mod part;
 mod repair;
 mod report;

@@ -8,6 +8,7 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::context::Context;
 use crate::generic::hat;
+use crate::pair::PairSums;
 use crate::solve::Normal;
 
 /// Stretches of the recording between which a step may stand.
@@ -25,9 +26,6 @@ pub(crate) enum Change {
     Gains,
     Offsets,
 }
-
-/// Normal equations of the amounts of both channels.
-type Sums = [f64; 5];
 
 /// What a radial residual holds of both channels, in units of the noise.
 struct Changing<'a> {
@@ -50,7 +48,7 @@ pub(crate) fn slowly(context: &Context, radial: &[f64], noise: f64, change: Chan
         noise,
         change,
     };
-    let stretches: Vec<Sums> = (0..count)
+    let stretches: Vec<PairSums> = (0..count)
         .map(|i| changing.sums(i * radial.len() / count..(i + 1) * radial.len() / count))
         .collect();
     // Of a number.
@@ -71,12 +69,11 @@ impl Changing<'_> {
         [c, s, self.radial[k] / self.noise].map(|v| v * self.context.weight[k])
     }
 
-    fn sums(&self, of: std::ops::Range<usize>) -> Sums {
-        let mut sums = Sums::default();
+    fn sums(&self, of: std::ops::Range<usize>) -> PairSums {
+        let mut sums = PairSums::default();
         for k in of {
             let [c, s, r] = self.sample(k);
-            let terms = [c * c, c * s, s * s, r * c, r * s];
-            sums.iter_mut().zip(terms).for_each(|(t, term)| *t += term);
+            sums.add(c, s, r, 1.0);
         }
         sums
     }
@@ -108,16 +105,16 @@ impl Changing<'_> {
 
 /// Log-likelihood that steps between stretches explain, each at its price; nothing where more of them would explain more
 /// still: a stair that follows a curve has no end.
-fn steps(stretches: &[Sums], price: f64) -> f64 {
+fn steps(stretches: &[PairSums], price: f64) -> f64 {
     let count = stretches.len();
-    let mut total = Sums::default();
+    let mut total = PairSums::default();
     let mut up_to = vec![total];
     for sums in stretches {
-        total.iter_mut().zip(sums).for_each(|(t, s)| *t += s);
+        total += *sums;
         up_to.push(total);
     }
-    let within =
-        |from: usize, to: usize| explained(std::array::from_fn(|j| up_to[to][j] - up_to[from][j]));
+    // Gain in log-likelihood of the best amounts.
+    let within = |from: usize, to: usize| 0.5 * (up_to[to] - up_to[from]).explained();
     let one: Vec<Vec<f64>> = (0..count)
         .map(|from| (from + 1..=count).map(|to| within(from, to)).collect())
         .collect();
@@ -137,12 +134,4 @@ fn steps(stretches: &[Sums], price: f64) -> f64 {
         }
     }
     if enough < MOST { most } else { f64::MIN }
-}
-
-/// Gain in log-likelihood of the best amounts.
-fn explained([cc, cs, ss, rc, rs]: Sums) -> f64 {
-    let ridge = 1e-6 * (cc + ss) + f64::MIN_POSITIVE;
-    let (cc, ss) = (cc + ridge, ss + ridge);
-    let determinant = cc * ss - cs * cs;
-    0.5 * (ss * rc * rc - 2.0 * cs * rc * rs + cc * rs * rs) / determinant
 }

@@ -5,6 +5,7 @@
 //! It is no cause of the catalogue. It is fitted so that flicker noise is not named for it.
 
 use crate::context::Context;
+use crate::pair::PairSums;
 
 /// Most samples that are looked at.
 const ENOUGH: usize = 60_000;
@@ -65,47 +66,19 @@ struct Step {
     left: Vec<f64>,
 }
 
-/// Least squares of r = c cos α + d sin α: cos², cos sin, sin², r cos, r sin.
-#[derive(Clone, Copy, Default)]
-struct Sums([f64; 5]);
-
-impl Sums {
-    fn add(&mut self, cos: f64, sin: f64, r: f64, weight: f64) {
-        let terms = [cos * cos, cos * sin, sin * sin, r * cos, r * sin];
-        for (sum, term) in self.0.iter_mut().zip(terms) {
-            *sum += weight * term;
-        }
-    }
-
-    /// The level; what is not seen, at standstill, is zero.
-    fn level(&self) -> Level {
-        let [cc, cs, ss, rc, rs] = self.0;
-        // A little of a level of zero keeps it finite.
-        let ridge = 1e-6 * (cc + ss) + f64::MIN_POSITIVE;
-        let (cc, ss) = (cc + ridge, ss + ridge);
-        let determinant = cc * ss - cs * cs;
-        [
-            (ss * rc - cs * rs) / determinant,
-            (cc * rs - cs * rc) / determinant,
-        ]
-    }
-}
-
 impl Chain {
     /// Levels from stretches of the recording, split in two along the line on which they differ most.
     fn start(context: &Context, radial: &[f64], length: usize, white: f64) -> Option<Self> {
         let levels: Vec<Level> = (0..radial.len() / length)
             .map(|i| {
-                let mut sums = Sums::default();
+                let mut sums = PairSums::default();
                 let own = i * length..(i + 1) * length;
                 for (k, r) in own.clone().zip(&radial[own]) {
                     sums.add(context.cos[k], context.sin[k], *r, context.weight[k]);
                 }
                 // Where only one offset is seen, the other does not count.
-                let ridge = 0.1 * length as f64;
-                sums.0[0] += ridge;
-                sums.0[2] += ridge;
-                sums.level()
+                sums.add_nothing(0.1 * length as f64);
+                sums.amounts()
             })
             .collect();
         let count = levels.len() as f64;
@@ -182,7 +155,7 @@ impl Chain {
             now = both.map(|b| b / total);
             forward.push(now);
         }
-        let (mut sums, mut left, mut stood) = ([Sums::default(); 2], [0.0; 2], [0.0; 2]);
+        let (mut sums, mut left, mut stood) = ([PairSums::default(); 2], [0.0; 2], [0.0; 2]);
         let mut back = [1.0, 1.0];
         let mut off = radial.to_vec();
         for k in (0..n).rev() {
@@ -215,12 +188,8 @@ impl Chain {
             let scale = back[0].max(back[1]).max(f64::MIN_POSITIVE);
             back = back.map(|b| b / scale);
         }
-        let level = sums.map(|s| s.level());
-        let explained: f64 = sums
-            .iter()
-            .zip(level)
-            .map(|(s, [c, d])| c * s.0[3] + d * s.0[4])
-            .sum();
+        let level = sums.map(|s| s.amounts());
+        let explained: f64 = sums.iter().map(PairSums::explained).sum();
         let power: f64 = radial.iter().map(|r| r * r).sum();
         let rate = |i: usize| (left[i] / (left[i] + stood[i])).clamp(1e-6, 0.5);
         let next = Self {

@@ -23,8 +23,8 @@ use nonius_model::design::Design;
 use nonius_model::spec::{Multipliers, Spec};
 use shipped::variants::{Variant, everything};
 
-/// Rows of each of the nine stimuli: at least 100 000 samples for Verilator, 2 000 for Icarus.
-const LONG: (usize, usize) = (11_200, 230);
+/// Rows of each of the eleven stimuli: at least 100 000 samples for Verilator, 2 000 for Icarus.
+const LONG: (usize, usize) = (9_200, 190);
 const SHORT: (usize, usize) = (60, 60);
 
 struct Outcome {
@@ -152,7 +152,7 @@ const HEAD: &str = "\
 # Bit-exactness
 
 Written by `cargo run --release -p nonius-hdl --example campaign -- docs`; do not edit. Samples of mixed stimuli
-(standstill, both directions, sweep, step, corners, bounds, ties, random codes) in which every probe and register of the
+(standstill, both directions, sweep, creep, loss of signal, step, corners, bounds, ties, random codes) in which every probe and register of the
 Verilog equals the model. A variant that is missing was not run.
 
 | design | method | type | parameters | multipliers | ADC bits | Verilator | Icarus |

@@ -40,6 +40,14 @@ impl Default for Options {
 }
 
 impl Options {
+    /// Both simulators, however long a busy machine takes.
+    pub const PATIENT: Self = Self {
+        icarus: true,
+        verilator: true,
+        stop_at_first: false,
+        time_limit: Some(Duration::from_secs(3600)),
+    };
+
     /// What the testbench is told.
     fn plusargs(&self) -> &'static [&'static str] {
         if self.stop_at_first {

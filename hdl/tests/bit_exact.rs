@@ -2,8 +2,6 @@
 
 mod chip;
 
-use std::time::Duration;
-
 use chip::shipped::variants::{self, Variant};
 use chip::write;
 use nonius_hdl::ChipDir;
@@ -42,22 +40,15 @@ fn variants_are_clean() {
     });
 }
 
-/// However long a busy machine takes.
-const BOTH: Options = Options {
-    icarus: true,
-    verilator: true,
-    stop_at_first: false,
-    time_limit: Some(Duration::from_secs(3600)),
-};
 const ICARUS: Options = Options {
     verilator: false,
-    ..BOTH
+    ..Options::PATIENT
 };
 
 #[test]
 fn shipped_designs_in_icarus_and_verilator() {
     for variant in variants::shipped() {
-        agrees(&variant, 2000, &BOTH);
+        agrees(&variant, 2000, &Options::PATIENT);
     }
 }
 
@@ -67,7 +58,7 @@ fn searches_in_icarus_and_verilator() {
     let searches = variants::searches();
     searches
         .par_iter()
-        .for_each(|variant| agrees(variant, 120, &BOTH));
+        .for_each(|variant| agrees(variant, 120, &Options::PATIENT));
 }
 
 /// What a loop, an ADC and the number of multipliers change is seen by both simulators in what is shipped.
@@ -95,7 +86,15 @@ fn every_other_variant_in_icarus() {
 #[test]
 fn skews_in_icarus_and_verilator() {
     for (i, variant) in variants::skewed().iter().enumerate() {
-        agrees(variant, 120, if i % 3 == 0 { &BOTH } else { &ICARUS });
+        agrees(
+            variant,
+            120,
+            if i % 3 == 0 {
+                &Options::PATIENT
+            } else {
+                &ICARUS
+            },
+        );
     }
 }
 
@@ -103,8 +102,15 @@ fn skews_in_icarus_and_verilator() {
 #[test]
 fn harmonics_in_icarus_and_verilator() {
     let harmonics = variants::harmonics();
-    harmonics
-        .par_iter()
-        .enumerate()
-        .for_each(|(i, variant)| agrees(variant, 120, if i % 3 == 0 { &BOTH } else { &ICARUS }));
+    harmonics.par_iter().enumerate().for_each(|(i, variant)| {
+        agrees(
+            variant,
+            120,
+            if i % 3 == 0 {
+                &Options::PATIENT
+            } else {
+                &ICARUS
+            },
+        )
+    });
 }

@@ -311,15 +311,21 @@ fn vectors_catch_every_fault_in_the_correction_of_harmonics() {
     let last = table.rows() - 1;
     // Two bits below the sign: what the vectors, which meet each row some times, cannot miss.
     let faults = [(0, ends[0]), (last, ends[1]), (13, ends[2]), (137, ends[3])];
-    faults.par_iter().for_each(|&(row, end)| {
-        let rows = text(&files, path);
-        let mut rows: Vec<String> = rows.lines().map(ToOwned::to_owned).collect();
-        let word = u128::from_str_radix(&rows[row], 16).expect("hex") ^ (1 << (end - 3));
+    let faults = faults.map(|(row, end)| (row, end - 3));
+    rows_caught("the table of harmonics", &files, path, &faults);
+}
+
+/// The vectors see one bit (row, bit) turned over in each of these rows of a table.
+fn rows_caught(place: &str, files: &Files, path: &str, faults: &[(usize, u32)]) {
+    let sound = text(files, path);
+    faults.par_iter().for_each(|&(row, bit)| {
+        let mut rows: Vec<String> = sound.lines().map(ToOwned::to_owned).collect();
+        let word = u128::from_str_radix(&rows[row], 16).expect("hex") ^ (1 << bit);
         rows[row] = format!("{word:0digits$x}", digits = rows[row].len());
-        let (passed, _) = verdict(&altered(&files, path, &(rows.join("\n") + "\n")));
-        assert!(!passed, "row {row}, bit {}: not caught", end - 3);
+        let (passed, _) = verdict(&altered(files, path, &(rows.join("\n") + "\n")));
+        assert!(!passed, "row {row}, bit {bit}: not caught");
     });
-    kept("the table of harmonics", faults.len());
+    kept(place, faults.len());
 }
 
 const RTL: &str = "rtl/optical.v";
@@ -341,18 +347,7 @@ fn vectors_catch_every_planted_fault() {
 #[test]
 fn vectors_catch_every_fault_in_the_table() {
     let files = files(&optical());
-    let entries = text(&files, TABLE);
-    let rows: Vec<&str> = entries.lines().collect();
-    let last = rows.len() - 1;
+    let last = text(&files, TABLE).lines().count() - 1;
     let faults = [(0, 14), (last, 0), (13, 14), (37, 0)];
-    faults.par_iter().for_each(|&(row, bit)| {
-        let word = u64::from_str_radix(rows[row], 16).expect("hex") ^ (1 << bit);
-        let digits = rows[row].len();
-        let mut faulty: Vec<String> = rows.iter().map(ToString::to_string).collect();
-        faulty[row] = format!("{word:0digits$x}");
-        let faulty = faulty.join("\n") + "\n";
-        let (passed, _) = verdict(&altered(&files, TABLE, &faulty));
-        assert!(!passed, "row {row}, bit {bit}: not caught");
-    });
-    kept("the sine table", faults.len());
+    rows_caught("the sine table", &files, TABLE, &faults);
 }

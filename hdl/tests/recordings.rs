@@ -2,7 +2,6 @@
 //! go through Verilator alone.
 
 use std::path::Path;
-use std::time::Duration;
 
 use nonius_hdl::progress::silent;
 use nonius_hdl::verify::{Options, verify};
@@ -11,16 +10,9 @@ use nonius_model::spec::Spec;
 use nonius_recording::{Overrides, Recording};
 use rayon::prelude::*;
 
-/// However long a busy machine takes.
-const BOTH: Options = Options {
-    icarus: true,
-    verilator: true,
-    stop_at_first: false,
-    time_limit: Some(Duration::from_secs(3600)),
-};
 const VERILATOR: Options = Options {
     icarus: false,
-    ..BOTH
+    ..Options::PATIENT
 };
 
 /// What `nonius new --from` and `nonius build --play --repeat` do, and `nonius verify` after them.
@@ -50,13 +42,13 @@ fn recordings_agree_in_every_bit() {
         return;
     };
     let recordings = [
-        ("rm44_center", 4, BOTH),
-        ("rm44_static_x500um", 4, BOTH),
-        ("rm44_gap_z500um", 4, BOTH),
-        ("rm44_jumps", 1, BOTH),
-        ("interf3x3_fs", 1, BOTH),
-        ("interf3x3_mmi", 1, BOTH),
-        ("wheel_magnetometer", 1, BOTH),
+        ("rm44_center", 4, Options::PATIENT),
+        ("rm44_static_x500um", 4, Options::PATIENT),
+        ("rm44_gap_z500um", 4, Options::PATIENT),
+        ("rm44_jumps", 1, Options::PATIENT),
+        ("interf3x3_fs", 1, Options::PATIENT),
+        ("interf3x3_mmi", 1, Options::PATIENT),
+        ("wheel_magnetometer", 1, Options::PATIENT),
         ("homodyne_settle", 1, VERILATOR),
         ("homodyne_stop", 1, VERILATOR),
     ];
@@ -82,5 +74,5 @@ fn an_averaged_period_agrees_in_every_bit() {
     let dir = tempfile::tempdir().expect("scratch folder");
     let one = dir.path().join("unit_0.csv");
     std::fs::write(&one, format!("{header}\n{}\n", unit.join("\n"))).expect("a file");
-    agrees(&one, 8, &BOTH);
+    agrees(&one, 8, &Options::PATIENT);
 }

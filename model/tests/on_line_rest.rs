@@ -139,6 +139,16 @@ fn ripples(variant: &Variant) -> bool {
     k.parameters < 8 && k.method != CalibrationMethod::Batch
 }
 
+/// How far the furthest parameter goes is within the limits: in units of its noise, and of what motion does.
+fn holds(variant: &Variant, when: &str, noise: f64, motion: f64) {
+    let (what, set) = (&variant.what, variant.spec.calibration.parameters);
+    println!(
+        "{what}, {set} parameters, {when}: {noise:.2} of the noise, {motion:.2} of what motion does"
+    );
+    let within = noise <= 3.0 || ripples(variant) && motion <= 1.0;
+    assert!(within, "{what}");
+}
+
 /// A minute (of the searches whose figures are kept, of the others a third) at eight places of the period, sensors with all signs of offsets, 5° of phase where it is calibrated, 1 % of even and
 /// 3 % of cubic distortion: no parameter of any search moves by more than three times its noise, but with four and five parameters
 /// and a step each sector. Those go round with the distortion in every period of motion, and do at rest no more than that.
@@ -162,15 +172,7 @@ fn neither_standstill_nor_vibration_moves_a_parameter() {
                 let set = variant.spec.calibration.parameters;
                 measured.push(format!("{set} parameters, {name} {noise:.1}"));
             }
-            println!(
-                "{}, {} parameters, {name}: {noise:.2} of the noise, {motion:.2} of what motion does",
-                variant.what, variant.spec.calibration.parameters
-            );
-            assert!(
-                noise <= 3.0 || ripples(&variant) && motion <= 1.0,
-                "{}",
-                variant.what
-            );
+            holds(&variant, name, noise, motion);
         }
     }
     figure(
@@ -189,14 +191,6 @@ fn ten_minutes_of_vibration_move_no_parameter() {
         }
         let [noise, motion] =
             moved(&variant, 0.3, 0.1, 600, 2).map(|f| f.into_iter().fold(0.0, f64::max));
-        println!(
-            "{}, {} parameters, ten minutes: {noise:.2} of the noise, {motion:.2} of what motion does",
-            variant.what, variant.spec.calibration.parameters
-        );
-        assert!(
-            noise <= 3.0 || ripples(&variant) && motion <= 1.0,
-            "{}",
-            variant.what
-        );
+        holds(&variant, "ten minutes", noise, motion);
     }
 }

@@ -39,7 +39,7 @@ impl HarmonicTable {
     pub(crate) fn of(design: &Design) -> Option<Self> {
         let (found, structure) = (design.harmonics?, &design.structure);
         let known = structure.harmonics.as_ref()?;
-        let (k, list) = (design.constants.bits(), &design.spec.correction.harmonics);
+        let (k, correction) = (design.constants.bits(), &design.spec.correction);
         let bits = structure.formats.sine_phase.format.fraction;
         let (step, places) = phases(bits);
         let (mut largest, mut count) = (0.0f64, 0);
@@ -48,13 +48,13 @@ impl HarmonicTable {
             let turns = Bits::from_raw(phase as i64, bits);
             let (c, s) = stored(turns, None, &k, (structure, known));
             for (which, read) in [c, s].into_iter().enumerate() {
-                let exact: f64 = list.iter().map(|h| h.at(which, alpha).0).sum();
+                let (exact, _) = correction.harmonics_at(which, alpha);
                 largest = largest.max((read.to_f64() - exact).abs());
             }
             count += 1;
         }
         Some(Self {
-            orders: list.iter().map(|h| h.order).collect(),
+            orders: correction.harmonics.iter().map(|h| h.order).collect(),
             rows: known.table.rows(),
             row_bits: known.table.row_width(),
             bits: known.table.bits(),

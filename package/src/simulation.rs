@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use nonius_model::chip::Chip;
 use nonius_model::design::Design;
 use nonius_model::physical::Converter;
-use nonius_model::spec::Harmonic;
+use nonius_model::spec::Correction;
 use serde::Serialize;
 
 /// Angle errors of the bit-true chip in periods.
@@ -146,7 +146,7 @@ struct Sensor {
     /// The sine is sampled so many samples later.
     late: f64,
     /// What stands in the channels beside them, in amplitudes.
-    harmonics: Vec<Harmonic>,
+    correction: Correction,
     middle: f64,
     noise: f64,
     random: Noise,
@@ -173,7 +173,7 @@ impl Sensor {
             offset: o * a,
             beta: s.phase_error_max_deg.to_radians() / 2.0,
             late: spec.correction.channel_skew_s * spec.adc.sample_rate_hz,
-            harmonics: spec.correction.harmonics.clone(),
+            correction: spec.correction.clone(),
             middle: spec.adc.middle,
             noise: a * s.noise_rms,
             random: Noise(1),
@@ -182,10 +182,8 @@ impl Sensor {
 
     fn sample(&mut self, at: f64, speed: f64) -> Sample {
         let (alpha, alpha_of_sin) = (at * TAU, (at + self.late * speed) * TAU);
-        let more = |which: usize, alpha: f64| -> f64 {
-            self.harmonics.iter().map(|h| h.at(which, alpha).0).sum()
-        };
-        let (more_cos, more_sin) = (more(0, alpha), more(1, alpha_of_sin));
+        let (more_cos, _) = self.correction.harmonics_at(0, alpha);
+        let (more_sin, _) = self.correction.harmonics_at(1, alpha_of_sin);
         let cos = self.amplitudes[0] * (alpha.cos() + more_cos)
             + self.offset
             + self.noise * self.random.next();

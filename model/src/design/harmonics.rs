@@ -3,13 +3,14 @@
 use std::f64::consts::TAU;
 
 use super::budget::rounding;
+use super::promised::{Promised, errors, promised};
 use super::refuse::{between, number, refuse};
 use super::{Budget, DesignError, Words};
 use crate::format::{Format, exp2};
 use crate::kernel::harmonics::{Harmonics as Stored, Order, correct};
 use crate::kernel::{Coefficients, Constant, Structure};
 use crate::rom::{Column, Rom};
-use crate::spec::{Harmonic, Spec};
+use crate::spec::{Correction, Harmonic, Spec};
 
 /// Highest order of the scale period.
 pub const ORDER_MAX: u32 = 16;
@@ -27,8 +28,6 @@ pub(super) const ROWS_LOG2_MAX: u32 = 12;
 /// Angles at which what is left is looked at: above twice the highest order with its own.
 const ANGLES: u32 = 256;
 
-const ENDS: [f64; 3] = [-1.0, 0.0, 1.0];
-
 /// The correction of stored harmonics in numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Harmonics {
@@ -42,12 +41,6 @@ pub struct Harmonics {
     pub uncorrected_rms_periods: f64,
     /// Largest error of the table's interpolation, as a fraction of the amplitude.
     pub interpolation_max: f64,
-}
-
-/// What stands in a channel at the angle `alpha`, radians, and its derivative; `which`: 0 the cosine, 1 the sine.
-fn value_and_slope(list: &[Harmonic], which: usize, alpha: f64) -> (f64, f64) {
-    let each = list.iter().map(|h| h.at(which, alpha));
-    each.fold((0.0, 0.0), |all, one| (all.0 + one.0, all.1 + one.1))
 }
 
 /// Refuses harmonics that are none, or that no table mends.
@@ -105,7 +98,7 @@ pub(super) fn check(spec: &Spec) -> Result<(), DesignError> {
             );
         }
     }
-    let steepest = steepest(list);
+    let steepest = steepest(&spec.correction);
     if steepest > SLOPE_MAX {
         return refuse(
             "correction.harmonics",
@@ -118,11 +111,11 @@ pub(super) fn check(spec: &Spec) -> Result<(), DesignError> {
 }
 
 /// Largest change of the phase error with the angle.
-fn steepest(list: &[Harmonic]) -> f64 {
+fn steepest(correction: &Correction) -> f64 {
     (0..4 * ANGLES)
         .map(|i| {
             let alpha = TAU * f64::from(i) / f64::from(4 * ANGLES);
-            let [(c, dc), (s, ds)] = [0, 1].map(|which| value_and_slope(list, which, alpha));
+            let [(c, dc), (s, ds)] = [0, 1].map(|which| correction.harmonics_at(which, alpha));
             let (sin, cos) = alpha.sin_cos();
             (ds * cos - s * sin - dc * sin - c * cos).abs()
         })
@@ -167,36 +160,37 @@ pub(super) fn structure(spec: &Spec, words: &Words) -> Result<Option<Stored>, De
         return Ok(None);
     }
     Ok(Some(Stored {
-        table: table(list, words)?,
+        table: table(&spec.correction, words)?,
         order: Order::Second,
     }))
 }
 
 /// A period, each segment expanded about its centre; the value of each order is lowered by half its error at the ends. It
 /// carries the half bit that rounds the interpolated result.
-fn table(list: &[Harmonic], words: &Words) -> Result<Rom, DesignError> {
+fn table(correction: &Correction, words: &Words) -> Result<Rom, DesignError> {
     let (rows, f) = (words.harmonic_rows_log2, words.signal_fraction);
     let segment = TAU * exp2(-i64::from(rows));
-    let lowered: Vec<Harmonic> = list
-        .iter()
-        .map(|h| {
-            let lower = 1.0 - (f64::from(h.order) * segment / 2.0).powi(2) / 4.0;
-            Harmonic {
-                amplitude_cos: lower * h.amplitude_cos,
-                amplitude_sin: lower * h.amplitude_sin,
-                ..*h
-            }
-        })
-        .collect();
+    let lowered = correction.harmonics.iter().map(|h| {
+        let lower = 1.0 - (f64::from(h.order) * segment / 2.0).powi(2) / 4.0;
+        Harmonic {
+            amplitude_cos: lower * h.amplitude_cos,
+            amplitude_sin: lower * h.amplitude_sin,
+            ..*h
+        }
+    });
+    let lowered = Correction {
+        harmonics: lowered.collect(),
+        ..Correction::default()
+    };
     let centres = || (0..1u32 << rows).map(|i| segment * (f64::from(i) + 0.5));
     let values = |which| -> Vec<f64> {
         centres()
-            .map(|x| value_and_slope(&lowered, which, x).0)
+            .map(|x| lowered.harmonics_at(which, x).0)
             .collect()
     };
     let slopes = |which| -> Vec<f64> {
         centres()
-            .map(|x| TAU * value_and_slope(list, which, x).1)
+            .map(|x| TAU * correction.harmonics_at(which, x).1)
             .collect()
     };
     let steepest = slopes(0)
@@ -209,7 +203,7 @@ fn table(list: &[Harmonic], words: &Words) -> Result<Rom, DesignError> {
     let slope_format = Format::signed(1 + slope_integer + slope_fraction, slope_fraction);
     let unfit = |row: usize| DesignError::Field {
         field: "correction.harmonics".into(),
-        value: format!("{} orders", list.len()),
+        value: format!("{} orders", correction.harmonics.len()),
         limit: "smaller amplitudes".into(),
         reason: format!("row {row} of the table of harmonics does not fit its word"),
     };
@@ -237,7 +231,7 @@ fn table(list: &[Harmonic], words: &Words) -> Result<Rom, DesignError> {
     })
 }
 
-/// Rms angle error, radians, and largest error of cosine or sine, at worst: the kernel itself, unrounded, over pairs that Θ has corrected. `None` in place of an
+/// Largest error of cosine or sine and rms angle error, radians, at worst: the kernel itself, unrounded. `None` in place of an
 /// order: no correction.
 fn left(
     order: Option<Order>,
@@ -245,36 +239,16 @@ fn left(
     structure: &Structure,
     k: &Coefficients<f64>,
 ) -> (f64, f64) {
-    let beta_max = if structure.has_phase() {
-        spec.sensor.phase_error_max_deg.to_radians()
-    } else {
-        0.0
-    };
-    let list = &spec.correction.harmonics;
-    let (mut worst, mut pair_error) = (0.0f64, 0.0f64);
-    for (beta, gain) in ENDS.into_iter().flat_map(|b| ENDS.map(|g| (b, g))) {
-        let tan = (beta * beta_max).tan();
-        let theta_1 = k.theta_1_nominal / (1.0 + gain * spec.sensor.amplitude_tolerance);
-        let theta_5 = if structure.has_bend() {
-            tan
-        } else {
-            tan * theta_1
-        };
-        let mut sum = 0.0;
-        for i in 0..ANGLES {
-            let alpha = TAU * f64::from(i) / f64::from(ANGLES);
-            let (sin, cos) = alpha.sin_cos();
-            let [h_c, h_s] = [0, 1].map(|which| value_and_slope(list, which, alpha).0);
+    let each = promised(spec, structure, k).map(|Promised { tan, thetas }| {
+        errors(ANGLES, |alpha, cos, sin| {
+            let [h_c, h_s] = [0, 1].map(|which| spec.correction.harmonics_at(which, alpha).0);
             let pair = (cos + h_c, sin + tan * h_c + h_s * tan.hypot(1.0));
-            let (c, s) = order.map_or(pair, |order| {
-                correct(pair, (h_c, h_s), (theta_1, theta_5), k, (structure, order))
-            });
-            pair_error = pair_error.max((c - cos).abs()).max((s - sin).abs());
-            sum += (s * cos - c * sin).atan2(c * cos + s * sin).powi(2);
-        }
-        worst = worst.max((sum / f64::from(ANGLES)).sqrt());
-    }
-    (worst, pair_error)
+            order.map_or(pair, |order| {
+                correct(pair, (h_c, h_s), thetas, k, (structure, order))
+            })
+        })
+    });
+    each.fold((0.0, 0.0), |all, one| (all.0.max(one.0), all.1.max(one.1)))
 }
 
 /// Settles how far the phase correction is followed: until what is left is less than half of what arithmetic may add. It
@@ -289,10 +263,10 @@ pub(super) fn settle(
     let k = constants.real();
     let orders = [Order::Zeroth, Order::First, Order::Second];
     let tried = orders.map(|order| (order, left(Some(order), spec, structure, &k)));
-    let enough = |(_, left): &&(Order, (f64, f64))| left.0 / TAU <= budget.allowed / 2.0;
-    let (order, (residual, pair_error_max)) = *tried.iter().find(enough).unwrap_or(&tried[2]);
+    let enough = |(_, left): &&(Order, (f64, f64))| left.1 / TAU <= budget.allowed / 2.0;
+    let (order, (pair_error_max, residual)) = *tried.iter().find(enough).unwrap_or(&tried[2]);
     let residual = residual / TAU;
-    let uncorrected = left(None, spec, structure, &k).0 / TAU;
+    let uncorrected = left(None, spec, structure, &k).1 / TAU;
     budget.uncorrected = budget.uncorrected.hypot(residual);
     let stored = structure.harmonics.as_mut()?;
     stored.order = order;

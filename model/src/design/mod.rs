@@ -6,6 +6,7 @@ mod formats;
 mod harmonics;
 mod keywords;
 mod poles;
+mod promised;
 mod refuse;
 mod skew;
 

@@ -2,6 +2,7 @@
 
 use std::f64::consts::TAU;
 
+use super::promised::{Promised, errors, promised};
 use super::refuse::{between, number, refuse};
 use super::{Budget, DesignError, Loop};
 use crate::kernel::skew::{Order, correct};
@@ -97,53 +98,30 @@ fn steady(tracking: &Loop, delay: f64) -> bool {
         && (constant * constant - 1.0).abs() > (constant * square - linear).abs()
 }
 
-/// Angles and what is promised, at their ends and in between.
-const ANGLES: usize = 64;
-const ENDS: [f64; 3] = [-1.0, 0.0, 1.0];
+/// Angles at which what is left is looked at.
+const ANGLES: u32 = 64;
 
-/// Largest error of the sine and rms angle error (radians) at the largest speed: the kernel itself, unrounded, over pairs
-/// that Θ has corrected. `None` in place of an order: no correction.
+/// Largest error of the sine and rms angle error (radians) at the largest speed, at worst: the kernel itself, unrounded.
+/// `None` in place of an order: no correction.
 fn left(
     order: Option<Order>,
     spec: &Spec,
     structure: &Structure,
     k: &Coefficients<f64>,
 ) -> (f64, f64) {
-    let (mut sine, mut angle) = (0.0f64, 0.0f64);
-    let beta_max = if structure.has_phase() {
-        spec.sensor.phase_error_max_deg.to_radians()
-    } else {
-        0.0
-    };
-    for (direction, beta, gain) in ends() {
-        let skew = direction * phase_max(spec);
-        let tan = (beta * beta_max).tan();
-        let theta_1 = k.theta_1_nominal / (1.0 + gain * spec.sensor.amplitude_tolerance);
-        let theta_5 = if structure.has_bend() {
-            tan
-        } else {
-            tan * theta_1
-        };
-        let mut sum = 0.0;
-        for i in 0..ANGLES {
-            let (sin, c) = (TAU * i as f64 / ANGLES as f64).sin_cos();
+    let fastest = phase_max(spec);
+    let either_way = promised(spec, structure, k).flat_map(|p| [(p, -fastest), (p, fastest)]);
+    let each = either_way.map(|(Promised { tan, thetas }, skew)| {
+        errors(ANGLES, |_, c, sin| {
             let late =
                 (skew.cos() + tan * skew.sin()) * sin + (skew.sin() + tan * (1.0 - skew.cos())) * c;
             let s = order.map_or(late, |order| {
-                correct((c, late), (order, skew), (theta_1, theta_5), k, structure)
+                correct((c, late), (order, skew), thetas, k, structure)
             });
-            sine = sine.max((s - sin).abs());
-            sum += (s * c - c * sin).atan2(c * c + s * sin).powi(2);
-        }
-        angle = angle.max((sum / ANGLES as f64).sqrt());
-    }
-    (sine, angle)
-}
-
-fn ends() -> impl Iterator<Item = (f64, f64, f64)> {
-    let pair = |a: f64| ENDS.into_iter().map(move |b| (a, b));
-    let triple = |(a, b): (f64, f64)| ENDS.into_iter().map(move |c| (a, b, c));
-    [-1.0, 1.0].into_iter().flat_map(pair).flat_map(triple)
+            (c, s)
+        })
+    });
+    each.fold((0.0, 0.0), |all, one| (all.0.max(one.0), all.1.max(one.1)))
 }
 
 /// Settles how far the series goes: the structure carries the second order where the first leaves more than arithmetic may

@@ -115,6 +115,19 @@ pub struct Update<S: Signal> {
     pub w_null: S,
 }
 
+/// Accumulator `i` after a step; at its nominal value where nothing is known of it.
+pub fn moved<S: Signal>(
+    old: S,
+    step: S,
+    i: usize,
+    nominal: S::Bool,
+    k: &Coefficients<S>,
+    structure: &Structure,
+) -> S {
+    let moved = (old - step).quantise(&structure.formats.deviation[i]);
+    S::select(nominal, k.zero, moved)
+}
+
 /// The parameter accumulators after this sample, all but θ9. `PLAIN` as [`Structure::is_plain`].
 #[inline(always)]
 pub fn update<S: Signal, const PLAIN: bool>(
@@ -182,19 +195,16 @@ pub fn update<S: Signal, const PLAIN: bool>(
             }
         }
         CalibrationMethod::SumOfSquares | CalibrationMethod::Batch => {
-            let calibrated = gradient.iter_mut().zip(&mut this.gathered);
-            for (gradient, before) in calibrated.take(linear) {
+            let (plain, bends) = this.gathered.split_at_mut(5);
+            let of_bends = bent.iter_mut().flat_map(|bent| {
+                let [second_c, second_s] = &mut bent.second;
+                [second_c, second_s, &mut bent.third]
+            });
+            let calibrated = gradient.iter_mut().zip(plain).take(linear);
+            for (gradient, before) in calibrated.chain(of_bends.zip(bends)) {
                 let gathered = gather::squares(*gradient, *before, gate, k.zero, structure);
                 *gradient = gathered.gradient.widen();
                 *before = gathered.next;
-            }
-            if let Some(Bent { second, third, .. }) = &mut bent {
-                let bends = second.iter_mut().chain([third]);
-                for (gradient, before) in bends.zip(&mut this.gathered[5..]) {
-                    let gathered = gather::squares(*gradient, *before, gate, k.zero, structure);
-                    *gradient = gathered.gradient.widen();
-                    *before = gathered.next;
-                }
             }
         }
     }
@@ -236,8 +246,7 @@ pub fn update<S: Signal, const PLAIN: bool>(
             _ => geared,
         };
         let step = S::select(due, geared, k.zero).named(STEP[i]);
-        let moved = (old[i] - step).quantise(&structure.formats.deviation[i]);
-        S::select(nominal, k.zero, moved)
+        moved(old[i], step, i, nominal, k, structure)
     };
     let by = Equaliser::of(structure);
     if structure.has_phase() {

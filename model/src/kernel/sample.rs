@@ -34,8 +34,8 @@ pub fn advance<S: Signal>(
     k: &Coefficients<S>,
     structure: &Structure,
 ) -> Probes<S> {
-    // The same code twice: where the design has neither bends nor skew nor harmonics nor another gradient than the final form, the
-    // compiler leaves them out, which makes the bit-true model faster by two thirds.
+    // The same code twice: where the design has neither bends nor skew nor harmonics nor another gradient than the final form,
+    // the compiler leaves them out, which makes the bit-true model faster by two thirds.
     if structure.is_plain() {
         advance_of::<S, true>(input, state, k, structure)
     } else {
@@ -152,9 +152,8 @@ fn advance_of<S: Signal, const PLAIN: bool>(
         completion::complete((w, e), open, counting, &travel, state, k, structure)
     });
     if let Some(completed) = &completed {
-        let moved =
-            (state.theta_9_deviation - completed.step).quantise(&structure.formats.deviation[8]);
-        updated.theta[8] = S::select(gears::nominal(state, k), k.zero, moved);
+        let (old, nominal) = (state.theta_9_deviation, gears::nominal(state, k));
+        updated.theta[8] = calibration::moved(old, completed.step, 8, nominal, k, structure);
     }
     let gears = gears::gears(hold, gate, (counting, starting), state, k, structure);
 

@@ -71,10 +71,7 @@ pub fn tracking(spec: &Spec) -> Result<LoopConfig, ReferenceError> {
 pub fn harmonics(spec: &Spec) -> Harmonics {
     let list = spec.correction.harmonics.iter();
     list.fold(Harmonics::NONE, |all, h| {
-        let (cosine, sine) = (
-            (h.amplitude_cos, h.phase_cos),
-            (h.amplitude_sin, h.phase_sin),
-        );
+        let [cosine, sine] = h.channels();
         all.with(h.order as usize, cosine, sine)
     })
 }

@@ -21,6 +21,14 @@ impl Correction {
         !self.has_skew() && self.harmonics.is_empty()
     }
 
+    /// What the harmonics add to channel `which` (0 the cosine, 1 the sine) at the angle `alpha`, radians, and its derivative;
+    /// as fractions of the amplitude.
+    #[must_use]
+    pub fn harmonics_at(&self, which: usize, alpha: f64) -> (f64, f64) {
+        let each = self.harmonics.iter().map(|h| h.at(which, alpha));
+        each.fold((0.0, 0.0), |all, one| (all.0 + one.0, all.1 + one.1))
+    }
+
     /// The channels are not sampled at the same instant.
     #[must_use]
     pub fn has_skew(&self) -> bool {
