@@ -346,7 +346,7 @@ impl Draft {
         out += &line(
             "parameters",
             "5".into(),
-            "0 (off), 4 (gains, offsets) or 5 (and phase)",
+            "0 (off), 4 (gains, offsets), 5 (and phase), 8, 9 (and bends)",
         );
         out += "\n# [correction]\n";
         out += "# channel_skew_s = 1e-6                 # sin is sampled so much later than cos\n";

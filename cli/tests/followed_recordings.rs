@@ -100,6 +100,28 @@ fn followed(dir: &Path, path: &Path, name: &str, repeat: &str) -> (Vec<f64>, Vec
     (column(&csv, "position_periods"), column(&csv, "locked"))
 }
 
+/// The same of the design made there, with its calibration switched off.
+fn uncalibrated(dir: &Path, path: &Path, name: &str) -> Vec<f64> {
+    let text = std::fs::read_to_string(dir.join(format!("{name}.toml"))).expect("a design");
+    let fixed = text.replace("\nparameters = 5 ", "\nparameters = 0 ");
+    assert_ne!(fixed, text, "{name} calibrates five parameters");
+    let (design, out) = (format!("{name}_fixed.toml"), format!("{name}_fixed.csv"));
+    std::fs::write(dir.join(&design), fixed).expect("a design");
+    let file = path.display().to_string();
+    done(dir, &["simulate", &design, &file, "-o", &out]);
+    let csv = std::fs::read_to_string(dir.join(out)).expect("what simulate wrote");
+    column(&csv, "position_periods")
+}
+
+/// Differences of a chip's positions from the angle of the survey, after the first 300 samples, whole periods at the
+/// first of them taken off.
+fn differences(positions: &[f64], angle: &[f64]) -> Vec<f64> {
+    let pairs = positions.iter().zip(angle).skip(300);
+    let differences: Vec<f64> = pairs.map(|(p, a)| p - a).collect();
+    let anchor = differences[0].round();
+    differences.into_iter().map(|d| d - anchor).collect()
+}
+
 #[test]
 fn designs_from_recordings_follow_them() {
     let dir = tempfile::tempdir().expect("scratch folder");
@@ -147,9 +169,10 @@ fn designs_from_recordings_follow_them() {
               is an arctangent and has the noise of single samples, which stands in its own column (radial residual of the fit\n\
               over 2 pi): the chip's difference is mostly that noise, and the largest is its peak in a\n\
               hundred thousand samples. Half a period would be a lost one. Uncorrected, the offsets are larger than the\n\
-              amplitude, and the arctangent of the raw signals does not count at all.\n\n\
-              | recording | periods travelled | arctangent, uncorrected: net periods lost | noise of a sample, rms | chip, rms | \
-              chip, largest | locked |\n|---|---|---|---|---|---|---|\n";
+              amplitude, and the arctangent of the raw signals does not count at all; *not calibrated* is the same design with\n\
+              `parameters = 0`, which knows the nominal offsets and amplitudes that `new` wrote into it and nothing more.\n\n\
+              | recording | periods travelled | arctangent, uncorrected: net periods lost | noise of a sample, rms | chip, not calibrated, rms | \
+              chip, calibrated on line, rms | largest | locked |\n|---|---|---|---|---|---|---|---|\n";
     for name in ["homodyne_settle", "homodyne_stop"] {
         let Some(path) = nonius_kept::recording(CHECK, &format!("{name}.csv")) else {
             complete = false;
@@ -159,9 +182,9 @@ fn designs_from_recordings_follow_them() {
         let survey = Survey::of(&recording);
         let motion = survey.motion;
         let (positions, locked) = followed(dir.path(), &path, name, "1");
-        let at = |k: usize| positions[k] - motion.angle_periods[k];
-        let anchor = at(300).round();
-        let differences: Vec<f64> = (300..positions.len()).map(|k| at(k) - anchor).collect();
+        let fixed = uncalibrated(dir.path(), &path, name);
+        let before = rms(&differences(&fixed, &motion.angle_periods));
+        let differences = differences(&positions, &motion.angle_periods);
         let largest = differences.iter().fold(0.0, |most, d| d.abs().max(most));
         let rms = rms(&differences);
         let noise = survey.fit.residual_rms / TAU;
@@ -169,12 +192,13 @@ fn designs_from_recordings_follow_them() {
         let share = locked.iter().sum::<f64>() / locked.len() as f64;
         writeln!(
             table,
-            "| {name} | {:.1} | {lost:.0} of {:.0} | {noise:.4} | {rms:.4} | {largest:.3} | {:.2} % |",
+            "| {name} | {:.1} | {lost:.0} of {:.0} | {noise:.4} | {before:.4} | {rms:.4} | {largest:.3} | {:.2} % |",
             motion.periods_travelled,
             motion.periods_net.abs(),
             share * 100.0
         )
         .expect("text");
+        assert!(rms < 0.6 * before, "{name}: {before} -> {rms} periods rms");
         assert!(largest < 0.1, "{name}: {largest} periods apart");
         assert!(
             rms < 1.5 * noise,
