@@ -27,6 +27,9 @@ pub(crate) struct Build {
     /// Plays a recording of whole turns so many times.
     #[arg(long, value_name = "N", default_value_t = 1, requires = "play", value_parser = clap::value_parser!(u32).range(1..))]
     repeat: u32,
+    /// Rows of each named stimulus: fewer for a quick check, more for a long one.
+    #[arg(long, value_name = "N", default_value_t = ROWS as u32, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    rows: u32,
     #[command(flatten)]
     recording_args: RecordingArgs,
 }
@@ -35,7 +38,7 @@ pub(crate) struct Build {
 pub(crate) fn run(args: &Build) -> Result<bool> {
     let design = crate::design_file::read(&args.design)?;
     let spec = &design.spec;
-    let mut stimuli = stimulus::named(&design, ROWS);
+    let mut stimuli = stimulus::named(&design, args.rows as usize);
     let shown = match (&args.play, &args.sensor) {
         (Some(_), _) => "recording",
         (None, Some(_)) => "sensor",

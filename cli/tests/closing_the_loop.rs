@@ -154,7 +154,9 @@ fn closed(recording: &str, simulated: bool) -> Closed {
     if simulated {
         let rows = recording.split_inclusive('\n').take(5 + PLAYED);
         fs::write(dir.join("head.csv"), rows.collect::<String>()).expect("its beginning");
-        done(dir, &["build", design, "-o", "chip", "--play", "head.csv"]);
+        // The named stimuli have tests of their own.
+        let of = ["--play", "head.csv", "--rows", "100"];
+        done(dir, &[&["build", design, "-o", "chip"], &of[..]].concat());
         let report = verify(dir.join("chip"), &Options::PATIENT, &silent).expect("two simulators");
         assert!(report.passed && report.runs.len() == 2, "{report:#?}");
         let played = fs::read_to_string(dir.join("chip/vectors/recording.vec"));

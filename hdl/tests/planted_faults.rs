@@ -225,6 +225,43 @@ fn faults() -> Vec<Fault> {
         fault("last bit of the lock limit", |v| {
             replaced(v, &["wire", "< 5'sd3)"], "5'sd3", "5'sd4")
         }),
+        fault("last bit of the limit that begins again", |v| {
+            let words = ["wire residual_large_condition_7_now ="];
+            replaced(v, &words, "< 4'sd1)", "< 4'sd2)")
+        }),
+        fault("last bit of the limit that holds", |v| {
+            let words = ["wire residual_large_condition_3_now ="];
+            replaced(
+                v,
+                &words,
+                "~rho_now[17:12]) < 6'sd1)",
+                "~rho_now[17:12]) < 6'sd2)",
+            )
+        }),
+        fault("direction forwards from twice the speed on", |v| {
+            let words = ["wire speed_below_direction_rate_now ="];
+            replaced(v, &words, "< 15'sd1;", "< 15'sd2;")
+        }),
+        fault("sectors counted again by turning back behind", |v| {
+            replaced(
+                v,
+                &["wire sector_behind_condition_now ="],
+                " & behind_used",
+                " & 1'b0",
+            )
+        }),
+        fault("sectors counted again by turning back ahead", |v| {
+            replaced(v, &["wire sector_ahead_now ="], " & ahead_used", " & 1'b0")
+        }),
+        fault("turning back that is never forgotten", |v| {
+            let words = ["wire behind_used_next_now ="];
+            replaced(
+                v,
+                &words,
+                "(whole_period_now | sector_behind)",
+                "whole_period_now",
+            )
+        }),
         fault(
             "parameters of the next sample at the ports too early",
             |v| {

@@ -113,7 +113,9 @@ pub fn registers(structure: &Structure) -> (Vec<&'static str>, Vec<&'static str>
         }
         "theta_6_deviation" | "theta_7_deviation" | "theta_8_deviation" => structure.has_bend(),
         "gamma_gear" | "gear_periods" | "travel_origin" | "travel_low" | "travel_high"
-        | "disturbed" | "risen" | "held" => structure.parameters >= 4,
+        | "ahead_used" | "behind_used" | "disturbed" | "risen" | "held" => {
+            structure.parameters >= 4
+        }
         "loop_gear" => structure.loop_gears > 0,
         "theta_9_deviation" | "null_gradient" | "null_gradient_rate" | "travel_samples"
         | "moving" => structure.completion.is_some(),

@@ -10,6 +10,7 @@ use chip_support::shipped::variants::{Variant, searches};
 use chip_support::{Bench, largest, sensor_of};
 use nonius_model::bits::Bits;
 use nonius_model::spec::Spec;
+use rayon::prelude::*;
 
 /// Samples of a period of travel.
 const PERIOD: u32 = 301;
@@ -171,21 +172,9 @@ const HOW: &str = "NONIUS_BLESS=1 cargo test -p nonius-model --test on_line_loss
 /// period, and it goes away. After longer ones lock comes back and the calibration too.
 #[test]
 fn the_signal_goes_and_comes_back() {
-    let searches = searches();
-    // Side by side: each takes some seconds.
-    let threads = std::thread::available_parallelism().map_or(1, usize::from);
-    let rows = std::thread::scope(|scope| {
-        let part = searches.len().div_ceil(threads);
-        let parts: Vec<_> = searches
-            .chunks(part)
-            .map(|variants| scope.spawn(|| variants.iter().map(row).collect::<String>()))
-            .collect();
-        let rows = parts.into_iter().map(|part| part.join());
-        rows.map(|row| row.expect("a search of these held"))
-            .collect::<String>()
-    });
+    let rows: Vec<String> = searches().par_iter().map(row).collect();
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/loss-of-signal.md");
-    let page = format!("{HEAD}{rows}");
+    let page = format!("{HEAD}{}", rows.concat());
     nonius_kept::near(Path::new(file), &page, |x| 0.1 * x.abs() + 0.02, HOW);
 }
 

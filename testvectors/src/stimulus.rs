@@ -108,13 +108,15 @@ pub fn named(design: &Design, rows: usize) -> Vec<Stimulus> {
             let t = k as f64 / n - 0.5;
             pair(0.3 + 4.0 * dead * n * t * t, 1.0, 0.0)
         }),
-        // The signal goes and comes back, small; then it grows.
+        // The signal grows before gamma has settled and falls a little when it has; it goes, comes back small, and grows.
         motion("loss", &|k| {
             let gain = match k as f64 / n {
-                t if t < 0.4 => 1.0,
-                t if t < 0.6 => 0.0,
-                t if t < 0.8 => 0.7,
-                t => 0.7 + 2.0 * (t - 0.8),
+                t if t < 0.2 => 0.72,
+                t if t > 0.6 && t < 0.62 => 0.9,
+                t if t < 0.68 => 1.0,
+                t if t < 0.76 => 0.0,
+                t if t < 0.9 => 0.7,
+                t => 0.7 + 4.0 * (t - 0.9),
             };
             let (cos, sin) = pair(0.02 * k as f64 * (top / 0.1), 1.0, 0.0);
             let faded = |code: i64| middle + ((code - middle) as f64 * gain).round() as i64;

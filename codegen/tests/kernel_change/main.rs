@@ -87,6 +87,10 @@ fn a_changed_formula_changes_the_verilog() {
 fn a_formula_that_is_only_read_otherwise_does_not() {
     let design = shipped::design("optical");
     let same = changed(&design, "no such formula");
-    let text = |design| generate(design, "test", &[]).expect("templates render").files;
+    let text = |design| {
+        generate(design, "test", &[])
+            .expect("templates render")
+            .files
+    };
     assert!(text(&design) == text(&same));
 }

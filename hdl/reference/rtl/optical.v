@@ -5,7 +5,7 @@
 // radial residual rho shows what the correction still misses and moves its parameters theta.
 // After S. Balemi, "Automatic calibration of sinusoidal encoder signals", IFAC 2005; equation numbers are the paper's.
 //
-// Design b2fdb087cd8f: 16 products on 1 multiplier, 19 clocks per sample.
+// Design 796f0d3994ba: 16 products on 1 multiplier, 19 clocks per sample.
 //
 // Formats: sW.F is a two's complement number of W bits, F of them behind the point; uW.F has no sign and is kept here
 // with a zero in front, so that every number is signed. Angles are in turns of a scale period. A signal that saturates
@@ -22,9 +22,9 @@
 // -----+--------------------------+-------------------------------------------------------------------------------
 //    0 | -                        | sine_phase upper_half odd_quadrant quarter_phase quarter_phase_mirrored
 //      |                          | sin_address sin_inside cos_address cos_inside theta_1 theta_3 theta_5
-//      |                          | last_gear periods_modulo_4 sector sector_relative sector_ahead sector_behind
-//      |                          | gamma_settled nominal
-//    1 | loop_ab * error_previous | sin_value sin_slope y_c y_s counting whole_period travel_clear
+//      |                          | last_gear periods_modulo_4 sector sector_relative sector_ahead gamma_settled
+//      |                          | nominal
+//    1 | loop_ab * error_previous | sin_value sin_slope y_c y_s counting whole_period sector_behind travel_clear
 //    2 | theta_1 * y_c            | cos_value cos_slope drift
 //    3 | cos_slope * cos_inside   | c_exact c
 //    4 | theta_3 * y_s            | cos_magnitude cos_hat c_weak
@@ -77,6 +77,7 @@
 //     minus_lock_residual -0.5
 //     minus_one          -1
 //     minus_direction_rate -0.0000152587890625
+//     minus_quarter      -0.25
 //     minus_restart_residual -0.25
 //     minus_hold_residual -0.0625
 
@@ -122,6 +123,8 @@ module optical (
     reg signed [7:0] travel_origin; // Position, modulo 4 periods, where the map of sectors was last cleared.
     reg signed [7:0] travel_low; // Lowest sector seen since, relative to the origin.
     reg signed [7:0] travel_high; // Highest sector seen since, relative to the origin.
+    reg ahead_used; // The sectors ahead of the origin were used right before the map was cleared.
+    reg behind_used; // The sectors behind the origin were used right before the map was cleared.
     reg disturbed; // The residual was large in this period of travel.
     reg risen; // The radius was too large in this period of travel.
     reg held; // The residual was large in the period before: the parameters are held.
@@ -180,13 +183,20 @@ module optical (
     reg direction_next;
     reg counting;
     reg signed [7:0] sector;
+    reg signed [7:0] sector_relative;
+    reg whole_period_condition_3;
+    reg whole_period_condition_2;
     reg whole_period_condition;
     reg whole_period;
+    reg sector_ahead;
+    reg sector_behind_condition_2;
+    reg sector_behind_condition;
     reg travel_clear;
-    reg counted_condition_3;
     reg counted_condition_2;
-    reg signed [7:0] travel_low_next_chosen;
-    reg signed [7:0] travel_high_next_chosen;
+    reg signed [7:0] travel_low_next;
+    reg signed [7:0] travel_high_next;
+    reg ahead_used_next;
+    reg behind_used_next;
     reg counted;
     reg gamma_settled;
     reg residual_large_condition_7;
@@ -445,21 +455,26 @@ module optical (
     wire signed [6:0] sector_bits = alpha_hat[27:21]; // u6.6, step 0
     wire signed [7:0] sector_now = {periods_modulo_4, 6'b0} + {sector_bits[6], sector_bits}; // s8.6, step 0
     wire signed [8:0] sector_relative_difference = {sector_now[7], sector_now} - {travel_origin[7], travel_origin}; // s9.6, step 0
-    wire signed [7:0] sector_relative = sector_relative_difference[7:0]; // s8.6, step 0
-    wire whole_period_condition_now = ~($signed(sector_relative[7:6]) < 2'sd1) | ~(~sector_relative < 8'sh3f); // step 0
+    wire signed [7:0] sector_relative_now = sector_relative_difference[7:0]; // s8.6, step 0
+    wire whole_period_condition_3_now = ~($signed(sector_relative_now[7:6]) < 2'sd1); // step 0
+    wire whole_period_condition_2_now = ~(~sector_relative_now < 8'sh3f); // step 0
+    wire whole_period_condition_now = whole_period_condition_3_now | whole_period_condition_2_now; // step 0
     wire whole_period_now = whole_period_condition & counting_now; // step 1
     wire signed [8:0] sector_ahead_sum = {travel_low[7], travel_low} + 9'sh40; // s9.6, step 0
-    wire sector_ahead = (travel_high < sector_relative) & ($signed({sector_relative[7], sector_relative}) < sector_ahead_sum); // step 0
+    wire sector_ahead_now = ((travel_high < sector_relative_now) & ($signed({sector_relative_now[7], sector_relative_now}) < sector_ahead_sum)) & ~(($signed(sector_relative_now[7:4]) < 4'sd1) & ahead_used); // step 0
     wire signed [8:0] sector_behind_difference = {travel_high[7], travel_high} - 9'sh40; // s9.6, step 0
-    wire sector_behind = (sector_relative < travel_low) & (sector_behind_difference < $signed({sector_relative[7], sector_relative})); // step 0
+    wire sector_behind_condition_2_now = (sector_relative_now < travel_low) & (sector_behind_difference < $signed({sector_relative_now[7], sector_relative_now})); // step 0
+    wire sector_behind_condition_now = ~(($signed(~sector_relative_now[7:4]) < 4'sd1) & behind_used); // step 0, with minus_quarter
+    wire sector_behind = sector_behind_condition_2 & sector_behind_condition; // step 1
     wire travel_clear_now = whole_period_now | ~counting_now; // step 1
-    wire counted_condition_3_now = sector_ahead | sector_behind; // step 0
-    wire counted_condition_2_now = counted_condition_3 | travel_clear_now; // step 1
+    wire counted_condition_2_now = (sector_ahead | sector_behind) | travel_clear_now; // step 1
     wire signed [7:0] travel_origin_next = travel_clear ? sector : travel_origin; // s8.6, step 18
-    wire signed [7:0] travel_low_next_chosen_now = sector_behind ? sector_relative : travel_low; // s8.6, step 0
-    wire signed [7:0] travel_low_next = travel_clear ? 8'sd0 : travel_low_next_chosen; // s8.6, step 18
-    wire signed [7:0] travel_high_next_chosen_now = sector_ahead ? sector_relative : travel_high; // s8.6, step 0
-    wire signed [7:0] travel_high_next = travel_clear ? 8'sd0 : travel_high_next_chosen; // s8.6, step 18
+    wire signed [7:0] travel_low_next_chosen = sector_behind ? sector_relative : travel_low; // s8.6, step 1
+    wire signed [7:0] travel_low_next_now = travel_clear_now ? 8'sd0 : travel_low_next_chosen; // s8.6, step 1
+    wire signed [7:0] travel_high_next_chosen = sector_ahead ? sector_relative : travel_high; // s8.6, step 1
+    wire signed [7:0] travel_high_next_now = travel_clear_now ? 8'sd0 : travel_high_next_chosen; // s8.6, step 1
+    wire ahead_used_next_now = counting_now & (whole_period_condition_2 | (ahead_used & ~(whole_period_now | sector_ahead))); // step 1
+    wire behind_used_next_now = counting_now & (whole_period_condition_3 | (behind_used & ~(whole_period_now | sector_behind))); // step 1
     wire counted_now = (counting & in_window_now) & counted_condition_2; // step 12
 
     // Hold
@@ -619,10 +634,13 @@ module optical (
             loop_gear_below_loop_gear_last <= loop_gear_below_loop_gear_last_now;
             last_gear <= last_gear_now;
             sector <= sector_now;
+            sector_relative <= sector_relative_now;
+            whole_period_condition_3 <= whole_period_condition_3_now;
+            whole_period_condition_2 <= whole_period_condition_2_now;
             whole_period_condition <= whole_period_condition_now;
-            counted_condition_3 <= counted_condition_3_now;
-            travel_low_next_chosen <= travel_low_next_chosen_now;
-            travel_high_next_chosen <= travel_high_next_chosen_now;
+            sector_ahead <= sector_ahead_now;
+            sector_behind_condition_2 <= sector_behind_condition_2_now;
+            sector_behind_condition <= sector_behind_condition_now;
             gamma_settled <= gamma_settled_now;
             nominal <= nominal_now;
             gamma_restart_condition <= gamma_restart_condition_now;
@@ -639,6 +657,10 @@ module optical (
             whole_period <= whole_period_now;
             travel_clear <= travel_clear_now;
             counted_condition_2 <= counted_condition_2_now;
+            travel_low_next <= travel_low_next_now;
+            travel_high_next <= travel_high_next_now;
+            ahead_used_next <= ahead_used_next_now;
+            behind_used_next <= behind_used_next_now;
             lock_lost_next_condition_3 <= lock_lost_next_condition_3_now;
         end
         if (step == 5'd2) begin
@@ -770,6 +792,8 @@ module optical (
             lock_lost <= 0;
             signal_lost <= 0;
             direction <= 0;
+            ahead_used <= 0;
+            behind_used <= 0;
             disturbed <= 0;
             risen <= 0;
             held <= 0;
@@ -794,6 +818,8 @@ module optical (
             lock_lost <= lock_lost_next;
             signal_lost <= signal_lost_next;
             direction <= direction_next;
+            ahead_used <= ahead_used_next;
+            behind_used <= behind_used_next;
             disturbed <= disturbed_next;
             risen <= risen_next;
             held <= held_next;

@@ -92,6 +92,8 @@ module chip_tb;
     reg expect_lock_lost;
     reg expect_signal_lost;
     reg expect_direction;
+    reg expect_ahead_used;
+    reg expect_behind_used;
     reg expect_disturbed;
     reg expect_risen;
     reg expect_held;
@@ -125,8 +127,8 @@ module chip_tb;
                 $display("cannot open the vectors of %0s", name);
             end
             while (!bad && played != rows) begin
-                got = $fscanf(file, "%h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h", sample, adc_cos, adc_sin, preset, calibrate, expect_y_c, expect_y_s, expect_theta_1, expect_theta_2, expect_theta_3, expect_theta_4, expect_theta_5, expect_c, expect_s, expect_cos_hat, expect_sin_hat, expect_e, expect_rho, expect_rho_c, expect_rho_s, expect_speed, expect_in_window, expect_fresh, expect_whole_period, expect_alpha_hat, expect_count, expect_rate, expect_error_previous, expect_theta_1_deviation, expect_theta_2_deviation, expect_theta_3_deviation, expect_theta_4_deviation, expect_theta_5_deviation, expect_lock_level, expect_loop_gear, expect_gamma_gear, expect_gear_periods, expect_travel_origin, expect_travel_low, expect_travel_high, expect_locked, expect_lock_lost, expect_signal_lost, expect_direction, expect_disturbed, expect_risen, expect_held);
-                if (got != 47) begin
+                got = $fscanf(file, "%h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h %h", sample, adc_cos, adc_sin, preset, calibrate, expect_y_c, expect_y_s, expect_theta_1, expect_theta_2, expect_theta_3, expect_theta_4, expect_theta_5, expect_c, expect_s, expect_cos_hat, expect_sin_hat, expect_e, expect_rho, expect_rho_c, expect_rho_s, expect_speed, expect_in_window, expect_fresh, expect_whole_period, expect_alpha_hat, expect_count, expect_rate, expect_error_previous, expect_theta_1_deviation, expect_theta_2_deviation, expect_theta_3_deviation, expect_theta_4_deviation, expect_theta_5_deviation, expect_lock_level, expect_loop_gear, expect_gamma_gear, expect_gear_periods, expect_travel_origin, expect_travel_low, expect_travel_high, expect_locked, expect_lock_lost, expect_signal_lost, expect_direction, expect_ahead_used, expect_behind_used, expect_disturbed, expect_risen, expect_held);
+                if (got != 49) begin
                     bad = 1'b1;
                     $display("row %0d of %0s cannot be read", played, name);
                 end else begin
@@ -177,6 +179,8 @@ module chip_tb;
                     if (chip.travel_origin !== expect_travel_origin) check_failed("travel_origin", {120'd0, expect_travel_origin}, {120'd0, chip.travel_origin});
                     if (chip.travel_low !== expect_travel_low) check_failed("travel_low", {120'd0, expect_travel_low}, {120'd0, chip.travel_low});
                     if (chip.travel_high !== expect_travel_high) check_failed("travel_high", {120'd0, expect_travel_high}, {120'd0, chip.travel_high});
+                    if (chip.ahead_used !== expect_ahead_used) check_failed("ahead_used", {127'd0, expect_ahead_used}, {127'd0, chip.ahead_used});
+                    if (chip.behind_used !== expect_behind_used) check_failed("behind_used", {127'd0, expect_behind_used}, {127'd0, chip.behind_used});
                     if (chip.fresh !== expect_fresh) check_failed("fresh", {127'd0, expect_fresh}, {127'd0, chip.fresh});
                     if (chip.rho_c !== expect_rho_c) check_failed("rho_c", {110'd0, expect_rho_c}, {110'd0, chip.rho_c});
                     if (chip.rho_s !== expect_rho_s) check_failed("rho_s", {110'd0, expect_rho_s}, {110'd0, chip.rho_s});

@@ -195,6 +195,8 @@ fn advance_of<S: Signal, const PLAIN: bool>(
     registers.travel_origin = travel.origin;
     registers.travel_low = travel.low;
     registers.travel_high = travel.high;
+    registers.ahead_used = travel.ahead_used;
+    registers.behind_used = travel.behind_used;
     registers.locked = lock.locked;
     registers.lock_lost = lost;
     registers.signal_lost = weak;

@@ -112,6 +112,10 @@ bundle! {
         signal_lost,
         /// The scale runs backwards.
         direction,
+        /// The sectors ahead of the origin were used right before the map was cleared.
+        ahead_used,
+        /// The sectors behind the origin were used right before the map was cleared.
+        behind_used,
         /// The residual was large in this period of travel.
         disturbed,
         /// The radius was too large in this period of travel.

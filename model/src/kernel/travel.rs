@@ -4,7 +4,9 @@
 //! the map of sectors was last cleared; then the map is cleared. Motion is continuous, so what has been seen is an
 //! interval about that origin, never longer than a period: two numbers instead of 64 bits. To and fro over the same
 //! arc adds nothing, standstill adds nothing, and a whole period of travel adds every sector exactly once, so the
-//! parameters are pulled equally from all sides.
+//! parameters are pulled equally from all sides. What was used right before the map was cleared is not used again by
+//! turning back there: a quarter of the period must be behind the turn first. So a vibration adds sectors on one side of
+//! its place at most.
 
 use super::{Coefficients, Input, State, Structure};
 use crate::format::{Format, Quantiser};
@@ -52,6 +54,10 @@ pub struct Travel<S: Signal> {
     pub low: S,
     /// Highest sector used, relative to the origin.
     pub high: S,
+    /// The sectors ahead of the origin were used before the map was cleared.
+    pub ahead_used: S::Bool,
+    /// The sectors behind it were.
+    pub behind_used: S::Bool,
 }
 
 /// Whether this sample's sector is fresh, and the map after it. Not counting (`counting` false) clears the map. `measure`: where
@@ -86,14 +92,18 @@ pub fn travel<S: Signal>(
     let period_ahead = relative.less_than(period).not();
     let period_behind = (-period).less_than(relative).not();
     let whole_period = period_ahead.or(period_behind).and(counting);
+    let near_ahead = relative.less_than(k.quarter).and(state.ahead_used);
+    let near_behind = relative.less_than(-k.quarter).not().and(state.behind_used);
     let ahead = state
         .travel_high
         .less_than(relative)
         .and(relative.less_than(state.travel_low + k.one))
+        .and(near_ahead.not())
         .named("sector_ahead");
     let behind = relative
         .less_than(state.travel_low)
         .and((state.travel_high - k.one).less_than(relative))
+        .and(near_behind.not())
         .named("sector_behind");
     let clear = whole_period.or(counting.not()).named("travel_clear");
     let keep = |x: S| x.quantise(&Quantiser::wrapping(SECTOR));
@@ -121,5 +131,9 @@ pub fn travel<S: Signal>(
             k.zero,
             S::select(ahead, relative, state.travel_high),
         )),
+        ahead_used: counting
+            .and(period_behind.or(state.ahead_used.and(whole_period.or(ahead).not()))),
+        behind_used: counting
+            .and(period_ahead.or(state.behind_used.and(whole_period.or(behind).not()))),
     }
 }

@@ -41,6 +41,8 @@ pub struct GateState {
     origin: Option<i64>,
     /// One bit for each sector of the period that was used.
     used: u64,
+    /// Side of the origin that the travel before it came from: sectors there were used.
+    before: i64,
 }
 
 impl GateState {
@@ -52,6 +54,7 @@ impl GateState {
             good: 0,
             origin: None,
             used: 0,
+            before: 0,
         }
     }
 
@@ -90,14 +93,29 @@ impl GateState {
 
     fn fresh(&mut self, alpha_hat: f64) -> bool {
         let sector = (alpha_hat / TAU * SECTORS as f64).floor() as i64;
-        let cleared = self.origin.is_none_or(|o| (sector - o).abs() >= SECTORS);
-        if cleared {
+        let relative = sector - self.origin.unwrap_or(sector);
+        let cleared = relative.abs() >= SECTORS;
+        if cleared || self.origin.is_none() {
             self.origin = Some(sector);
             self.used = 0;
+            self.before = if cleared { -relative.signum() } else { 0 };
         }
-        let bit = 1u64 << sector.rem_euclid(SECTORS);
-        let fresh = self.used & bit == 0;
-        self.used |= bit;
+        let fresh = self.used & bit(sector) == 0;
+        if fresh && relative * self.before > 0 {
+            // Turned back, where sectors were used right before the map was cleared.
+            if (-SECTORS / 4..SECTORS / 4).contains(&relative) {
+                return false;
+            }
+            let passed = (1..relative.abs()).map(|n| sector - n * self.before);
+            self.used |= passed.fold(0, |map, sector| map | bit(sector));
+            self.before = 0;
+        }
+        self.used |= bit(sector);
         fresh
     }
+}
+
+/// Of a sector in the map.
+fn bit(sector: i64) -> u64 {
+    1 << sector.rem_euclid(SECTORS)
 }
