@@ -113,8 +113,8 @@ pub fn named(design: &Design, rows: usize) -> Vec<Stimulus> {
             let gain = match k as f64 / n {
                 t if t < 0.2 => 0.72,
                 t if t > 0.6 && t < 0.62 => 0.9,
-                t if t < 0.68 => 1.0,
-                t if t < 0.76 => 0.0,
+                t if t < 0.66 => 1.0,
+                t if t < 0.72 => 0.0,
                 t if t < 0.9 => 0.7,
                 t => 0.7 + 4.0 * (t - 0.9),
             };

@@ -43,9 +43,9 @@ fn the_loss_is_remembered_until_the_preset() {
     for name in shipped::NAMES {
         let states = played(&shipped::design(name), "loss");
         let preset = ROWS - ROWS / 8;
-        assert!(states[ROWS * 4 / 10 - 1].locked, "{name}: not locked first");
-        assert!(states[ROWS * 59 / 100].signal_lost, "{name}");
-        assert!(!states[ROWS * 59 / 100].locked, "{name}");
+        assert!(states[ROWS * 65 / 100].locked, "{name}: not locked first");
+        assert!(states[ROWS * 71 / 100].signal_lost, "{name}");
+        assert!(!states[ROWS * 71 / 100].locked, "{name}");
         assert!(states[preset - 1].lock_lost, "{name}: forgotten");
         assert!(states[preset - 1].locked, "{name}: not locked again");
         assert!(!states[preset].lock_lost, "{name}: not taken back");

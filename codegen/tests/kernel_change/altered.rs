@@ -17,10 +17,10 @@ thread_local! {
 }
 
 #[derive(Clone, Copy, Debug)]
-pub struct Altered<'g>(Node<'g>);
+pub(crate) struct Altered<'g>(Node<'g>);
 
 #[derive(Clone, Copy, Debug)]
-pub struct WideAltered<'g>(WideNode<'g>);
+pub(crate) struct WideAltered<'g>(WideNode<'g>);
 
 fn difference<T: Add<Output = T> + Sub<Output = T>>(a: T, b: T) -> T {
     if INSIDE.get() { a + b } else { a - b }
@@ -123,13 +123,13 @@ impl<'g> Wide for WideAltered<'g> {
 }
 
 /// The formula that [`kernel`] changes.
-pub fn change(title: &'static str) {
+pub(crate) fn change(title: &'static str) {
     CHANGED.set(title);
     INSIDE.set(false);
 }
 
 /// The chip's own kernel, recorded with that formula changed.
-pub fn kernel<'g>(
+pub(crate) fn kernel<'g>(
     input: &Input<Node<'g>>,
     state: &State<Node<'g>>,
     k: &Coefficients<Node<'g>>,
