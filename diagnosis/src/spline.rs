@@ -265,19 +265,19 @@ pub(crate) struct Basis {
 impl Basis {
     /// Adds the products of weighted values with the B-splines to `sums`.
     pub(crate) fn accumulate(&self, weighted: &[f64], sums: &mut [f64]) {
-        let [w0, w1, w2, w3] = &self.weights;
         for (first, range) in &self.pieces {
-            // Two sums for each, so that no addition waits for the last one.
-            let mut sum = [[0.0; 4]; 2];
-            for k in range.clone() {
-                let (v, part) = (weighted[k], &mut sum[k & 1]);
-                part[0] += w0[k] * v;
-                part[1] += w1[k] * v;
-                part[2] += w2[k] * v;
-                part[3] += w3[k] * v;
-            }
-            for i in 0..4 {
-                sums[first + i] += sum[0][i] + sum[1][i];
+            let (values, last) = weighted[range.clone()].as_chunks::<4>();
+            for (i, weights) in self.weights.iter().enumerate() {
+                let (weights, last_weights) = weights[range.clone()].as_chunks::<4>();
+                // Four sums, so that no addition waits for the last one.
+                let mut sum = [0.0; 4];
+                for (v, w) in values.iter().zip(weights) {
+                    for lane in 0..4 {
+                        sum[lane] += v[lane] * w[lane];
+                    }
+                }
+                let rest: f64 = last.iter().zip(last_weights).map(|(v, w)| v * w).sum();
+                sums[first + i] += sum.iter().sum::<f64>() + rest;
             }
         }
     }

@@ -49,7 +49,11 @@ fn high_pass(sample_rate: f64) -> impl Fn(f64, &mut Library) -> Vec<Shape> + 'st
         // The charge of either capacitor when the recording begins is anything; it leaks away.
         shapes.extend([0, 1].map(|which| {
             library.pair(move |block: &Block, c, s| {
-                let left = |t: &f64| (-TAU * corner * t).exp();
+                let left = |t: &f64| {
+                    let x = TAU * corner * t;
+                    // Smaller than any rounding, and slow to compute.
+                    if x < 40.0 { (-x).exp() } else { 0.0 }
+                };
                 let change: Vec<f64> = block.time.iter().map(left).collect();
                 block.channel(which, &change, c, s);
             })
