@@ -13,6 +13,9 @@ use toml_edit::{ArrayOfTables, DocumentMut, Item, Table, value};
 /// Room above the largest bend that was found.
 const ROOM: f64 = 1.5;
 
+/// Scale periods of travel that show what calibration on line would find.
+const FEWEST: f64 = 2.0;
+
 /// Largest coefficient of T2 or T3 in either channel, as a fraction of the amplitude; `None` if no bend was found.
 fn bend(found: &Diagnosis) -> Option<f64> {
     let beta = found.context.ellipse.beta;
@@ -152,6 +155,14 @@ fn correct_bends(text: &str, found: &Diagnosis) -> Result<(String, Vec<String>)>
         return unchanged(vec![
             "the channels bend, but a scale period is a revolution: motion at two cycles per revolution would be learnt \
              as a bend, so the design keeps its parameters, and the bend goes into the table of harmonics"
+                .into(),
+        ]);
+    }
+    if found.context.periods_travelled() < FEWEST {
+        return unchanged(vec![
+            "the channels bend, but hardly a scale period was travelled: whether they do elsewhere, and whether a scale \
+             period is a revolution, cannot be seen, so the design keeps its parameters, and the bend goes into the table \
+             of harmonics"
                 .into(),
         ]);
     }

@@ -215,3 +215,36 @@ fn designs_from_recordings_follow_them() {
         "NONIUS_BLESS=1 cargo test -p nonius --test followed_recordings",
     );
 }
+
+/// Less than a turn of an encoder of one period, which the recording does not say: nothing is learnt on line that could be
+/// motion, and the paper in `f64` follows as the chip does.
+#[test]
+fn a_period_that_may_be_a_revolution_calibrates_no_bends() {
+    let Some(path) = nonius_kept::recording(CHECK, "rm44_static_x500um.csv") else {
+        return;
+    };
+    let dir = tempfile::tempdir().expect("scratch folder");
+    let file = path.display().to_string();
+    let said = done(dir.path(), &["diagnose", &file, "-o", "found"]);
+    assert!(said.contains("keeps its parameters"), "{said}");
+    let reference = Recording::read(&path, &Overrides::default())
+        .expect("a recording")
+        .reference_rad
+        .expect("a reference");
+    for reading in [&[][..], &["--reference"]] {
+        let run = [
+            "simulate",
+            "found/design.toml",
+            &file,
+            "-o",
+            "out.csv",
+            "--repeat",
+            "60",
+        ];
+        done(dir.path(), &[&run, reading].concat());
+        let csv = std::fs::read_to_string(dir.path().join("out.csv")).expect("positions");
+        let positions = column(&csv, "position_periods");
+        let error = error_degrees(&positions[positions.len() - reference.len()..], &reference);
+        assert!(error < 0.15, "{reading:?}: {error} degrees");
+    }
+}

@@ -39,7 +39,8 @@ impl Moving {
     fn step(&mut self, alpha_hat: f64) -> bool {
         let began = *self.began.get_or_insert(alpha_hat);
         self.samples += 1.0;
-        let late = self.samples * self.slowest > TAU;
+        // Exactly at the slowest it rests, whatever the rounding.
+        let late = self.samples * self.slowest > TAU * (1.0 - 1e-12);
         if late || (alpha_hat - began).abs() >= TAU {
             self.open = !late;
             self.began = Some(alpha_hat);
