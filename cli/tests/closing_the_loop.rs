@@ -157,7 +157,8 @@ fn closed(recording: &str, simulated: bool) -> Closed {
         // The named stimuli have tests of their own.
         let of = ["--play", "head.csv", "--rows", "100"];
         done(dir, &[&["build", design, "-o", "chip"], &of[..]].concat());
-        let report = verify(dir.join("chip"), &Options::PATIENT, &silent).expect("two simulators");
+        let report = verify(dir.join("chip"), &Options::PATIENT, &silent);
+        let report = report.unwrap_or_else(|e| panic!("{e}"));
         assert!(report.passed && report.runs.len() == 2, "{report:#?}");
         let played = fs::read_to_string(dir.join("chip/vectors/recording.vec"));
         assert_eq!(

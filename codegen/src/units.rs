@@ -188,9 +188,7 @@ pub(crate) fn tables(w: &Writer) -> Vec<Table> {
             .ids()
             .filter_map(|id| match w.graph.node(id).op {
                 Op::Lookup {
-                    rom: r,
-                    column: 0,
-                    address,
+                    rom: r, address, ..
                 } if r == index => {
                     let step = w.schedule.ready[id.index()] - 1;
                     let drop = w.graph.node(address).format.fraction - rom.index_fraction;
@@ -200,7 +198,9 @@ pub(crate) fn tables(w: &Writer) -> Vec<Table> {
                 _ => None,
             })
             .collect();
+        // All columns of a row come together.
         reads.sort();
+        reads.dedup();
         let fallback = reads.pop().map_or_else(|| "0".into(), |r| r.1);
         let row = format!("{}_row", rom.name);
         w.declare(&row, rom.row_width());

@@ -40,6 +40,9 @@ fn variants_are_clean() {
     });
 }
 
+/// Rows of each stimulus: enough to lock, which skew waits for, and to calibrate.
+const ROWS: usize = 240;
+
 const ICARUS: Options = Options {
     verilator: false,
     ..Options::PATIENT
@@ -54,7 +57,7 @@ fn agree(variants: &[Variant], nth: usize) {
     variants.par_iter().enumerate().for_each(|(i, variant)| {
         let both = i % nth == 0;
         let simulators = if both { &Options::PATIENT } else { &ICARUS };
-        agrees(variant, 120, simulators);
+        agrees(variant, ROWS, simulators);
     });
 }
 
@@ -91,7 +94,7 @@ fn every_other_variant_in_icarus() {
     let others: Vec<Variant> = others.into_iter().flatten().collect();
     others
         .par_iter()
-        .for_each(|variant| agrees(variant, 120, &ICARUS));
+        .for_each(|variant| agrees(variant, ROWS, &ICARUS));
     variants::narrow()
         .par_iter()
         .for_each(|variant| agrees(variant, 300, &ICARUS));

@@ -223,7 +223,7 @@ fn faults() -> Vec<Fault> {
             replaced(v, &["operand_", "sh13b1b"], "sh13b1b", "sh13b1a")
         }),
         fault("last bit of the lock limit", |v| {
-            replaced(v, &["wire", "< 5'sd3)"], "5'sd3", "5'sd4")
+            replaced(v, &["wire in_window_now ="], "6'sd7", "6'sd8")
         }),
         fault("last bit of the limit that begins again", |v| {
             let words = ["wire residual_large_condition_7_now ="];

@@ -32,8 +32,9 @@ pub struct Simulation {
     pub along: Vec<[f64; 2]>,
 }
 
-/// Most samples that the calibration is given.
+/// Samples that the calibration is given, and most where the machine is slow.
 const CONVERGE: usize = 400_000;
+const PATIENT: usize = 4_000_000;
 /// Samples of a ramp down and of the sweep over a period.
 const RAMP: usize = 5_000;
 const SWEEP: usize = 100_000;
@@ -50,9 +51,11 @@ pub fn simulate(design: &Design) -> Simulation {
     // At the last gamma the slowest mode settles by an e-th in about 2/(64 gamma) periods.
     let last = 2f64.powi(spec.calibration.gamma_last as i32);
     let periods = 60.0 + 10.0 * last / 64.0 * 2.0;
-    // Where the machine is so slow that this would take for ever, it is simulated faster than it is.
-    let fast = fast.max(periods / CONVERGE as f64);
-    let converge = ((periods / fast) as usize).clamp(5_000, CONVERGE);
+    // A slow machine moves up to its top speed, and takes its time; where that would take for ever, it is simulated faster
+    // than it is.
+    let fast = fast.max((periods / CONVERGE as f64).min(top));
+    let fast = fast.max(periods / PATIENT as f64);
+    let converge = ((periods / fast) as usize).clamp(5_000, PATIENT);
     // An axis slows down, the loop comes to rest behind the ramp, and a whole period is measured.
     let turns = spec.tracking.bandwidth_hz * TAU / spec.adc.sample_rate_hz;
     let settle = RAMP + ((20.0 / turns) as usize).min(100_000);
@@ -87,6 +90,11 @@ pub fn simulate(design: &Design) -> Simulation {
         }
         chip.step_codes(sample.cos, sample.sin, false, true);
     }
+    // A loop of type 1 lags by a constant at constant speed, which is no error of the angle.
+    let lag = match spec.tracking.filter_type {
+        1 => whole.sum / whole.count,
+        _ => 0.0,
+    };
     let place = |i: usize| (i as f64 + 0.5) / PARTS as f64;
     let seen = parts
         .iter()
@@ -94,14 +102,14 @@ pub fn simulate(design: &Design) -> Simulation {
         .filter(|(_, part)| part.count > 0.0);
     Simulation {
         accuracy: Accuracy {
-            rms_periods: whole.rms(),
-            largest_periods: whole.largest,
+            rms_periods: (whole.squares / whole.count - lag * lag).max(0.0).sqrt(),
+            largest_periods: whole.largest.max(lag.abs()) - lag.abs(),
             locked: chip.state.locked,
         },
         course,
         raw_rms_periods: raw.rms(),
         along: seen
-            .map(|(i, part)| [place(i), part.sum / part.count])
+            .map(|(i, part)| [place(i), part.sum / part.count - lag])
             .collect(),
     }
 }

@@ -57,3 +57,19 @@ fn the_budget_predicts_what_is_simulated() {
         }
     }
 }
+
+/// A slow machine with a loop of type 1 is judged at speeds that it promises, without the lag that such a loop has.
+#[test]
+fn a_slow_machine_reaches_what_is_asked() {
+    let mut spec = shipped::optical();
+    spec.tracking.filter_type = 1;
+    spec.tracking.bandwidth_hz = 2e3;
+    spec.sensor.speed_max_periods_per_s = 200.0;
+    let design = Design::new(&spec).expect("a design that works");
+    let found = simulate(&design).accuracy;
+    println!("{found:?}");
+    assert!(
+        found.locked && found.rms_periods <= spec.accuracy.rms_periods,
+        "{found:?}"
+    );
+}

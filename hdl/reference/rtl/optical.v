@@ -5,7 +5,7 @@
 // radial residual rho shows what the correction still misses and moves its parameters theta.
 // After S. Balemi, "Automatic calibration of sinusoidal encoder signals", IFAC 2005; equation numbers are the paper's.
 //
-// Design 796f0d3994ba: 16 products on 1 multiplier, 19 clocks per sample.
+// Design 5c6a34320f29: 16 products on 1 multiplier, 19 clocks per sample.
 //
 // Formats: sW.F is a two's complement number of W bits, F of them behind the point; uW.F has no sign and is kept here
 // with a zero in front, so that every number is signed. Angles are in turns of a scale period. A signal that saturates
@@ -53,7 +53,7 @@
 //     quarter_turn       0.24999618530273438     A quarter turn, less one bit of the sine phase.
 //     half_bit           0.0000019073486328125   Half a bit of the sine phase: what was cut off, on average.
 //     half_segment       0.001953125             Half a sine table segment.
-//     lock_error         0.375                   Largest |e| in lock, radians.
+//     lock_error         0.4375                  Largest |e| in lock, radians.
 //     weak_signal        0.25                    Corrected signals below this are lost.
 //     restart_residual   0.25                    |ρ| above this begins the search again.
 //     hold_residual      0.0625                  |ρ| above this holds the parameters once γ has settled.
@@ -73,7 +73,7 @@
 //     half               0.5                     ½.
 //     quarter            0.25                    ¼.
 //     minus_weak_signal  -0.25
-//     minus_lock_error   -0.375
+//     minus_lock_error   -0.4375
 //     minus_lock_residual -0.5
 //     minus_one          -1
 //     minus_direction_rate -0.0000152587890625
@@ -382,7 +382,7 @@ module optical (
     //   (calibration needs lock: the update would otherwise drive the gains to zero)
     wire in_window_condition_3_now = $signed(~rho_now[17:15]) < 3'sd1; // step 9, with minus_lock_residual
     wire in_window_condition_now = ~signal_lost_next_now; // step 8
-    wire in_window_now = ((($signed(e[17:13]) < 5'sd3) & ($signed(~e[17:13]) < 5'sd3)) & in_window_condition_3) & in_window_condition; // step 12, with lock_error, minus_lock_error
+    wire in_window_now = ((($signed(e[17:12]) < 6'sd7) & ($signed(~e[17:12]) < 6'sd7)) & in_window_condition_3) & in_window_condition; // step 12, with lock_error, minus_lock_error
     wire flip_condition_now = ~(locked | signal_lost_next_now); // step 8
     wire flip = ~($signed(~rho_now[17:16]) < 2'sd1) & flip_condition; // step 9
 

@@ -1,6 +1,6 @@
 //! Structure, formats and constants of a design.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{SQRT_2, TAU};
 
 use super::{Acquisition, DesignError, Loop, Words, harmonics, normalisation, skew};
 use crate::format::{Format, Quantiser, exp2};
@@ -239,16 +239,21 @@ pub(super) fn constants(
     );
     let full = (1i64 << level_bits(tracking)) - 1;
     let s = &spec.sensor;
-    let worst = s.offset_max * 1.5
-        + s.amplitude_tolerance
-        + s.phase_error_max_deg.to_radians()
-        + 5.0 * s.noise_rms
+    let more = 5.0 * s.noise_rms
         + if spec.calibration.parameters >= 8 {
             2.0 * s.bend_max
         } else {
             0.0
         }
         + skew::phase_max(spec) / 2.0;
+    let radius =
+        s.offset_max * 1.5 + s.amplitude_tolerance + s.phase_error_max_deg.to_radians() + more;
+    // At top speed the loop follows none of it: gains turn the pair by sin 2α, offsets by a wave of the period, the phase
+    // by half of it and a wave of half the period. Near its bandwidth it adds a fifth.
+    let turn = s.amplitude_tolerance
+        + SQRT_2 * s.offset_max
+        + 0.75 * s.phase_error_max_deg.to_radians()
+        + more;
     Coefficients {
         adc_middle: Constant::rounded(0.5, 1),
         loop_a: Constant::normalised(tracking.a, width, 40),
@@ -272,8 +277,8 @@ pub(super) fn constants(
             words.harmonic_rows_log2 + 1,
         ),
         // Limits of few bits make short comparators.
-        lock_error: Constant::rounded((0.75 * worst).clamp(0.35, 0.6), 4),
-        lock_residual: Constant::rounded((1.25 * worst).clamp(0.4, 0.9), 4),
+        lock_error: Constant::rounded((1.2 * turn).clamp(0.35, 0.8), 4),
+        lock_residual: Constant::rounded((1.25 * radius).clamp(0.4, 0.9), 4),
         weak_signal: Constant::rounded(0.25, 2),
         restart_residual: Constant::rounded(spec.calibration.restart_residual, f.min(8)),
         hold_residual: Constant::rounded(spec.hold_residual(), f.min(8)),
