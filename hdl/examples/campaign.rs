@@ -59,7 +59,7 @@ fn run(docs: Option<&Path>) -> Result<bool, Box<dyn Error>> {
     let (rows, step) = if docs.is_some() {
         (LONG, 1)
     } else {
-        (SHORT, 10)
+        (SHORT, 20)
     };
     let mut outcomes = vec![];
     for variant in everything().into_iter().step_by(step) {

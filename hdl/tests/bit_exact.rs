@@ -41,7 +41,7 @@ fn variants_are_clean() {
 }
 
 /// Rows of each stimulus: enough to lock, which skew waits for, and to calibrate.
-const ROWS: usize = 240;
+const ROWS: usize = 200;
 
 const ICARUS: Options = Options {
     verilator: false,
@@ -97,7 +97,7 @@ fn every_other_variant_in_icarus() {
         .for_each(|variant| agrees(variant, ROWS, &ICARUS));
     variants::narrow()
         .par_iter()
-        .for_each(|variant| agrees(variant, 300, &ICARUS));
+        .for_each(|variant| agrees(variant, ROWS, &ICARUS));
 }
 
 #[test]
