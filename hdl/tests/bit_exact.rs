@@ -70,12 +70,12 @@ fn shipped_designs_in_icarus_and_verilator() {
     });
 }
 
-/// Every search with every parameter set; in Verilator those with the largest sets, in the long campaign all.
+/// Every search with every parameter set in Icarus, in Verilator each second with the largest set; in the long campaign all.
 #[test]
 fn searches_in_icarus_and_verilator() {
     let largest = |v: &Variant| matches!(v.spec.calibration.parameters, 5 | 9);
     let (largest, smaller): (Vec<_>, Vec<_>) = variants::searches().into_iter().partition(largest);
-    agree(&largest, 1);
+    agree(&largest, 2);
     agree(&smaller, 4);
 }
 
