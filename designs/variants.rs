@@ -25,6 +25,11 @@ impl Variant {
         Self { what, spec }
     }
 
+    /// The larger of the parameter sets that its search has.
+    pub(crate) fn is_largest(&self) -> bool {
+        matches!(self.spec.calibration.parameters, 5 | 9)
+    }
+
     /// Quantised.
     pub(crate) fn design(&self) -> Design {
         Design::new(&self.spec).unwrap_or_else(|refused| panic!("{}: {refused}", self.what))
@@ -100,8 +105,7 @@ pub(crate) fn fixed() -> Variant {
 pub(crate) fn kinds() -> Vec<Variant> {
     let mut kinds = shipped();
     kinds.push(fixed());
-    let largest = |v: &Variant| matches!(v.spec.calibration.parameters, 5 | 9);
-    kinds.extend(searches().into_iter().filter(largest));
+    kinds.extend(searches().into_iter().filter(Variant::is_largest));
     kinds
 }
 

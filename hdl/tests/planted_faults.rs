@@ -124,27 +124,47 @@ fn half_down(verilog: &str, name: &str) -> String {
 
 type Fault = (&'static str, Box<dyn Fn(&str) -> String>);
 
+fn fault(name: &'static str, change: fn(&str) -> String) -> Fault {
+    (name, Box::new(change))
+}
+
+/// Of the one line that holds all of `words`, `from` becomes `to`.
+fn swap(
+    name: &'static str,
+    words: &'static [&'static str],
+    from: &'static str,
+    to: &'static str,
+) -> Fault {
+    (name, Box::new(move |v| replaced(v, words, from, to)))
+}
+
 /// Faults in the Verilog, each of one place.
 fn faults() -> Vec<Fault> {
-    let fault = |name, change: fn(&str) -> String| -> Fault { (name, Box::new(change)) };
     vec![
-        fault("rounding of the phase error: by the wrong bit", |v| {
-            replaced(
-                v,
-                &["wire", " e_seen_rounded ="],
-                "e_exact[15]}",
-                "e_exact[14]}",
-            )
-        }),
-        fault("rounding of c: cut off", |v| {
-            replaced(v, &["wire", " c_rounded ="], "c_exact[10]", "1'b0")
-        }),
-        fault("rounding of theta_1: cut off", |v| {
-            replaced(v, &["wire", " theta_1_rounded ="], "200 +", "000 +")
-        }),
-        fault("half of theta_1's last bit rounds down", |v| {
-            replaced(v, &["wire", " theta_1_rounded ="], "5000200 +", "50001ff +")
-        }),
+        swap(
+            "rounding of the phase error: by the wrong bit",
+            &["wire", " e_seen_rounded ="],
+            "e_exact[15]}",
+            "e_exact[14]}",
+        ),
+        swap(
+            "rounding of c: cut off",
+            &["wire", " c_rounded ="],
+            "c_exact[10]",
+            "1'b0",
+        ),
+        swap(
+            "rounding of theta_1: cut off",
+            &["wire", " theta_1_rounded ="],
+            "200 +",
+            "000 +",
+        ),
+        swap(
+            "half of theta_1's last bit rounds down",
+            &["wire", " theta_1_rounded ="],
+            "5000200 +",
+            "50001ff +",
+        ),
         fault("half of theta_5's last bit rounds down", |v| {
             half_down(v, "theta_5")
         }),
@@ -170,98 +190,112 @@ fn faults() -> Vec<Fault> {
             let all = between(v, &words, "= ", ";");
             replaced(v, &words, &all, &kept)
         }),
-        fault("saturation of theta_4: at the other end", |v| {
-            let words = ["wire", " theta_4_deviation_next_bits = "];
-            replaced(v, &words, "{24{~", "{24{")
-        }),
-        fault("sign extension of a product", |v| {
-            let words = ["wire", " sin_magnitude_sum ="];
-            replaced(v, &words, "{{7{sin_slope_times_sin_inside[24]}}", "{7'b0")
-        }),
-        fault("sign extension of the speed", |v| {
-            let words = ["wire", " alpha_hat_sum ="];
-            replaced(v, &words, "{{3{speed[25]}}", "{3'b0")
-        }),
-        fault("logical shift in place of the arithmetic one", |v| {
-            replaced(v, &["wire", " kick_shifted ="], ">>>", ">>")
-        }),
+        swap(
+            "saturation of theta_4: at the other end",
+            &["wire", " theta_4_deviation_next_bits = "],
+            "{24{~",
+            "{24{",
+        ),
+        swap(
+            "sign extension of a product",
+            &["wire", " sin_magnitude_sum ="],
+            "{{7{sin_slope_times_sin_inside[24]}}",
+            "{7'b0",
+        ),
+        swap(
+            "sign extension of the speed",
+            &["wire", " alpha_hat_sum ="],
+            "{{3{speed[25]}}",
+            "{3'b0",
+        ),
+        swap(
+            "logical shift in place of the arithmetic one",
+            &["wire", " kick_shifted ="],
+            ">>>",
+            ">>",
+        ),
         fault("latency: one clock more", |v| another_last_step(v, 1)),
         fault("latency: a register committed one step early", |v| {
             another_last_step(v, -1)
         }),
-        fault("a chip that does not wait for samples", |v| {
-            replaced(v, &["wire start ="], " & sample_valid", "")
-        }),
-        fault("a sample that an early strobe begins anew", |v| {
-            replaced(
-                v,
-                &["wire start ="],
-                "(step == 5'd0) & sample_valid",
-                "sample_valid",
-            )
-        }),
-        fault("valid longer than a clock", |v| {
-            replaced(
-                v,
-                &["valid <= last"],
-                "last",
-                "last | (valid & (step == 5'd0) & ~sample_valid)",
-            )
-        }),
-        fault("a step counter that runs by itself", |v| {
-            replaced(
-                v,
-                &["else if (start |"],
-                "else if (start | (step != 5'd0))",
-                "else",
-            )
-        }),
-        fault("last bit of the coefficient a", |v| {
-            replaced(v, &["operand_", "sh1cf1c"], "sh1cf1c", "sh1cf1d")
-        }),
-        fault("last bit of the coefficient a + b", |v| {
-            replaced(v, &["operand_", "sh13b1b"], "sh13b1b", "sh13b1a")
-        }),
-        fault("last bit of the lock limit", |v| {
-            replaced(v, &["wire in_window_now ="], "6'sd7", "6'sd8")
-        }),
-        fault("last bit of the limit that begins again", |v| {
-            let words = ["wire residual_large_condition_7_now ="];
-            replaced(v, &words, "< 4'sd1)", "< 4'sd2)")
-        }),
-        fault("last bit of the limit that holds", |v| {
-            let words = ["wire residual_large_condition_3_now ="];
-            replaced(
-                v,
-                &words,
-                "~rho_now[17:12]) < 6'sd1)",
-                "~rho_now[17:12]) < 6'sd2)",
-            )
-        }),
-        fault("direction forwards from twice the speed on", |v| {
-            let words = ["wire speed_below_direction_rate_now ="];
-            replaced(v, &words, "< 15'sd1;", "< 15'sd2;")
-        }),
-        fault("sectors counted again by turning back behind", |v| {
-            replaced(
-                v,
-                &["wire sector_behind_condition_now ="],
-                " & behind_used",
-                " & 1'b0",
-            )
-        }),
-        fault("sectors counted again by turning back ahead", |v| {
-            replaced(v, &["wire sector_ahead_now ="], " & ahead_used", " & 1'b0")
-        }),
-        fault("turning back that is never forgotten", |v| {
-            let words = ["wire behind_used_next_now ="];
-            replaced(
-                v,
-                &words,
-                "(whole_period_now | sector_behind)",
-                "whole_period_now",
-            )
-        }),
+        swap(
+            "a chip that does not wait for samples",
+            &["wire start ="],
+            " & sample_valid",
+            "",
+        ),
+        swap(
+            "a sample that an early strobe begins anew",
+            &["wire start ="],
+            "(step == 5'd0) & sample_valid",
+            "sample_valid",
+        ),
+        swap(
+            "valid longer than a clock",
+            &["valid <= last"],
+            "last",
+            "last | (valid & (step == 5'd0) & ~sample_valid)",
+        ),
+        swap(
+            "a step counter that runs by itself",
+            &["else if (start |"],
+            "else if (start | (step != 5'd0))",
+            "else",
+        ),
+        swap(
+            "last bit of the coefficient a",
+            &["operand_", "sh1cf1c"],
+            "sh1cf1c",
+            "sh1cf1d",
+        ),
+        swap(
+            "last bit of the coefficient a + b",
+            &["operand_", "sh13b1b"],
+            "sh13b1b",
+            "sh13b1a",
+        ),
+        swap(
+            "last bit of the lock limit",
+            &["wire in_window_now ="],
+            "6'sd7",
+            "6'sd8",
+        ),
+        swap(
+            "last bit of the limit that begins again",
+            &["wire residual_large_condition_7_now ="],
+            "< 4'sd1)",
+            "< 4'sd2)",
+        ),
+        swap(
+            "last bit of the limit that holds",
+            &["wire residual_large_condition_3_now ="],
+            "~rho_now[17:12]) < 6'sd1)",
+            "~rho_now[17:12]) < 6'sd2)",
+        ),
+        swap(
+            "direction forwards from twice the speed on",
+            &["wire speed_below_direction_rate_now ="],
+            "< 15'sd1;",
+            "< 15'sd2;",
+        ),
+        swap(
+            "sectors counted again by turning back behind",
+            &["wire sector_behind_condition_now ="],
+            " & behind_used",
+            " & 1'b0",
+        ),
+        swap(
+            "sectors counted again by turning back ahead",
+            &["wire sector_ahead_now ="],
+            " & ahead_used",
+            " & 1'b0",
+        ),
+        swap(
+            "turning back that is never forgotten",
+            &["wire behind_used_next_now ="],
+            "(whole_period_now | sector_behind)",
+            "whole_period_now",
+        ),
         fault(
             "parameters of the next sample at the ports too early",
             |v| {
@@ -280,45 +314,67 @@ fn faults() -> Vec<Fault> {
 
 /// Faults in the correction of channel skew.
 fn skew_faults() -> Vec<Fault> {
-    let fault = |name, change: fn(&str) -> String| -> Fault { (name, Box::new(change)) };
     vec![
-        fault("skew taken the other way round", |v| {
-            replaced(v, &["wire", " s_difference_now ="], "} - {{", "} + {{")
-        }),
-        fault(
-            "half of the skew's product left out of the second order",
-            |v| replaced(v, &["wire", " s_between_rounded ="], "} - {{", "} + {{"),
+        swap(
+            "skew taken the other way round",
+            &["wire", " s_difference_now ="],
+            "} - {{",
+            "} + {{",
         ),
-        fault("skew before lock", |v| {
-            replaced(v, &["wire", " skew_chosen ="], "locked ?", "1'b1 ?")
-        }),
-        fault("phase of the sensor with the wrong sign", |v| {
-            replaced(v, &["wire", " skew_slope_difference_now ="], " - ", " + ")
-        }),
+        swap(
+            "half of the skew's product left out of the second order",
+            &["wire", " s_between_rounded ="],
+            "} - {{",
+            "} + {{",
+        ),
+        swap(
+            "skew before lock",
+            &["wire", " skew_chosen ="],
+            "locked ?",
+            "1'b1 ?",
+        ),
+        swap(
+            "phase of the sensor with the wrong sign",
+            &["wire", " skew_slope_difference_now ="],
+            " - ",
+            " + ",
+        ),
     ]
 }
 
 /// Faults in the correction of stored harmonics.
 fn harmonic_faults() -> Vec<Fault> {
-    let fault = |name, change: fn(&str) -> String| -> Fault { (name, Box::new(change)) };
     vec![
-        fault("harmonics of the cosine added", |v| {
-            replaced(v, &["wire", " c_difference ="], "} - {{", "} + {{")
-        }),
-        fault("harmonics of the sine added", |v| {
-            replaced(v, &["wire", " s_difference_2_now ="], "} - {{", "} + {{")
-        }),
-        fault(
+        swap(
+            "harmonics of the cosine added",
+            &["wire", " c_difference ="],
+            "} - {{",
+            "} + {{",
+        ),
+        swap(
+            "harmonics of the sine added",
+            &["wire", " s_difference_2_now ="],
+            "} - {{",
+            "} + {{",
+        ),
+        swap(
             "phase correction of the harmonics the other way round",
-            |v| replaced(v, &["wire", " s_rounded ="], "} - {{", "} + {{"),
+            &["wire", " s_rounded ="],
+            "} - {{",
+            "} + {{",
         ),
-        fault(
+        swap(
             "second order of the phase correction with the wrong sign",
-            |v| replaced(v, &["wire", " harmonic_through ="], "} + {{", "} - {{"),
+            &["wire", " harmonic_through ="],
+            "} + {{",
+            "} - {{",
         ),
-        fault("expanded about the segment's beginning", |v| {
-            replaced(v, &["wire", " harmonic_inside_now ="], "'sh400;", "'sh000;")
-        }),
+        swap(
+            "expanded about the segment's beginning",
+            &["wire", " harmonic_inside_now ="],
+            "'sh400;",
+            "'sh000;",
+        ),
     ]
 }
 

@@ -92,7 +92,7 @@ pub fn simulate(design: &Design) -> Simulation {
     }
     // A loop of type 1 lags by a constant at constant speed, which is no error of the angle.
     let lag = match spec.tracking.filter_type {
-        1 => whole.sum / whole.count,
+        1 => whole.mean(),
         _ => 0.0,
     };
     let place = |i: usize| (i as f64 + 0.5) / PARTS as f64;
@@ -102,14 +102,14 @@ pub fn simulate(design: &Design) -> Simulation {
         .filter(|(_, part)| part.count > 0.0);
     Simulation {
         accuracy: Accuracy {
-            rms_periods: (whole.squares / whole.count - lag * lag).max(0.0).sqrt(),
-            largest_periods: whole.largest.max(lag.abs()) - lag.abs(),
+            rms_periods: whole.rms_about(lag),
+            largest_periods: whole.largest_about(lag),
             locked: chip.state.locked,
         },
         course,
         raw_rms_periods: raw.rms(),
         along: seen
-            .map(|(i, part)| [place(i), part.sum / part.count - lag])
+            .map(|(i, part)| [place(i), part.mean() - lag])
             .collect(),
     }
 }
@@ -129,19 +129,40 @@ struct Squares {
     count: f64,
     sum: f64,
     squares: f64,
-    largest: f64,
+    lowest: f64,
+    highest: f64,
 }
 
 impl Squares {
     fn add(&mut self, error: f64) {
+        if self.count == 0.0 {
+            (self.lowest, self.highest) = (error, error);
+        }
         self.count += 1.0;
         self.sum += error;
         self.squares += error * error;
-        self.largest = self.largest.max(error.abs());
+        self.lowest = self.lowest.min(error);
+        self.highest = self.highest.max(error);
+    }
+
+    fn mean(&self) -> f64 {
+        self.sum / self.count
     }
 
     fn rms(&self) -> f64 {
-        (self.squares / self.count).sqrt()
+        self.rms_about(0.0)
+    }
+
+    /// Of what is left when `constant`, 0 or the mean, is taken off.
+    fn rms_about(&self, constant: f64) -> f64 {
+        (self.squares / self.count - constant * constant)
+            .max(0.0)
+            .sqrt()
+    }
+
+    /// The largest of it.
+    fn largest_about(&self, constant: f64) -> f64 {
+        (self.highest - constant).max(constant - self.lowest)
     }
 }
 

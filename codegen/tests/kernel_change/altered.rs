@@ -16,50 +16,45 @@ thread_local! {
     static INSIDE: Cell<bool> = const { Cell::new(false) };
 }
 
+/// A node, narrow or wide.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Altered<'g>(Node<'g>);
+pub(crate) struct Altered<N>(N);
 
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct WideAltered<'g>(WideNode<'g>);
-
-fn difference<T: Add<Output = T> + Sub<Output = T>>(a: T, b: T) -> T {
-    if INSIDE.get() { a + b } else { a - b }
-}
-
-impl Add for Altered<'_> {
+impl<N: Add<Output = N>> Add for Altered<N> {
     type Output = Self;
     fn add(self, other: Self) -> Self {
         Self(self.0 + other.0)
     }
 }
 
-impl Sub for Altered<'_> {
+impl<N: Add<Output = N> + Sub<Output = N>> Sub for Altered<N> {
     type Output = Self;
     fn sub(self, other: Self) -> Self {
-        Self(difference(self.0, other.0))
+        let (a, b) = (self.0, other.0);
+        Self(if INSIDE.get() { a + b } else { a - b })
     }
 }
 
-impl Neg for Altered<'_> {
+impl Neg for Altered<Node<'_>> {
     type Output = Self;
     fn neg(self) -> Self {
         Self(-self.0)
     }
 }
 
-impl<'g> Mul for Altered<'g> {
-    type Output = WideAltered<'g>;
-    fn mul(self, other: Self) -> WideAltered<'g> {
-        WideAltered(self.0 * other.0)
+impl<'g> Mul for Altered<Node<'g>> {
+    type Output = Altered<WideNode<'g>>;
+    fn mul(self, other: Self) -> Altered<WideNode<'g>> {
+        Altered(self.0 * other.0)
     }
 }
 
-impl<'g> Signal for Altered<'g> {
-    type Wide = WideAltered<'g>;
+impl<'g> Signal for Altered<Node<'g>> {
+    type Wide = Altered<WideNode<'g>>;
     type Bool = Flag<'g>;
 
-    fn widen(self) -> WideAltered<'g> {
-        WideAltered(self.0.widen())
+    fn widen(self) -> Altered<WideNode<'g>> {
+        Altered(self.0.widen())
     }
     fn scale(self, power: i32) -> Self {
         Self(self.0.scale(power))
@@ -85,36 +80,22 @@ impl<'g> Signal for Altered<'g> {
     }
 }
 
-impl Add for WideAltered<'_> {
-    type Output = Self;
-    fn add(self, other: Self) -> Self {
-        Self(self.0 + other.0)
-    }
-}
-
-impl Sub for WideAltered<'_> {
-    type Output = Self;
-    fn sub(self, other: Self) -> Self {
-        Self(difference(self.0, other.0))
-    }
-}
-
-impl<'g> Wide for WideAltered<'g> {
-    type Narrow = Altered<'g>;
+impl<'g> Wide for Altered<WideNode<'g>> {
+    type Narrow = Altered<Node<'g>>;
 
     fn scale(self, power: i32) -> Self {
         Self(self.0.scale(power))
     }
-    fn quantise(self, to: &Quantiser) -> Altered<'g> {
+    fn quantise(self, to: &Quantiser) -> Altered<Node<'g>> {
         Altered(self.0.quantise(to))
     }
     fn quantise_geared(
         self,
-        gear: Altered<'g>,
+        gear: Altered<Node<'g>>,
         stride: u32,
         last: u32,
         to: &Quantiser,
-    ) -> Altered<'g> {
+    ) -> Altered<Node<'g>> {
         Altered(self.0.quantise_geared(gear.0, stride, last, to))
     }
     fn named(self, name: &'static str) -> Self {

@@ -246,14 +246,11 @@ pub(super) fn constants(
             0.0
         }
         + skew::phase_max(spec) / 2.0;
-    let radius =
-        s.offset_max * 1.5 + s.amplitude_tolerance + s.phase_error_max_deg.to_radians() + more;
+    let beta = s.phase_error_max_deg.to_radians();
+    let radius = 1.5 * s.offset_max + s.amplitude_tolerance + beta + more;
     // At top speed the loop follows none of it: gains turn the pair by sin 2α, offsets by a wave of the period, the phase
     // by half of it and a wave of half the period. Near its bandwidth it adds a fifth.
-    let turn = s.amplitude_tolerance
-        + SQRT_2 * s.offset_max
-        + 0.75 * s.phase_error_max_deg.to_radians()
-        + more;
+    let turn = s.amplitude_tolerance + SQRT_2 * s.offset_max + 0.75 * beta + more;
     Coefficients {
         adc_middle: Constant::rounded(0.5, 1),
         loop_a: Constant::normalised(tracking.a, width, 40),

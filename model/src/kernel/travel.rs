@@ -106,6 +106,10 @@ pub fn travel<S: Signal>(
         .and(near_behind.not())
         .named("sector_behind");
     let clear = whole_period.or(counting.not()).named("travel_clear");
+    // A side was used where a period on it ends, until a sector there is used or another period ends.
+    let used = |ends: S::Bool, before: S::Bool, again: S::Bool| {
+        counting.and(ends.or(before.and(whole_period.or(again).not())))
+    };
     let keep = |x: S| x.quantise(&Quantiser::wrapping(SECTOR));
     Travel {
         new_sector: ahead.or(behind).or(clear),
@@ -131,9 +135,7 @@ pub fn travel<S: Signal>(
             k.zero,
             S::select(ahead, relative, state.travel_high),
         )),
-        ahead_used: counting
-            .and(period_behind.or(state.ahead_used.and(whole_period.or(ahead).not()))),
-        behind_used: counting
-            .and(period_ahead.or(state.behind_used.and(whole_period.or(behind).not()))),
+        ahead_used: used(period_behind, state.ahead_used, ahead),
+        behind_used: used(period_ahead, state.behind_used, behind),
     }
 }

@@ -150,16 +150,16 @@ pub fn config(spec: &Spec) -> Result<Config, ReferenceError> {
     let beta = s.phase_error_max_deg.to_radians();
     let more = 5.0 * s.noise_rms
         + TAU * s.speed_max_periods_per_s * spec.correction.channel_skew_s.abs() / 2.0;
-    let worst = s.offset_max * 1.5 + s.amplitude_tolerance + beta + more;
+    let radius = 1.5 * s.offset_max + s.amplitude_tolerance + beta + more;
     // What a loop that follows none of it sees as phase error.
-    let turned = s.amplitude_tolerance + SQRT_2 * s.offset_max + 0.75 * beta + more;
+    let turn = s.amplitude_tolerance + SQRT_2 * s.offset_max + 0.75 * beta + more;
     let equaliser = equaliser(spec, parameters);
     // A loop settles within some multiples of 1/ω0.
     let omega = TAU * spec.tracking.bandwidth_hz / spec.adc.sample_rate_hz;
     let settled = (4.0 / omega).ceil().clamp(8.0, 1e6) as u32;
     let window = Window {
-        e: (1.2 * turned).clamp(0.35, 0.8),
-        rho: (1.25 * worst).clamp(0.4, 0.9),
+        e: (1.2 * turn).clamp(0.35, 0.8),
+        rho: (1.25 * radius).clamp(0.4, 0.9),
         samples: settled,
     };
     Ok(Config {

@@ -58,11 +58,11 @@ impl Bench {
 
     /// One sample of a pair in units of the nominal amplitude, with noise as the design promises it.
     pub(crate) fn step(&mut self, y: (f64, f64)) {
-        let (a, sigma) = (
-            self.design.spec.sensor.amplitude,
-            self.design.spec.sensor.noise_rms,
-        );
-        let mut code = |y: f64| self.converter.code(a * (y + sigma * self.noise.next()));
+        let Spec { sensor, adc, .. } = &self.design.spec;
+        let mut code = |y: f64| {
+            let y = y + sensor.noise_rms * self.noise.next();
+            self.converter.code(adc.middle + sensor.amplitude * y)
+        };
         let (cos, sin) = (code(y.0), code(y.1));
         self.chip.step_codes(cos, sin, false, true);
     }
