@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Result, bail};
 use clap::Args;
-use nonius_package::{DesignJson, ROWS, engineering, package_with, write};
+use nonius_package::{DesignJson, PullIn, ROWS, engineering, package_with, write};
 use nonius_testvectors::stimulus;
 
 use crate::play;
@@ -34,7 +34,7 @@ pub(crate) struct Build {
     recording_args: RecordingArgs,
 }
 
-/// Whether the chip reaches the accuracy that was asked for.
+/// Whether the chip reaches the accuracy that was asked for and locks on every sensor that is promised.
 pub(crate) fn run(args: &Build) -> Result<bool> {
     let design = crate::design_file::read(&args.design)?;
     let spec = &design.spec;
@@ -64,7 +64,7 @@ pub(crate) fn run(args: &Build) -> Result<bool> {
     }
     write(&package.files, &args.output)?;
     summary(&package.json, &args.output, shown);
-    Ok(!package.json.misses())
+    Ok(package.json.holds())
 }
 
 fn summary(j: &DesignJson, output: &Path, shown: &str) {
@@ -104,6 +104,7 @@ fn summary(j: &DesignJson, output: &Path, shown: &str) {
         engineering(j.tracking.speed_max_periods_per_s, "").trim_end()
     );
     say!("  position    {}", position(j));
+    pulled_in(&j.pull_in);
     let peak = j.spec.sensor.amplitude * j.spec.sensor.reach() / j.spec.adc.full_scale;
     if peak > 1.0 {
         say!(
@@ -145,6 +146,26 @@ fn summary(j: &DesignJson, output: &Path, shown: &str) {
     );
     say!("next: nonius verify {folder}");
     say!("      gtkwave {folder}/waves/{shown}.vcd {folder}/waves/{shown}.gtkw");
+}
+
+/// From power-up into full speed.
+fn pulled_in(p: &PullIn) {
+    let Some(worst) = &p.worst else {
+        say!(
+            "  lock        every sensor that is promised, {} at the ends of the promise, from power-up into full speed both \
+             ways, within {}",
+            p.sensors,
+            engineering(p.longest_s, "s")
+        );
+        return;
+    };
+    say!(
+        "  note        {} of the {} sensors at the ends of the promise do not lock from power-up into full speed; worst: \
+         {worst}",
+        p.not_locked,
+        p.sensors
+    );
+    say!("              to change: {}", p.advice());
 }
 
 /// The position at the output in the units that the design has for it.

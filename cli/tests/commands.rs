@@ -31,6 +31,35 @@ fn new_writes_a_design_that_builds_and_never_overwrites() {
     assert!(!dir.path().join("2nd.toml").exists());
 }
 
+/// It is built, says what does not lock and what to change, and ends as where the accuracy is missed.
+#[test]
+fn a_promise_that_would_not_lock_is_told() {
+    let dir = tempfile::tempdir().expect("scratch");
+    let text = fs::read_to_string(design()).expect("designs/optical.toml");
+    let more = [
+        ("offset_max = 0.1 ", "offset_max = 0.4 "),
+        ("amplitude = 0.8 ", "amplitude = 0.6 "),
+    ];
+    let text = more.iter().fold(text, |text, (from, to)| {
+        assert!(text.contains(from));
+        text.replacen(from, to, 1)
+    });
+    fs::write(dir.path().join("d.toml"), text).expect("design");
+    let output = nonius(dir.path(), &["build", "d.toml", "-o", "out"]);
+    let said = String::from_utf8_lossy(&output.stdout);
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    for words in [
+        "do not lock",
+        "worst: ",
+        "offsets of ",
+        "to change: ",
+        "sensor.offset_max = ",
+    ] {
+        assert!(said.contains(words), "{said}");
+    }
+    assert!(dir.path().join("out/design.json").is_file());
+}
+
 #[test]
 fn build_refuses_before_anything_is_written() {
     let dir = tempfile::tempdir().expect("scratch");
