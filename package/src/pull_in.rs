@@ -8,7 +8,6 @@ use nonius_model::spec::Spec;
 use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::engineering::engineering;
 use crate::sensor::{Sensor, Shares};
 
 /// How the chip pulls in from power-up, with every promised error at either end of its range and the promised noise.
@@ -95,8 +94,7 @@ impl fmt::Display for Worst {
                 self.bends[0], self.bends[1]
             )?;
         }
-        let speed = self.speed_periods_per_s;
-        write!(f, ", at {} periods/s", engineering(speed, "").trim_end())
+        write!(f, ", at {} periods/s", short(self.speed_periods_per_s))
     }
 }
 
@@ -236,10 +234,14 @@ impl Worst {
     }
 }
 
+/// Three digits.
+fn short(value: f64) -> f64 {
+    format!("{value:.2e}").parse().unwrap_or(value)
+}
+
 /// The largest promise and the largest speed, by tenths, of which every sensor locks.
 fn remedies(spec: &Spec, parts: &[f64]) -> Vec<String> {
     let tenths = [0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3, 0.2, 0.1];
-    let short = |x: f64| format!("{x:.2e}").parse().unwrap_or(x);
     let less = |tenth: f64| {
         let mut less = spec.clone();
         let s = &mut less.sensor;
