@@ -22,13 +22,28 @@ fn every_promised_sensor_locks_at_any_speed() {
     }
 }
 
-/// With 8 and 9 parameters the bends are promised too.
+/// Whatever a chip calibrates with; with 8 and 9 parameters the bends are promised too.
 #[test]
-fn bent_sensors_lock_too() {
+fn every_kind_of_chip_locks() {
+    for kind in shipped::variants::kinds() {
+        let found = pulled_in(&kind.spec, &BOTH_WAYS);
+        assert!(found.holds(), "{}: {found:?}", kind.what);
+        let bends = kind.spec.calibration.parameters >= 8;
+        assert_eq!(found.sensors, if bends { 128 } else { 32 }, "{}", kind.what);
+    }
+}
+
+/// A loop of type 1 has no wider gear to begin in: with its pole this near to 1 four samples a period are out of its reach,
+/// whatever the sensor promises.
+#[test]
+fn a_speed_out_of_reach_is_told() {
     let mut spec = shipped::optical();
-    spec.calibration.parameters = 9;
+    spec.tracking.filter_type = 1;
+    spec.tracking.pole = Some(0.9995);
+    spec.sensor.speed_max_periods_per_s = 250e3;
     let found = pulled_in(&spec, &BOTH_WAYS);
-    assert!(found.holds() && found.sensors == 128, "{found:?}");
+    assert!(!found.holds() && found.remedies.len() == 1, "{found:?}");
+    assert!(found.remedies[0].starts_with("sensor.speed_max_periods_per_s = "));
 }
 
 /// Offsets that the loop cannot follow at top speed and that its window cannot hold.
