@@ -99,7 +99,7 @@ fn numbers_in_messages_are_short() {
 #[test]
 fn what_cannot_work_names_the_field() {
     type Change = fn(&mut Spec);
-    let cases: [(&str, Change); 16] = [
+    let cases: [(&str, Change); 17] = [
         ("loop.type", |s| s.tracking.method = 2),
         ("loop.method", |s| s.tracking.method = 4),
         ("loop.bandwidth_hz", |s| s.tracking.bandwidth_hz = 4e5),
@@ -109,6 +109,11 @@ fn what_cannot_work_names_the_field() {
         ("calibration.start", |s| {
             s.calibration.method = CalibrationMethod::Batch;
             s.calibration.start = CalibrationStart::LeastSquares;
+        }),
+        // Parameters are held, and recalled, only after four gears.
+        ("calibration.recall", |s| {
+            s.calibration.recall = true;
+            s.calibration.gamma_last = s.calibration.gamma_first + 3;
         }),
         ("correction.channel_skew_s", |s| {
             s.correction.channel_skew_s = f64::NAN;

@@ -4,6 +4,7 @@ use super::DesignError;
 use super::keywords::{KEYWORDS, SYSTEM_KEYWORDS};
 use super::refuse::{between, refuse};
 use crate::graph::Graph;
+use crate::kernel::gears::SETTLED;
 use crate::spec::{CalibrationMethod, CalibrationStart, Multipliers, Spec};
 
 /// Checks every field for sense.
@@ -242,6 +243,18 @@ fn calibration(spec: &Spec) -> Result<(), DesignError> {
             "least_squares",
             "\"gears\", or the method \"final\" or \"exact\"",
             "the start is a batch of the radial residual; the sum of squares gathers another one",
+        );
+    }
+    let gears = c.gamma_last.saturating_sub(c.gamma_first);
+    if c.recall && gears < SETTLED {
+        return refuse(
+            "calibration.recall",
+            true,
+            format!(
+                "false, or gamma_last at least {}",
+                c.gamma_first.saturating_add(SETTLED)
+            ),
+            "parameters are held only after four gears: with fewer there is nothing to recall",
         );
     }
     if bends && c.completion && spec.sensor.periods_per_revolution == Some(1.0) {

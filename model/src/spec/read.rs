@@ -82,6 +82,7 @@ const KEYS: &[(&str, &[&str])] = &[
             "gear_periods",
             "restart_residual",
             "hold_residual",
+            "recall",
         ],
     ),
     ("correction", &["channel_skew_s", "harmonics"]),
