@@ -1,10 +1,12 @@
 //! `design.toml`: what the user asks for, in physical units.
 
 mod correction;
+mod place;
 mod read;
 
 pub use correction::{Correction, Harmonic};
-pub use read::{SpecError, keys, line_of_field};
+pub use place::Place;
+pub use read::{SpecError, keys};
 
 use serde::{Deserialize, Serialize};
 
