@@ -8,6 +8,7 @@ use anyhow::{Context, Result, bail};
 use clap::Args;
 use nonius_model::design::{Design, DesignError};
 use nonius_model::spec::Spec;
+use nonius_package::engineering;
 use nonius_recording::{AdcSource, Recording, Survey};
 
 use crate::recording_args::RecordingArgs;
@@ -79,10 +80,10 @@ pub(crate) fn run(args: &New) -> Result<()> {
         .with_context(|| format!("cannot write {}", path.display()))?;
     target.keep_new()?;
     say!(
-        "{}: accuracy {:.2e} periods rms predicted, speed to {:.4e} periods/s",
+        "{}: accuracy {:.2e} periods rms predicted, speed to {} periods/s",
         path.display(),
         design.budget.total(),
-        draft.speed_max.0
+        engineering(draft.speed_max.0, "").trim_end()
     );
     say!("next: nonius build {} -o out/{}", path.display(), args.name);
     Ok(())
@@ -375,6 +376,7 @@ impl Draft {
             "5".into(),
             "0 (off), 4 (gains, offsets), 5 (and phase), 8, 9 (and bends)",
         );
+        out += "# recall = true                         # a signal that fades and comes back leaves nothing in the parameters\n";
         out += "\n# [correction]\n";
         out += "# channel_skew_s = 1e-6                 # sin is sampled so much later than cos\n";
         out += "# [[correction.harmonics]]              # one for each order: amplitude * cos(order * angle + phase) more\n";
