@@ -220,7 +220,8 @@ fn place_once(
     seed: u32,
     scratch: &Path,
 ) -> Result<Placement, Error> {
-    let report = scratch.join(format!("report{seed}.json"));
+    // Beside the netlist, by its name alone: the nextpnr of PyPI sees no other folder.
+    let report = format!("report{seed}.json");
     let output = Job::new(&nextpnr.path, scratch, PLACE_LIMIT)
         .args(device.placement_flags())
         .args(["--json", "whole.json", "--timing-allow-fail", "--quiet"])
@@ -235,7 +236,7 @@ fn place_once(
             failure: Some(format!("nextpnr {trouble}\n{}", output.tail())),
         });
     }
-    let report: Report = read_json("nextpnr", &report)?;
+    let report: Report = read_json("nextpnr", &scratch.join(report))?;
     Ok(Placement {
         seed,
         mhz: report.fmax.values().map(|it| it.achieved).reduce(f64::min),
