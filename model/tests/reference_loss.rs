@@ -10,7 +10,7 @@ use nonius_model::spec::{CalibrationMethod, Spec};
 use reference_support::{MISCALIBRATED, Noise, miscalibration};
 
 /// Samples of a period of travel.
-const PERIOD: u32 = 301;
+const PERIOD: u32 = 151;
 
 /// Largest miscalibration, radians: over a hundred periods before the signal fades over `fade` samples, from then to the end, over
 /// the last ten periods, and from when the signal is back on.
