@@ -5,32 +5,36 @@ mod chip_support;
 use std::f64::consts::TAU;
 
 use chip_support::shipped::variants::searches_of;
-use chip_support::{Bench, course, fast, figure, largest, optical, sensor};
+use chip_support::{Bench, course, course_at, fast, figure, largest, optical, sensor};
 use nonius_model::spec::{CalibrationMethod, Spec};
 
 const TEST: &str = "model/tests/on_line_figures.rs";
 
 /// What is measured of a sensor that is new.
-const NEW: &str = "on line, from lock, 64 samples a period, 12 bits, 0.1 % noise, offsets 10 %, gain ratio 1.2, β 5°, worst of all signs: what is left of the first miscalibration";
+const NEW: &str = "on line, from lock, 64 samples a period, 12 bits, 0.1 % noise, offsets 10 %, gain ratio 1.2, β 5°, worst of all signs and amplitudes: what is left of the first miscalibration";
 
-/// Below 1 % within five periods, whatever the amplitude is of the ADC's range and however wide the loop.
+/// Below 1 % within six periods, whatever the amplitude is of the ADC's range and however wide the loop; within five at most
+/// amplitudes: the square of the amplitude is taken out of the gradient to the nearest power of two, and between two of them
+/// (0.30, 0.42, 0.60) the gains go a third more slowly than they might.
 #[test]
-fn the_chip_converges_in_five_periods() {
-    let mut worst = 0.0f64;
-    for amplitude in [0.55, 0.65, 0.8] {
-        for bandwidth in [20e3, 60e3] {
+fn the_chip_converges_in_six_periods() {
+    let mut worst = [0.0f64; 2];
+    for amplitude in [0.30, 0.42, 0.55, 0.59, 0.60, 0.65, 0.70, 0.8] {
+        for (bandwidth, per_period) in [(20e3, 64.0), (20e3, 64.37), (60e3, 64.0), (60e3, 64.37)] {
             let mut spec = fast();
             spec.sensor.amplitude = amplitude;
             spec.tracking.bandwidth_hz = bandwidth;
-            let left = course(&spec, 8);
-            println!("amplitude {amplitude}, loop {bandwidth} Hz: {left:.2?} % left");
-            assert!(left[4] < 1.0, "{left:?}");
-            worst = worst.max(left[4]);
+            let left = course_at(&spec, 8, per_period);
+            println!(
+                "amplitude {amplitude}, loop {bandwidth} Hz, {per_period} samples a period: {left:.2?} % left"
+            );
+            assert!(left[4] < 1.6 && left[5] < 1.0, "{left:?}");
+            worst = [worst[0].max(left[4]), worst[1].max(left[5])];
         }
     }
     figure(
-        &format!("{NEW}, after five periods of travel, %"),
-        &format!("{worst:.2}"),
+        &format!("{NEW}, after five and after six periods of travel, %"),
+        &format!("{:.2}, {:.2}", worst[0], worst[1]),
         TEST,
     );
 }

@@ -3,7 +3,7 @@
 //! The pair turns by 2 sin 2α per unit of θ9, so w = ½ sin 2α̂ = sin α̂ cos α̂ up to a factor that γ takes. θ9 learns at
 //! γ |S(2f)|²/2 per sample, S the loop's sensitivity at twice the signal's frequency f: what a wide loop follows, it
 //! cannot tell from motion. Hence the gate: whole periods of net travel must follow one another fast enough. Standstill,
-//! slow motion and vibration, however fast, rest.
+//! slow motion and vibration, however fast, rest, and so does a sample whose |e| is more than a sensor's error: a stop or a start.
 
 use super::sensitivity::{self, Sensitivity};
 use super::travel::Travel;

@@ -148,6 +148,12 @@ fn advance_of<S: Signal, const PLAIN: bool>(
         let open = counting
             .and(detector::within(rho, k.completion_residual))
             .and(hold.held.not());
+        // Where the loop catches up with motion, e is no error of the sensor. A loop of type 1 always lags.
+        let open = if structure.filter_type == 1 {
+            open
+        } else {
+            open.and(detector::within(e, k.completion_error))
+        };
         let w = updated.w_null;
         completion::complete((w, e), open, counting, &travel, state, k, structure)
     });

@@ -24,6 +24,7 @@ pub(crate) fn figure(name: &str, measured: &str, test: &str) {
 }
 
 /// White noise of unit variance.
+#[derive(Clone)]
 pub(crate) struct Noise(StdRng);
 
 impl Noise {
@@ -38,6 +39,7 @@ impl Noise {
 }
 
 /// A chip behind its ADC.
+#[derive(Clone)]
 pub(crate) struct Bench {
     pub(crate) design: Design,
     pub(crate) chip: Chip<Bits>,
@@ -171,6 +173,12 @@ pub(crate) fn sensor_of(signs: u32, beta: f64) -> impl Fn(f64) -> (f64, f64) {
 /// Largest share of the first miscalibration that is left after 1, 2, … `periods` periods of travel in lock, over all
 /// signs, at 64 samples a period; percent.
 pub(crate) fn course(spec: &Spec, periods: usize) -> Vec<f64> {
+    // A little off 64 a period, so that the sectors are not always met at the same places.
+    course_at(spec, periods, 64.37)
+}
+
+/// The same at so many samples a period, 64 or a little more.
+pub(crate) fn course_at(spec: &Spec, periods: usize, per_period: f64) -> Vec<f64> {
     let mut worst = vec![0.0f64; periods];
     for signs in 0..16 {
         let signals = sensor(signs);
@@ -178,8 +186,7 @@ pub(crate) fn course(spec: &Spec, periods: usize) -> Vec<f64> {
         let before = rms(&bench.miscalibration(&signals));
         let (mut locked, mut k) = (0, 0);
         while locked < periods * 64 {
-            // A little off 64 a period, so that the sectors are not always met at the same places.
-            bench.step(signals(TAU / 64.37 * f64::from(k)));
+            bench.step(signals(TAU / per_period * f64::from(k)));
             k += 1;
             assert!(k < 20_000, "never locked");
             if bench.chip.state.locked {
