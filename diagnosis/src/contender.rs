@@ -45,10 +45,16 @@ pub(crate) fn contender(
     let (mut first, mut named): (Option<Contender>, Option<Box<Accepted>>) = (None, None);
     let mut others = vec![];
     let mut tried: Vec<(&'static str, Domain)> = vec![];
+    let mut stepped = None;
     for i in 0..scored.len() {
         let best = &scored[i];
         let one = (best.candidate.name, best.candidate.domain);
         if tried.contains(&one) || best.gain < NEARLY * most {
+            continue;
+        }
+        // What stands in for steps has to explain as much as the drift did that they are taken for.
+        let less = |s: &&Scored| best.gain + (s.freedom as f64) < s.gain;
+        if stepped.is_some_and(|i: usize| less(&&scored[i])) {
             continue;
         }
         tried.push(one);
@@ -70,7 +76,13 @@ pub(crate) fn contender(
         } else {
             HOLDS
         };
-        let slow = own.candidate.domain != Domain::Time || slowly(system, fit, &own);
+        let steps = (own.candidate.domain == Domain::Time)
+            .then(|| steps_instead(system, fit, &own))
+            .flatten();
+        let slow = steps.is_none();
+        if !slow && stepped.is_none() {
+            stepped = Some(i);
+        }
         let listed = |name: &str| name != ACCELERATION_GAIN;
         let nameable = listed(own.candidate.name) && rivals.iter().all(|r| listed(r));
         if nameable && slow && rivals.len() <= 1 && held.share >= least {
@@ -104,7 +116,8 @@ pub(crate) fn contender(
         );
         let unnamed = Unnamed {
             log_p: own.log_p,
-            gain: own.gain,
+            // What a drift leaves of steps can look like anything, too.
+            gain: own.gain.max(steps.unwrap_or_default()),
             signature,
         };
         if first.is_some() {
@@ -174,15 +187,15 @@ fn rivals(beside: &Beside, best: &Scored, others: &[&Scored]) -> Vec<String> {
     names
 }
 
-/// Whether a drift is slow: no steps in time explain more of the radius than what changes slowly does.
-fn slowly(system: &System, fit: &Fit, drift: &Scored) -> bool {
+/// Log-likelihood that steps in time explain of the radius, where that is more than a slow change does: then it is no drift.
+fn steps_instead(system: &System, fit: &Fit, drift: &Scored) -> Option<f64> {
     let change = if drift.candidate.name == "gain_drift" {
         Change::Gains
     } else {
         Change::Offsets
     };
     let left = system.residual(fit);
-    steps::slowly(system.context, &left.radial, system.noise(), change)
+    steps::instead(system.context, &left.radial, system.noise(), change)
 }
 
 /// How far a name holds, and the generic shapes that tell.
