@@ -274,8 +274,10 @@ fn search(
                 cause.first = found.fit.shapes.len();
                 let shapes = both(&found.fit.shapes, &cause.candidate.shapes);
                 let halves = system.halves(&shapes);
+                // How it was when the recording began is seen in the first block alone, and no other half knows it.
+                let lasting = &shapes[..shapes.len() - cause.candidate.given()];
                 // What does not hold on data that was not fitted is no cause.
-                if halves.held_out(&shapes) > halves.held_out(&found.fit.shapes) * 1.01 {
+                if halves.held_out(lasting) > halves.held_out(&found.fit.shapes) * 1.01 {
                     refused.push(cause.candidate.name);
                 } else {
                     let before = found.fit;
