@@ -1,13 +1,14 @@
 //! Which of the causes that explain most is accepted: one that holds what any shape of its domain explains, and that no
 //! more than one other explains as well.
 
+use crate::beside::Beside;
 use crate::cause::{Domain, Sign};
 use crate::causes::{ACCELERATION_GAIN, Catalogue};
 use crate::exact;
 use crate::generic::{self, HOLDS};
 use crate::library::Shape;
 use crate::model::{Fit, System, atoms_of};
-use crate::select::{Beside, KINDS, RIVALS, SHOWN, Scored, both, score};
+use crate::select::{KINDS, RIVALS, SHOWN, Scored, both, score};
 use crate::selection::{Accepted, Unnamed};
 use crate::statistics::{after_trials, log_tail};
 use crate::steps::{self, Change};
@@ -213,16 +214,27 @@ fn holds(
     best: &Scored,
     others: &[&Scored],
 ) -> Held {
-    let basis = catalogue.basis(best.candidate.domain);
-    let mut named = both(&fit.shapes, &best.candidate.shapes);
-    let same = |o: &Scored| o.candidate.domain == best.candidate.domain;
-    let beside_it = if basis.is_empty() {
-        0.0
-    } else {
-        stand_beside(system, &mut named, others, same)
+    let domain = best.candidate.domain;
+    let basis = catalogue.basis(domain);
+    // Where the axis vibrates only the radius tells what the sensor does.
+    let sure = |system: &System, shapes: &[Shape]| {
+        if domain == Domain::Motion {
+            shapes.to_vec()
+        } else {
+            system.sure(shapes)
+        }
     };
-    let beyond = Beside::new(&system.total, &named).gain(basis);
-    let share = share(best.gain + beside_it, beyond);
+    let mut named = both(&fit.shapes, &best.candidate.shapes);
+    let same = |o: &Scored| o.candidate.domain == domain;
+    if !basis.is_empty() {
+        stand_beside(system, &mut named, others, same);
+    }
+    let own = sure(system, &named[fit.shapes.len()..]);
+    let held = Beside::new(&system.total, &sure(system, &fit.shapes))
+        .gain(&own)
+        .0;
+    let beside = Beside::new(&system.total, &sure(system, &named));
+    let share = share(held, beside.gain(&sure(system, basis)));
     if share < HOLDS {
         return Held {
             share,
@@ -230,7 +242,7 @@ fn holds(
         };
     }
     // Other causes may be there too, and no name answers for them.
-    let (own, line) = (best.candidate.name, best.candidate.domain == Domain::Line);
+    let (own, line) = (best.candidate.name, domain == Domain::Line);
     stand_beside(system, &mut named, others, |o| {
         line && same(o) && o.candidate.name != own
     });
@@ -238,14 +250,18 @@ fn holds(
     let library = &mut system.samples.library;
     let around = generic::around(system.context, &best.candidate, library);
     let steady = generic::steady(system.context, &best.candidate, library);
-    let atoms = atoms_of(&[named.as_slice(), &around, &steady].concat());
+    let own = sure(system, &best.candidate.shapes);
+    let held = Beside::new(&system.total, &sure(system, &fit.shapes))
+        .gain(&own)
+        .0;
+    let [known, free, any] = [&named, &steady, &around].map(|list| sure(system, list));
+    let atoms = atoms_of(&[known.as_slice(), &any, &free].concat());
     let whole = system.among(&atoms);
     let among =
         |shapes: &[Shape]| -> Vec<Shape> { shapes.iter().map(|s| s.among(&atoms)).collect() };
-    let free = Beside::new(&whole, &among(&named)).gain(&among(&steady)).0;
-    named.extend(steady);
-    let beside = Beside::new(&whole, &among(&named));
-    let own = self::share(best.gain + free, beside.gain(&among(&around)));
+    let more = Beside::new(&whole, &among(&known)).gain(&among(&free)).0;
+    let beside = Beside::new(&whole, &among(&both(&known, &free)));
+    let own = self::share(held + more, beside.gain(&among(&any)));
     Held {
         share: share.min(own),
         beyond: around,

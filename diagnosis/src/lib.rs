@@ -5,6 +5,7 @@
 //! spline, and asks of every cause of the catalogue how much of the rest it explains. A name is given only to a shape
 //! that holds; what cannot be named is said to be unexplained.
 
+mod beside;
 mod block;
 mod cause;
 mod causes;
