@@ -2,8 +2,9 @@
 //! more than one other explains as well.
 
 use crate::beside::Beside;
-use crate::cause::{Domain, Sign};
-use crate::causes::{ACCELERATION_GAIN, Catalogue};
+use crate::cause::{Candidate, Domain, Sign};
+use crate::causes::{self, ACCELERATION_GAIN, Catalogue};
+use crate::context::Context;
 use crate::exact;
 use crate::generic::{self, HOLDS};
 use crate::library::Shape;
@@ -85,7 +86,8 @@ pub(crate) fn contender(
             stepped = Some(i);
         }
         let listed = |name: &str| name != ACCELERATION_GAIN;
-        let nameable = listed(own.candidate.name) && rivals.iter().all(|r| listed(r));
+        let locked = goes_with_angle(system.context, &own.candidate);
+        let nameable = listed(own.candidate.name) && rivals.iter().all(|r| listed(r)) && !locked;
         if nameable && slow && rivals.len() <= 1 && held.share >= least {
             system.retain(|i| i < mark);
             cause.confounded = rivals;
@@ -101,6 +103,8 @@ pub(crate) fn contender(
         let nearest = own.candidate.name.replace('_', " ");
         let why = if !listed(own.candidate.name) {
             "the catalogue holds no such cause".to_owned()
+        } else if locked {
+            "at this constant speed it goes with the angle as well".to_owned()
         } else if !slow {
             "steps explain more".to_owned()
         } else if held.share < least {
@@ -186,6 +190,30 @@ fn rivals(beside: &Beside, best: &Scored, others: &[&Scored]) -> Vec<String> {
         }
     }
     names
+}
+
+/// Whether, at a speed that hardly changes, a line stands where something that goes with the angle would: at half orders of
+/// the scale period, or at whole ones beside a fourth or half of the sample rate, where a multiplexer puts them.
+fn goes_with_angle(context: &Context, candidate: &Candidate) -> bool {
+    /// Cycles per recording by which it may be off.
+    const NEAR: f64 = 0.7;
+    /// Highest order.
+    const TOP: i32 = 8;
+    let inner = candidate.exact.as_ref().and_then(|e| e.inner.first());
+    // Vibration too: where it goes with the angle it may be an error of the sensor.
+    let line = candidate.domain == Domain::Line || candidate.name == "vibration";
+    let Some(hertz) = inner.filter(|_| line && !causes::speed_varies_much(context)) else {
+        return false;
+    };
+    let duration = context.samples() as f64 / context.rate;
+    let turning = context.periods_travelled() / duration;
+    let near = |f: f64| (hertz - f).abs() * duration < NEAR;
+    let halves = (1..2 * TOP)
+        .step_by(2)
+        .map(|m| 0.5 * f64::from(m) * turning);
+    let beside_rate = (-TOP..=TOP)
+        .flat_map(|m| [0.25, 0.5].map(|share| share * context.rate + f64::from(m) * turning));
+    halves.chain(beside_rate).any(near)
 }
 
 /// Log-likelihood that steps in time explain of the radius, where that is more than a slow change does: then it is no drift.
