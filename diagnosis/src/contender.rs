@@ -323,7 +323,7 @@ fn stand_beside(
 }
 
 /// What is held of it and of what is beyond.
-fn share(held: f64, (beyond, freedom): (f64, usize)) -> f64 {
+pub(crate) fn share(held: f64, (beyond, freedom): (f64, usize)) -> f64 {
     // What as many free numbers explain of noise alone does not count against it.
     let spread = (2.0 * freedom as f64).sqrt();
     let beyond = (beyond - freedom as f64 / 2.0 - 2.0 * spread).max(0.0);

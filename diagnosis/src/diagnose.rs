@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use crate::checks::{self, Checked};
 use crate::context::{Context, ContextError};
+use crate::doubt;
 use crate::exact;
 use crate::finding::{Finding, Gain, Parameter};
 use crate::flicker::{self, Flicker};
@@ -183,9 +184,10 @@ fn search(
         if !coloured {
             system.flicker = None;
         }
-        let selection = select(&context, &mut system, &catalogue, carried.clone(), last);
+        let mut selection = select(&context, &mut system, &catalogue, carried.clone(), last);
         if selection.again.is_empty() {
             let slow = system.flicker.is_some();
+            doubt::beside_codes(&system, &mut selection, &checked.findings);
             let concluded = conclude(&system, &selection, checked, repaired);
             drop(system);
             return (concluded(context), slow);

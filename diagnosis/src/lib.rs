@@ -13,6 +13,7 @@ mod checks;
 mod contender;
 mod context;
 mod diagnose;
+mod doubt;
 mod exact;
 mod finding;
 mod flicker;

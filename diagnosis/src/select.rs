@@ -5,6 +5,7 @@ use crate::cause::{Candidate, Domain, Sign};
 use crate::causes::{self, Catalogue, HYSTERESIS};
 use crate::contender::{Contender, contender, lives};
 use crate::context::Context;
+use crate::doubt::doubt;
 use crate::exact::{self, Start};
 use crate::library::Shape;
 use crate::model::{Fit, System, atoms_of};
@@ -303,6 +304,7 @@ fn search(
         return found;
     }
     if system.every() == 1 {
+        closed.extend(doubt(system, catalogue, &mut found));
         let left = leftover(system, catalogue, &found.fit, &closed);
         found.unnamed.extend(left);
     }
