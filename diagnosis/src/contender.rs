@@ -199,10 +199,14 @@ fn goes_with_angle(context: &Context, candidate: &Candidate) -> bool {
     const NEAR: f64 = 0.7;
     /// Highest order.
     const TOP: i32 = 8;
+    /// Fewest scale periods, so that hardly a line stands there by chance.
+    const FEWEST: f64 = 50.0;
     let inner = candidate.exact.as_ref().and_then(|e| e.inner.first());
     // Vibration too: where it goes with the angle it may be an error of the sensor.
     let line = candidate.domain == Domain::Line || candidate.name == "vibration";
-    let Some(hertz) = inner.filter(|_| line && !causes::speed_varies_much(context)) else {
+    let many = context.periods_travelled() > FEWEST;
+    let told = line && many && !causes::speed_varies_much(context);
+    let Some(hertz) = inner.filter(|_| told) else {
         return false;
     };
     let duration = context.samples() as f64 / context.rate;

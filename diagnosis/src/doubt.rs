@@ -90,7 +90,7 @@ fn too_much_left(
         signature: format!(
             "{}; nearest likeness: {nearest}, but it holds {:.0} % of what any shape there explains",
             lives(domain),
-            share * 100.0
+            share.max(0.0) * 100.0
         ),
     })
 }
