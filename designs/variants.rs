@@ -101,11 +101,12 @@ pub(crate) fn fixed() -> Variant {
     Variant::of("fixed", |spec| spec.calibration.parameters = 0)
 }
 
-/// One of each kind: the shipped designs, no calibration, and every search with its largest parameter set.
+/// One of each kind: the shipped designs, no calibration, every search with its largest parameter set, and with recall.
 pub(crate) fn kinds() -> Vec<Variant> {
     let mut kinds = shipped();
     kinds.push(fixed());
     kinds.extend(searches().into_iter().filter(Variant::is_largest));
+    kinds.extend(recalls().pop());
     kinds
 }
 
@@ -313,6 +314,36 @@ pub(crate) fn harmonics() -> Vec<Variant> {
     ]
 }
 
+/// A chip that recalls the parameters of before a fade.
+pub(crate) fn recalling(base: &Spec, parameters: u32) -> Variant {
+    let mut spec = base.clone();
+    spec.calibration.recall = true;
+    spec.calibration.parameters = parameters;
+    let what = "final form, recall".into();
+    Variant { what, spec }
+}
+
+/// The same with each parameter set and few periods between the gears, so that the last one is soon reached.
+pub(crate) fn recalls() -> Vec<Variant> {
+    let one = Multipliers::Count(1);
+    let of = |(parameters, method, multipliers): (u32, CalibrationMethod, Multipliers)| {
+        let mut variant = recalling(&optical(), parameters);
+        variant.what = "recall".into();
+        variant.spec.calibration.gear_periods = 1;
+        variant.spec.calibration.method = method;
+        variant.spec.chip.multipliers = multipliers;
+        variant
+    };
+    [
+        (4, Exact, ALL),
+        (5, Final, one),
+        (8, SumOfSquares, Multipliers::Count(2)),
+        (9, Final, one),
+    ]
+    .map(of)
+    .into()
+}
+
 /// All of these.
 pub(crate) fn everything() -> Vec<Variant> {
     let mut list = shipped();
@@ -327,6 +358,7 @@ pub(crate) fn everything() -> Vec<Variant> {
         multipliers(),
         skewed(),
         harmonics(),
+        recalls(),
     ] {
         list.extend(part);
     }

@@ -45,3 +45,16 @@ install_rust_component() {
     fi
     rustup component add "$2"
 }
+
+# install_from_pypi PROGRAM…: into out/python where they are missing; what Debian does not have.
+install_from_pypi() {
+    local program
+    PATH=$PWD/out/python/bin:$PATH
+    for program in "$@"; do
+        command -v "$program" >/dev/null && continue
+        printf 'missing: %s\n' "$program"
+        install_missing python3
+        python3 -m venv out/python
+        out/python/bin/pip install --quiet "$program"
+    done
+}

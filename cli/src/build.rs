@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Result, bail};
 use clap::Args;
-use nonius_package::{DesignJson, ROWS, engineering, package_with, write};
+use nonius_package::{DesignJson, PullIn, ROWS, engineering, package_with, write};
 use nonius_testvectors::stimulus;
 
 use crate::play;
@@ -34,9 +34,9 @@ pub(crate) struct Build {
     recording_args: RecordingArgs,
 }
 
-/// Whether the chip reaches the accuracy that was asked for.
+/// Whether the chip reaches the accuracy that was asked for and locks on every sensor that is promised.
 pub(crate) fn run(args: &Build) -> Result<bool> {
-    let design = crate::design_file::read(&args.design)?;
+    let (design, text) = crate::design_file::read_with_text(&args.design)?;
     let spec = &design.spec;
     let mut stimuli = stimulus::named(&design, args.rows as usize);
     let shown = match (&args.play, &args.sensor) {
@@ -57,14 +57,14 @@ pub(crate) fn run(args: &Build) -> Result<bool> {
         bail!(
             "{}: chip.clock_hz = {clock}: {} clocks per sample at {} samples per second need at least {needed} Hz; more \
              multipliers need fewer clocks",
-            args.design.display(),
+            crate::design_file::place(&args.design, &text, "chip.clock_hz"),
             package.json.clocks_per_sample,
             spec.adc.sample_rate_hz
         );
     }
     write(&package.files, &args.output)?;
     summary(&package.json, &args.output, shown);
-    Ok(!package.json.misses())
+    Ok(package.json.holds())
 }
 
 fn summary(j: &DesignJson, output: &Path, shown: &str) {
@@ -104,6 +104,7 @@ fn summary(j: &DesignJson, output: &Path, shown: &str) {
         engineering(j.tracking.speed_max_periods_per_s, "").trim_end()
     );
     say!("  position    {}", position(j));
+    pulled_in(&j.pull_in);
     let peak = j.spec.sensor.amplitude * j.spec.sensor.reach() / j.spec.adc.full_scale;
     if peak > 1.0 {
         say!(
@@ -117,19 +118,12 @@ fn summary(j: &DesignJson, output: &Path, shown: &str) {
             j.budget.arithmetic_allowed
         );
     }
-    if j.budget.uncorrected > j.budget.asked {
-        say!(
-            "  note        up to {:.2e} periods rms of that is what the design promises of the sensor and {} parameters \
-             do not correct",
-            j.budget.uncorrected,
-            j.spec.calibration.parameters
-        );
+    let uncorrected = uncorrected(j);
+    if let Some(why) = &uncorrected {
+        say!("  note        {why}");
     }
-    // With short words of the user's it is said above.
-    if j.misses()
-        && j.budget.arithmetic <= j.budget.arithmetic_allowed
-        && j.budget.uncorrected <= j.budget.asked
-    {
+    // With short words of the user's and with errors that stay it is said above.
+    if j.misses() && j.budget.arithmetic <= j.budget.arithmetic_allowed && uncorrected.is_none() {
         let why = if !j.simulated.locked {
             "the loop does not lock on the sensor that the design promises"
         } else if j.simulated.rms_periods > 2.0 * j.budget.total {
@@ -145,6 +139,57 @@ fn summary(j: &DesignJson, output: &Path, shown: &str) {
     );
     say!("next: nonius verify {folder}");
     say!("      gtkwave {folder}/waves/{shown}.vcd {folder}/waves/{shown}.gtkw");
+}
+
+/// Why the accuracy is missed, where that is for errors of the sensor that stay.
+fn uncorrected(j: &DesignJson) -> Option<String> {
+    let b = &j.budget;
+    let most = b.uncorrected.powi(2) > b.total.powi(2) / 2.0;
+    let verdict = if !most {
+        return None;
+    } else if j.misses() {
+        "the accuracy is missed"
+    } else if b.total > b.asked {
+        "the accuracy is missed by the worst sensor that is promised"
+    } else {
+        return None;
+    };
+    let stays = match j.spec.calibration.parameters {
+        0 => {
+            "errors of offset, amplitude and phase, which stay without calibration: take calibration.parameters = 5".into()
+        }
+        n @ (4 | 8) => format!(
+            "the phase error (sensor.phase_error_max_deg = {}), which {n} parameters do not correct: take \
+             calibration.parameters = {}",
+            j.spec.sensor.phase_error_max_deg,
+            n + 1
+        ),
+        _ => "what the correction of harmonics leaves".into(),
+    };
+    Some(format!(
+        "{verdict}: {:.2e} periods rms at worst, of {:.2e} asked, are {stays}",
+        b.uncorrected, b.asked
+    ))
+}
+
+/// From power-up into full speed.
+fn pulled_in(p: &PullIn) {
+    let Some(worst) = &p.worst else {
+        say!(
+            "  lock        every sensor that is promised, {} at the ends of the promise, from power-up into full speed both \
+             ways, within {}",
+            p.sensors,
+            engineering(p.longest_s, "s")
+        );
+        return;
+    };
+    say!(
+        "  note        {} of the {} sensors at the ends of the promise do not lock from power-up into full speed; worst: \
+         {worst}",
+        p.not_locked,
+        p.sensors
+    );
+    say!("              to change: {}", p.advice());
 }
 
 /// The position at the output in the units that the design has for it.

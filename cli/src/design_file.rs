@@ -6,12 +6,12 @@ use std::path::Path;
 
 use anyhow::{Context, Result, anyhow, bail};
 use nonius_model::design::{Design, DesignError};
-use nonius_model::spec::{Spec, line_of_field};
+use nonius_model::spec::{Place, Spec};
 
 /// A design is a page of text; what is longer is something else.
 const LONGEST: u64 = 1 << 20;
 
-/// The design in a file, quantised; an error names the line of the field that cannot be.
+/// The design in a file, quantised; an error names the place of the field that cannot be.
 pub(crate) fn read(path: &Path) -> Result<Design> {
     Ok(read_with_text(path)?.0)
 }
@@ -22,13 +22,21 @@ pub(crate) fn read_with_text(path: &Path) -> Result<(Design, String)> {
     let text = text(path, &file)?;
     let design = Design::new(&Spec::from_toml(&text, &file)?).map_err(|error| {
         let place = match &error {
-            DesignError::Field { field, .. } => line_of_field(&text, field),
-            DesignError::Range(_) => None,
+            DesignError::Field { field, .. } => place(path, &text, field),
+            DesignError::Range(_) => file.clone(),
         };
-        let place = place.map_or(String::new(), |line| format!(":{line}:1"));
-        anyhow!("{file}{place}: {error}")
+        anyhow!("{place}: {error}")
     })?;
     Ok((design, text))
+}
+
+/// Where a field stands: file:line:column, or the file where it is left out.
+pub(crate) fn place(path: &Path, text: &str, field: &str) -> String {
+    let file = path.display();
+    match Place::of_field(text, field) {
+        Some(place) => format!("{file}:{place}"),
+        None => file.to_string(),
+    }
 }
 
 fn text(path: &Path, file: &str) -> Result<String> {

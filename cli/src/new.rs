@@ -8,6 +8,7 @@ use anyhow::{Context, Result, bail};
 use clap::Args;
 use nonius_model::design::{Design, DesignError};
 use nonius_model::spec::Spec;
+use nonius_package::engineering;
 use nonius_recording::{AdcSource, Recording, Survey};
 
 use crate::recording_args::RecordingArgs;
@@ -79,10 +80,10 @@ pub(crate) fn run(args: &New) -> Result<()> {
         .with_context(|| format!("cannot write {}", path.display()))?;
     target.keep_new()?;
     say!(
-        "{}: accuracy {:.2e} periods rms predicted, speed to {:.4e} periods/s",
+        "{}: accuracy {:.2e} periods rms predicted, speed to {} periods/s",
         path.display(),
         design.budget.total(),
-        draft.speed_max.0
+        engineering(draft.speed_max.0, "").trim_end()
     );
     say!("next: nonius build {} -o out/{}", path.display(), args.name);
     Ok(())
@@ -140,9 +141,15 @@ fn rounded_up(value: f64) -> f64 {
     short((value / unit - 1e-9).ceil() * unit)
 }
 
-/// Three digits.
+/// Four digits.
 fn short(value: f64) -> f64 {
-    format!("{value:.3e}").parse().unwrap_or(value)
+    digits(value, 4)
+}
+
+/// So many digits, and no zeros behind them when it is written.
+fn digits(value: f64, n: usize) -> f64 {
+    let after = n - 1;
+    format!("{value:.after$e}").parse().unwrap_or(value)
 }
 
 fn plain(name: &str) -> Draft {
@@ -150,7 +157,8 @@ fn plain(name: &str) -> Draft {
     Draft {
         name: name.into(),
         description: "a sin/cos encoder".into(),
-        head: "Every number below is an example: replace it with your sensor's.".into(),
+        head: "A sin/cos encoder. Every number below is an example: replace it with your sensor's."
+            .into(),
         amplitude: (0.8, note("nominal, in the unit of full_scale")),
         amplitude_tolerance: (0.15, note("of the amplitude, each channel")),
         offset_max: (0.1, note("of the amplitude, each channel")),
@@ -168,6 +176,22 @@ fn plain(name: &str) -> Draft {
         sample_rate: (500e3, note("both channels at the same instant")),
         bandwidth: (5e3, note("omega_0 / 2 pi of the closed loop")),
         accuracy: FINEST,
+    }
+}
+
+/// A loop that follows what the speed makes of errors that are not yet corrected, within what the sample rate allows; and which
+/// of the three it is.
+fn bandwidth(speed: f64, rate: f64) -> (f64, &'static str) {
+    let (wanted, least, most) = (8.0 * speed, 0.02 * rate, 0.06 * rate);
+    if wanted < least {
+        (least, "2 % of the sample rate, more than 8 times the speed")
+    } else if wanted > most {
+        (
+            most,
+            "6 % of the sample rate: 8 times the speed would be more",
+        )
+    } else {
+        (wanted, "8 times the speed")
     }
 }
 
@@ -228,7 +252,7 @@ fn fitted(name: &str, file: &Path, recording: &Recording, survey: &Survey) -> Re
         );
     }
     let speed = (seen * 1.3).clamp(1e-4, 0.25) * rate;
-    let bandwidth = (8.0 * speed).clamp(0.02 * rate, 0.06 * rate);
+    let (bandwidth, of_speed) = bandwidth(speed, rate);
     Ok(Draft {
         name: name.into(),
         description: format!("fitted to a recording of {} samples", recording.samples()),
@@ -241,23 +265,27 @@ fn fitted(name: &str, file: &Path, recording: &Recording, survey: &Survey) -> Re
         amplitude: (
             short(amplitude),
             format!(
-                "measured: {:.4} (cos), {:.4} (sin)",
-                ellipse.a_c, ellipse.a_s
+                "measured: {} (cos), {} (sin)",
+                digits(ellipse.a_c, 5),
+                digits(ellipse.a_s, 5)
             ),
         ),
         amplitude_tolerance: (
             tolerance,
-            format!("measured: {spread:.3}; and a tenth to spare"),
+            format!("measured: {}; and a tenth to spare", digits(spread, 3)),
         ),
         offset_max: (
             offset(middle),
-            format!("measured: {:.3}; and some to spare", offset_from(middle)),
+            format!(
+                "measured: {}; and some to spare",
+                digits(offset_from(middle), 3)
+            ),
         ),
         phase_error_max_deg: (
             short((ellipse.beta.to_degrees().abs() * 1.3 + 2.0).min(45.0)),
             format!(
-                "measured: {:.2}; and some to spare",
-                ellipse.beta.to_degrees()
+                "measured: {}; and some to spare",
+                digits(ellipse.beta.to_degrees(), 4)
             ),
         ),
         noise_rms: (
@@ -266,7 +294,10 @@ fn fitted(name: &str, file: &Path, recording: &Recording, survey: &Survey) -> Re
         ),
         speed_max: (
             short(speed),
-            format!("measured: {:.5}", survey.motion.max_speed_periods_per_s),
+            format!(
+                "measured: {}",
+                digits(survey.motion.max_speed_periods_per_s, 9)
+            ),
         ),
         scale_period_m: recording.metadata.scale_period_m,
         periods_per_revolution: recording.metadata.periods_per_revolution,
@@ -274,10 +305,7 @@ fn fitted(name: &str, file: &Path, recording: &Recording, survey: &Survey) -> Re
         full_scale: (full_scale, whence.into()),
         middle,
         sample_rate: (rate, "of the recording".into()),
-        bandwidth: (
-            short(bandwidth),
-            "8 times the speed, within what the rate allows".into(),
-        ),
+        bandwidth: (short(bandwidth), of_speed.into()),
         accuracy: FINEST,
     })
 }
@@ -303,7 +331,7 @@ impl Draft {
             }
         };
         let real = |key: &str, v: &(f64, String)| line(key, number(v.0), &v.1);
-        let _ = writeln!(out, "# {}\n# {}", self.description, self.head);
+        let _ = writeln!(out, "# {}", self.head);
         let _ = writeln!(
             out,
             "name = {:?}\ndescription = {:?}\n",
@@ -348,6 +376,7 @@ impl Draft {
             "5".into(),
             "0 (off), 4 (gains, offsets), 5 (and phase), 8, 9 (and bends)",
         );
+        out += "# recall = true                         # a signal that fades and comes back leaves nothing in the parameters\n";
         out += "\n# [correction]\n";
         out += "# channel_skew_s = 1e-6                 # sin is sampled so much later than cos\n";
         out += "# [[correction.harmonics]]              # one for each order: amplitude * cos(order * angle + phase) more\n";

@@ -3,8 +3,8 @@
 //!     cargo run --release -p nonius-hdl --example campaign -- DOCS
 //!     cargo run -p nonius-hdl --example campaign -- --short
 //!
-//! The first writes DOCS/bit-exact.md. The second runs few samples of few variants and writes nothing: the form for
-//! every commit.
+//! The first writes DOCS/bit-exact.md; chips whose row there is of the same files (rtl, testbench, stimuli) are not run again.
+//! The second runs few samples of few variants and writes nothing: the form for every commit.
 //! Exit code 1 if any bit of any probe differs.
 
 #[path = "../../designs/shipped.rs"]
@@ -15,24 +15,23 @@ use std::error::Error;
 use std::fs;
 use std::path::Path;
 use std::process::ExitCode;
+use std::sync::Mutex;
 use std::time::Duration;
 
 use nonius_hdl::progress::silent;
 use nonius_hdl::{ChipDir, Options, verify};
 use nonius_model::design::Design;
 use nonius_model::spec::{Multipliers, Spec};
+use rayon::prelude::*;
+use sha2::{Digest, Sha256};
 use shipped::variants::{Variant, everything};
 
 /// Rows of each of the eleven stimuli: at least 100 000 samples for Verilator, 2 000 for Icarus.
 const LONG: (usize, usize) = (9_200, 190);
 const SHORT: (usize, usize) = (60, 60);
 
-struct Outcome {
-    what: String,
-    /// Samples compared, or what did not hold.
-    verilator: Result<u64, String>,
-    icarus: Result<u64, String>,
-}
+/// Rows of the stimuli that a chip's fingerprint is made of.
+const FINGERPRINT: usize = 60;
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = env::args().skip(1).collect();
@@ -56,29 +55,89 @@ fn main() -> ExitCode {
 
 /// With a folder for the page the long campaign, without one the short.
 fn run(docs: Option<&Path>) -> Result<bool, Box<dyn Error>> {
-    let (rows, step) = if docs.is_some() {
-        (LONG, 1)
-    } else {
-        (SHORT, 20)
+    let Some(docs) = docs else {
+        let some: Vec<Variant> = everything().into_iter().step_by(20).collect();
+        let lines: Result<Vec<String>, String> =
+            some.par_iter().map(|v| run_one(v, SHORT)).collect();
+        let page = lines?.concat();
+        print!("{page}");
+        return Ok(!page.contains(FAIL));
     };
-    let mut outcomes = vec![];
-    for variant in everything().into_iter().step_by(step) {
-        let outcome = Outcome {
-            verilator: samples(&variant.spec, rows.0, true)?,
-            icarus: samples(&variant.spec, rows.1, false)?,
-            what: described(&variant),
-        };
-        eprintln!("{}", line(&outcome).trim_end());
-        outcomes.push(outcome);
-        // What has been measured so far, should somebody stop the campaign.
-        if let Some(docs) = docs {
-            fs::create_dir_all(docs)?;
-            fs::write(docs.join("bit-exact.md"), page(&outcomes))?;
+    let file = docs.join("bit-exact.md");
+    let known = fs::read_to_string(&file).unwrap_or_default();
+    let variants = everything();
+    let lines: Mutex<Vec<Option<String>>> = Mutex::new(vec![None; variants.len()]);
+    let all: Result<(), String> = variants
+        .par_iter()
+        .enumerate()
+        .try_for_each(|(i, variant)| {
+            let begins = format!("| {} | {} |", described(variant), fingerprint(variant)?);
+            let same = known
+                .lines()
+                .find(|line| line.starts_with(&begins) && !line.contains(FAIL));
+            let line = match same {
+                Some(line) => format!("{line}\n"),
+                None => run_one(variant, LONG)?,
+            };
+            eprint!("{line}");
+            // What has been measured so far, should somebody stop the campaign.
+            let mut lines = lines.lock().map_err(|e| e.to_string())?;
+            lines[i] = Some(line);
+            write(docs, &file, &page(&lines)).map_err(|e| e.to_string())
+        });
+    all?;
+    let lines = lines.into_inner()?;
+    Ok(!page(&lines).contains(FAIL))
+}
+
+/// What a row says where something differs.
+const FAIL: &str = "**FAIL**";
+
+/// Under a temporary name first.
+fn write(docs: &Path, file: &Path, page: &str) -> std::io::Result<()> {
+    fs::create_dir_all(docs)?;
+    let scratch = file.with_extension("part");
+    fs::write(&scratch, page)?;
+    fs::rename(scratch, file)
+}
+
+/// Twelve digits for what is compared: Verilog, tables, testbench, and the first rows of the stimuli.
+fn fingerprint(variant: &Variant) -> Result<String, String> {
+    let design = Design::new(&variant.spec).map_err(|e| e.to_string())?;
+    let package = nonius_package::package(&design, FINGERPRINT).map_err(|e| e.to_string())?;
+    let mut hash = Sha256::new();
+    let compared = ["rtl/", "tb/", "coefficients/", "vectors/"];
+    for (path, content) in &package.files {
+        if compared.iter().any(|folder| path.starts_with(folder)) {
+            hash.update(path);
+            hash.update(content);
         }
     }
-    Ok(outcomes
+    let digits = hash
+        .finalize()
         .iter()
-        .all(|o| o.verilator.is_ok() && o.icarus.is_ok()))
+        .take(6)
+        .map(|b| format!("{b:02x}"))
+        .collect();
+    Ok(digits)
+}
+
+/// A chip in both simulators: its line.
+fn run_one(variant: &Variant, rows: (usize, usize)) -> Result<String, String> {
+    let say = |rows: usize, verilator: bool| {
+        let samples = samples(&variant.spec, rows, verilator).map_err(|e| e.to_string())?;
+        Ok::<_, String>(match samples {
+            Ok(samples) => format!("{samples} equal"),
+            Err(why) => format!("{FAIL} {why}"),
+        })
+    };
+    Ok(format!(
+        "| {} | {} | {} | {} |\n",
+        described(variant),
+        fingerprint(variant)?,
+        say(rows.0, true)?,
+        say(rows.1, false)?
+    ))
 }
 
 /// Its line in the table.
@@ -130,21 +189,8 @@ fn samples(
     })
 }
 
-fn line(outcome: &Outcome) -> String {
-    let say = |result: &Result<u64, String>| match result {
-        Ok(samples) => format!("{samples} equal"),
-        Err(why) => format!("**FAIL** {why}"),
-    };
-    format!(
-        "| {} | {} | {} |\n",
-        outcome.what,
-        say(&outcome.verilator),
-        say(&outcome.icarus)
-    )
-}
-
-fn page(outcomes: &[Outcome]) -> String {
-    let lines: String = outcomes.iter().map(line).collect();
+fn page(lines: &[Option<String>]) -> String {
+    let lines: String = lines.iter().flatten().map(String::as_str).collect();
     format!("{HEAD}{lines}")
 }
 
@@ -153,8 +199,9 @@ const HEAD: &str = "\
 
 Written by `cargo run --release -p nonius-hdl --example campaign -- docs`; do not edit. Samples of mixed stimuli
 (standstill, both directions, sweep, creep, loss of signal, step, corners, bounds, ties, random codes) in which every probe and register of the
-Verilog equals the model. A variant that is missing was not run.
+Verilog equals the model. A variant that is missing was not run. *Chip* is a fingerprint of its Verilog, tables, testbench and
+stimuli: run again, the command takes only those whose files have changed since.
 
-| design | method | type | parameters | multipliers | ADC bits | Verilator | Icarus |
-|---|---|---|---|---|---|---|---|
+| design | method | type | parameters | multipliers | ADC bits | chip | Verilator | Icarus |
+|---|---|---|---|---|---|---|---|---|
 ";

@@ -17,7 +17,8 @@ use nonius_hdl::ChipDir;
 use nonius_hdl::place::{Device, place};
 use nonius_hdl::progress::silent;
 use nonius_model::spec::Calibration;
-use shipped::variants::{fixed, searches};
+use shipped::optical;
+use shipped::variants::{fixed, recalling, searches};
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = env::args().skip(1).collect();
@@ -38,13 +39,15 @@ fn run(docs: &Path) -> Result<(), Box<dyn Error>> {
     let mut page = String::from(HEAD);
     let mut csv = String::from("method,start,parameters,completion,clocks,lut4\n");
     let mut bare = 0;
-    for variant in [fixed()].into_iter().chain(searches()) {
+    let recalling = [5, 9].map(|parameters| recalling(&optical(), parameters));
+    for variant in [fixed()].into_iter().chain(searches()).chain(recalling) {
         let design = variant.design();
         let Calibration {
             method,
             start,
             parameters,
             completion,
+            recall,
             ..
         } = variant.spec.calibration;
         let dir = tempfile::tempdir()?;
@@ -65,10 +68,13 @@ fn run(docs: &Path) -> Result<(), Box<dyn Error>> {
             placed.chip.ff
         )?;
         let (clocks, luts) = (package.json.clocks_per_sample, placed.chip.lut4);
-        writeln!(
-            csv,
-            "{method:?},{start:?},{parameters},{completion},{clocks},{luts}"
-        )?;
+        // The comparison of convergence knows no losses.
+        if !recall {
+            writeln!(
+                csv,
+                "{method:?},{start:?},{parameters},{completion},{clocks},{luts}"
+            )?;
+        }
         eprintln!("{}, {parameters} parameters", variant.what);
     }
     std::fs::create_dir_all(docs)?;

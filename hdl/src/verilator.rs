@@ -27,9 +27,9 @@ pub enum Effort {
 }
 
 impl Effort {
-    /// What is quicker in all for so many rows of vectors.
+    /// What is quicker in all for so many rows of vectors: at a hundred thousand -O0 is 21 s in all, -O3 39 s.
     pub fn for_rows(rows: u64) -> Effort {
-        if rows < 20_000 {
+        if rows < 200_000 {
             Effort::QuickBuild
         } else {
             Effort::QuickRun

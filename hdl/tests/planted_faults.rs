@@ -378,6 +378,55 @@ fn harmonic_faults() -> Vec<Fault> {
     ]
 }
 
+/// Faults in the recall.
+fn recall_faults() -> Vec<Fault> {
+    vec![
+        swap(
+            "recall before the last gear",
+            &["wire recall_now ="],
+            " & recall_condition",
+            "",
+        ),
+        swap(
+            "recall of what is recent",
+            &["wire", " theta_2_deviation_next ="],
+            "recall ? proven_2",
+            "recall ? recent_2",
+        ),
+        swap(
+            "no recall of the phase",
+            &["wire", " theta_5_deviation_next ="],
+            "recall ?",
+            "1'b0 ?",
+        ),
+        swap(
+            "what is recent is proven in recall",
+            &["wire remember_now ="],
+            " & ~recall_now",
+            "",
+        ),
+        swap(
+            "held for a period only",
+            &["wire returning_next_now ="],
+            "recall_now &",
+            "1'b0 &",
+        ),
+        swap(
+            "quiet periods counted from before the loss",
+            &["wire gear_periods_again ="],
+            " | travel_clear_condition",
+            "",
+        ),
+    ]
+}
+
+#[test]
+fn vectors_catch_every_fault_in_the_recall() {
+    let variant = &chip::shipped::variants::recalls()[1];
+    let files = files(&variant.spec);
+    all_caught("the recall", &files, RTL, &recall_faults());
+}
+
 #[test]
 fn vectors_catch_every_fault_in_the_correction_of_harmonics() {
     let mut spec = optical();

@@ -51,6 +51,18 @@ fn the_toy_is_placed_and_its_cells_are_counted_without_the_harness() {
     }
 }
 
+/// Without placing: Debian has no nextpnr for it.
+#[test]
+fn the_toy_is_mapped_to_an_ecp5() {
+    let placed =
+        place(&Toy::new().open(), Device::Ecp5, &[], &silent).unwrap_or_else(|it| panic!("{it}"));
+    assert_eq!(placed.chip.ff, 10);
+    assert_eq!(placed.harness.ff, 18 + 10 + 1);
+    // Nine bits of sum, two in each carry cell.
+    assert!((4..=6).contains(&placed.chip.carry), "{placed:?}");
+    assert!(placed.placements.is_empty() && placed.best_mhz.is_none());
+}
+
 #[test]
 fn outputs_that_repeat_each_other_keep_their_logic() {
     let twice = Toy::new()

@@ -7,9 +7,11 @@ mod support;
 use std::fmt::Write;
 use std::path::Path;
 
+use nonius_model::bits::Bits;
 use nonius_model::chip::Chip;
 use nonius_model::design::Design;
-use nonius_model::kernel::Input;
+use nonius_model::kernel::{Input, State};
+use nonius_model::signal::Signal;
 use nonius_model::spec::{Coding, Spec};
 use support::{Encoder, shipped, wrapped};
 
@@ -23,7 +25,7 @@ fn arithmetic_adds_at_most_a_tenth_of_the_adc() {
         "# What the arithmetic adds\n\n\
          Written by `{HOW}`; do not edit. A whole period, slowly, at constant\n\
          speed, after convergence of a miscalibrated encoder; the same codes and coefficients, and the same parameters at first,\n\
-         which stand still or calibrate on. ADC: the unrounded chip with and without quantised input. Arithmetic: the bit-true chip against the unrounded one. Periods.\n\n\
+         which stand still or calibrate on; lock detection and gears decide the same in every sample of the sweep. ADC: the unrounded chip with and without quantised input. Arithmetic: the bit-true chip against the unrounded one. Periods.\n\n\
          | design | parameters | ADC, rms | arithmetic, rms | share | arithmetic, largest |\n|---|---|---|---|---|---|\n",
     );
     for (name, calibrating) in shipped::NAMES
@@ -61,6 +63,28 @@ struct Measured {
     arithmetic: f64,
     largest: f64,
     adc: f64,
+}
+
+/// What lock detection and gears have decided after a sample.
+fn decisions<S: Signal<Bool = bool>>(
+    state: &State<S>,
+    number: impl Fn(S) -> f64,
+) -> ([f64; 4], [bool; 6]) {
+    let values = [
+        state.lock_level,
+        state.loop_gear,
+        state.gamma_gear,
+        state.gear_periods,
+    ];
+    let flags = [
+        state.locked,
+        state.lock_lost,
+        state.signal_lost,
+        state.disturbed,
+        state.risen,
+        state.held,
+    ];
+    (values.map(number), flags)
 }
 
 fn measure(spec: &Spec, calibrating: bool) -> Measured {
@@ -107,6 +131,13 @@ fn measure(spec: &Spec, calibrating: bool) -> Measured {
         let [v_cos, v_sin] = encoder.volts(at);
         analogue.step(&input(part(v_cos * half), part(v_sin * half)));
         if k >= converge + settle {
+            assert!(bits.state.locked, "{}, sample {k}", spec.name);
+            assert_eq!(
+                decisions(&bits.state, Bits::to_f64),
+                decisions(&real.state, |x| x),
+                "{}, sample {k}: lock level, loop gear, gamma gear, its periods; locked, lost, no signal, disturbed, risen, held",
+                spec.name
+            );
             let difference = wrapped(bits.position() - real.position());
             arithmetic += difference * difference;
             largest = largest.max(difference.abs());

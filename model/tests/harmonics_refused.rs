@@ -3,7 +3,7 @@
 mod support;
 
 use nonius_model::design::{Design, DesignError, ORDER_MAX};
-use nonius_model::spec::{Harmonic, Spec, line_of_field};
+use nonius_model::spec::{Harmonic, Place, Spec};
 use proptest::prelude::*;
 use support::optical;
 use support::shipped::variants::third_and_fifth;
@@ -41,7 +41,7 @@ fn a_misspelt_key_of_the_second_entry_is_named_with_its_line() {
     assert_eq!(
         message,
         format!(
-            "d.toml:{}: unknown key `correction.harmonics[2].phase_coss`; did you mean `phase_cos`?",
+            "d.toml:{}:1: unknown key `correction.harmonics[2].phase_coss`; did you mean `phase_cos`?",
             line + 3
         )
     );
@@ -62,6 +62,10 @@ fn a_missing_key_and_a_wrong_kind_are_told() {
             .to_string();
         assert!(message.contains(expected), "{message}");
     }
+}
+
+fn line_of(text: &str, field: &str) -> Option<usize> {
+    Place::of_field(text, field).map(|place| place.line)
 }
 
 #[test]
@@ -85,7 +89,7 @@ fn what_cannot_work_names_entry_and_line() {
         change(&mut spec.correction.harmonics[1]);
         let (field, reason) = refused(&spec);
         assert_eq!(field, format!("correction.harmonics[2].{key}"), "{reason}");
-        assert_eq!(line_of_field(&text, &field), Some(line + below));
+        assert_eq!(line_of(&text, &field), Some(line + below));
     }
 }
 
@@ -102,14 +106,14 @@ fn sums_and_slopes_are_bounded() {
         assert_eq!(field, "correction.harmonics");
         // The first header.
         let first = line - ENTRY.lines().count();
-        assert_eq!(line_of_field(&text, &field), Some(first));
+        assert_eq!(line_of(&text, &field), Some(first));
     }
     let inline = format!(
         "{}\n[correction]\nharmonics = [{{order = 3}}]\n",
         self::text()
     );
     let last = inline.lines().count();
-    assert_eq!(line_of_field(&inline, "correction.harmonics"), Some(last));
+    assert_eq!(line_of(&inline, "correction.harmonics"), Some(last));
 }
 
 /// What a file says is read back.

@@ -10,18 +10,18 @@ use nonius_model::spec::{CalibrationMethod, Spec};
 use reference_support::{MISCALIBRATED, Noise, miscalibration};
 
 /// Samples of a period of travel.
-const PERIOD: u32 = 301;
+const PERIOD: u32 = 151;
 
-/// Largest miscalibration, radians: over a hundred periods before the signal fades over `fade` samples, from then to the end, and
-/// over the last ten periods.
-fn around(spec: &Spec, fade: u32) -> [f64; 3] {
+/// Largest miscalibration, radians: over a hundred periods before the signal fades over `fade` samples, from then to the end, over
+/// the last ten periods, and from when the signal is back on.
+fn around(spec: &Spec, fade: u32) -> [f64; 4] {
     let config = from_spec::config(spec).expect("a design that the paper knows");
     let parameters = config.parameters;
     let mut reference = Reference::new(config).expect("there is one");
     let mut noise = Noise::new(5, spec.sensor.noise_rms);
     let (lost, back) = (300 * PERIOD, 300 * PERIOD + fade + 3000);
     let end = back + 150 * PERIOD;
-    let mut worst = [0.0f64; 3];
+    let mut worst = [0.0f64; 4];
     for k in 0..end {
         let left = match k {
             _ if k < lost || k >= back => 1.0,
@@ -36,6 +36,9 @@ fn around(spec: &Spec, fade: u32) -> [f64; 3] {
             let now = miscalibration(parameters, reference.theta(), signals).1;
             let part = usize::from(k >= lost);
             worst[part] = worst[part].max(now);
+            if k >= back {
+                worst[3] = worst[3].max(now);
+            }
             if k >= end - 10 * PERIOD {
                 worst[2] = worst[2].max(now);
             }
@@ -57,7 +60,7 @@ fn a_fading_signal_does_not_take_the_parameters_with_it() {
         spec.calibration.method = method;
         spec.calibration.parameters = parameters;
         for (periods, more) in [(0, 2e-4), (3, 5e-3), (10, 5e-3), (33, 5e-3)] {
-            let [before, worst, end] = around(&spec, periods * PERIOD);
+            let [before, worst, end, _] = around(&spec, periods * PERIOD);
             println!(
                 "{method:?}, {parameters}: faded over {periods} periods, {before:.1e} -> {worst:.1e} -> {end:.1e} rad"
             );
@@ -66,5 +69,26 @@ fn a_fading_signal_does_not_take_the_parameters_with_it() {
                 "{method:?}"
             );
         }
+    }
+}
+
+#[test]
+fn recalled_parameters_know_nothing_of_a_fade() {
+    for (method, parameters) in [
+        (CalibrationMethod::Final, 5),
+        (CalibrationMethod::SumOfSquares, 5),
+    ] {
+        let mut spec = support::optical();
+        spec.calibration.method = method;
+        spec.calibration.parameters = parameters;
+        let left = |recall: bool| {
+            let mut spec = spec.clone();
+            spec.calibration.recall = recall;
+            let [before, _, _, after] = around(&spec, 33 * PERIOD);
+            println!("{method:?}, recall {recall}: {before:.1e} -> {after:.1e} rad");
+            after / before
+        };
+        let (followed, recalled) = (left(false), left(true));
+        assert!(recalled < 1.5 && recalled < followed, "{method:?}");
     }
 }

@@ -3,7 +3,9 @@
 mod support;
 
 use nonius_model::design::{Design, DesignError, Words};
-use nonius_model::spec::{CalibrationMethod, CalibrationStart, Multipliers, Overrides, Spec, keys};
+use nonius_model::spec::{
+    CalibrationMethod, CalibrationStart, Multipliers, Overrides, Place, Spec, keys,
+};
 use proptest::prelude::*;
 use support::{Encoder, optical, shipped, wrapped};
 
@@ -19,13 +21,41 @@ fn an_unknown_key_is_named_with_its_line_and_the_nearest_known_one() {
         .expect_err("a misspelt key")
         .to_string();
     assert!(
-        message.contains("d.toml:") && message.contains("loop.bandwith_hz"),
+        message.starts_with("d.toml:22:1: unknown key `loop.bandwith_hz`"),
         "{message}"
     );
     assert!(
         message.contains("did you mean `bandwidth_hz`?"),
         "{message}"
     );
+}
+
+/// Wherever it stands: indented, dotted, in a table on one line, in a list; and nowhere.
+#[test]
+fn a_field_is_found_where_it_is_given() {
+    let text = "loop.type = 2\nadc = { bits = 12, middle = 0.5 }\n[sensor]\n  noise_rms = 1\n[correction]\n\
+                harmonics = [{ order = 3 },\n  { order = 4 }]\n";
+    for (field, place) in [
+        ("loop.type", "1:6"),
+        ("adc.middle", "2:20"),
+        ("sensor.noise_rms", "4:3"),
+        ("correction.harmonics", "6:1"),
+        ("correction.harmonics[2].order", "7:5"),
+    ] {
+        let found = Place::of_field(text, field).map(|place| place.to_string());
+        assert_eq!(found.as_deref(), Some(place), "{field}");
+    }
+    for field in [
+        "loop.pole",
+        "chip.clock_hz",
+        "correction.harmonics[3].order",
+        "",
+    ] {
+        assert_eq!(Place::of_field(text, field), None, "{field}");
+    }
+    let unknown = Spec::from_toml("adc = { bits = 12, bitz = 1 }\n", "d.toml");
+    let message = unknown.expect_err("an unknown key").to_string();
+    assert!(message.starts_with("d.toml:1:20: unknown key"), "{message}");
 }
 
 #[test]
@@ -69,7 +99,7 @@ fn numbers_in_messages_are_short() {
 #[test]
 fn what_cannot_work_names_the_field() {
     type Change = fn(&mut Spec);
-    let cases: [(&str, Change); 16] = [
+    let cases: [(&str, Change); 17] = [
         ("loop.type", |s| s.tracking.method = 2),
         ("loop.method", |s| s.tracking.method = 4),
         ("loop.bandwidth_hz", |s| s.tracking.bandwidth_hz = 4e5),
@@ -79,6 +109,11 @@ fn what_cannot_work_names_the_field() {
         ("calibration.start", |s| {
             s.calibration.method = CalibrationMethod::Batch;
             s.calibration.start = CalibrationStart::LeastSquares;
+        }),
+        // Parameters are held, and recalled, only after four gears.
+        ("calibration.recall", |s| {
+            s.calibration.recall = true;
+            s.calibration.gamma_last = s.calibration.gamma_first + 3;
         }),
         ("correction.channel_skew_s", |s| {
             s.correction.channel_skew_s = f64::NAN;

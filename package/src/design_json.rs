@@ -8,6 +8,7 @@ use serde::Serialize;
 use crate::channel_skew::ChannelSkew;
 use crate::coefficient::Coefficient;
 use crate::harmonics::HarmonicTable;
+use crate::pull_in::PullIn;
 use crate::signals::Signal;
 use crate::simulation::Accuracy;
 use crate::sine::{SineError, sine_error};
@@ -51,6 +52,8 @@ pub struct DesignJson {
     pub budget: Budget,
     /// The bit-true chip, measured.
     pub simulated: Accuracy,
+    /// From power-up into full speed, measured likewise.
+    pub pull_in: PullIn,
     /// What was asked for.
     pub spec: Spec,
 }
@@ -149,15 +152,27 @@ pub struct Term {
 }
 
 impl DesignJson {
-    /// It is simulated worse than what was asked for.
+    /// The accuracy is simulated worse than what was asked for.
     #[must_use]
     pub fn misses(&self) -> bool {
         self.simulated.rms_periods > self.budget.asked || !self.simulated.locked
     }
 
+    /// Everything that was asked for and promised is simulated to hold.
+    #[must_use]
+    pub fn holds(&self) -> bool {
+        !self.misses() && self.pull_in.holds()
+    }
+
     /// All of it; measures the sine.
     #[must_use]
-    pub fn of(design: &Design, hash: &str, clocks: usize, simulated: Accuracy) -> Self {
+    pub fn of(
+        design: &Design,
+        hash: &str,
+        clocks: usize,
+        simulated: Accuracy,
+        pull_in: PullIn,
+    ) -> Self {
         let (spec, b) = (&design.spec, &design.budget);
         let (rate, products) = (spec.adc.sample_rate_hz, design.graph.products());
         let clock = rate * clocks as f64;
@@ -206,6 +221,7 @@ impl DesignJson {
                     .collect(),
             },
             simulated,
+            pull_in,
             spec: spec.clone(),
         }
     }

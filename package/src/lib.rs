@@ -7,7 +7,9 @@ mod design_json;
 mod diagram;
 mod engineering;
 mod harmonics;
+mod pull_in;
 mod report;
+mod sensor;
 mod signals;
 mod simulation;
 mod sine;
@@ -16,6 +18,7 @@ mod write;
 
 pub use design_json::DesignJson;
 pub use engineering::engineering;
+pub use pull_in::{BOTH_WAYS, PullIn, Worst, pull_in};
 pub use signals::{Signal, signals};
 pub use simulation::{Accuracy, Simulation, simulate};
 pub use sine::{SineError, sine_error};
@@ -76,7 +79,8 @@ pub fn package_with(
     let hash = nonius_codegen::hash(design);
     let chip = nonius_codegen::generate(design, &hash, &names)?;
     let simulation = simulate(design);
-    let json = DesignJson::of(design, &hash, chip.clocks, simulation.accuracy);
+    let pull_in = pull_in(design, &BOTH_WAYS);
+    let json = DesignJson::of(design, &hash, chip.clocks, simulation.accuracy, pull_in);
     let mut files: Vec<(String, Vec<u8>)> = chip
         .files
         .into_iter()

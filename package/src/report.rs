@@ -48,6 +48,7 @@ fn facts(design: &Design, j: &DesignJson) -> Vec<Fact> {
         missed: match name {
             PREDICTED => j.budget.total > j.budget.asked,
             SIMULATED => j.misses(),
+            PULL_IN => !j.pull_in.holds(),
             _ => false,
         },
         name,
@@ -59,6 +60,7 @@ fn facts(design: &Design, j: &DesignJson) -> Vec<Fact> {
 
 const PREDICTED: &str = "Accuracy predicted";
 const SIMULATED: &str = "Accuracy simulated";
+const PULL_IN: &str = "Pull-in";
 
 fn said(design: &Design, j: &DesignJson) -> Vec<(&'static str, String, String)> {
     let (spec, t) = (&design.spec, &j.tracking);
@@ -110,6 +112,7 @@ fn said(design: &Design, j: &DesignJson) -> Vec<(&'static str, String, String)> 
                 }
             ),
         ),
+        pull_in(j),
         (
             "Resolution",
             format!("2^-{} of a period", phase.fraction),
@@ -179,6 +182,27 @@ fn said(design: &Design, j: &DesignJson) -> Vec<(&'static str, String, String)> 
     list.extend(skew);
     list.extend(harmonics);
     list
+}
+
+/// From power-up into full speed.
+fn pull_in(j: &DesignJson) -> (&'static str, String, String) {
+    let p = &j.pull_in;
+    let starts = format!(
+        "into full speed from power-up, both ways; {} sensors with every promised error at an end of its range",
+        p.sensors
+    );
+    match &p.worst {
+        None => (
+            PULL_IN,
+            format!("locked within {}", engineering(p.longest_s, "s")),
+            starts,
+        ),
+        Some(worst) => (
+            PULL_IN,
+            format!("{} of {} sensors do not lock", p.not_locked, p.sensors),
+            format!("{starts}; worst: {worst}; {}", p.advice()),
+        ),
+    }
 }
 
 /// The closed loop's magnitude in dB over frequency.

@@ -78,7 +78,7 @@ const REASONS: &[(&[&str], &str)] = &[
         "the phase within a quarter turn, to every bit of the phase in the sine",
     ),
     (
-        &["theta_deviation"],
+        &["theta_deviation", "recent", "proven"],
         "parameter: bounded to what the design promises, a quarter more, up to a power of two; resolution by the budget",
     ),
     (

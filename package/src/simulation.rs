@@ -4,9 +4,9 @@ use std::f64::consts::TAU;
 
 use nonius_model::chip::Chip;
 use nonius_model::design::Design;
-use nonius_model::physical::Converter;
-use nonius_model::spec::Correction;
 use serde::Serialize;
+
+use crate::sensor::{Sensor, Shares};
 
 /// Angle errors of the bit-true chip in periods.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -61,7 +61,7 @@ pub fn simulate(design: &Design) -> Simulation {
     let settle = RAMP + ((20.0 / turns) as usize).min(100_000);
     let slow = 1.0 / SWEEP as f64;
 
-    let mut sensor = Sensor::of(design);
+    let mut sensor = half(design);
     let mut chip = Chip::bit_true(design);
     let (mut course, mut period, mut raw) = (vec![], Squares::default(), Squares::default());
     let (mut whole, mut parts) = (Squares::default(), vec![Squares::default(); PARTS]);
@@ -166,79 +166,17 @@ impl Squares {
     }
 }
 
-/// Half of what the design promises of offsets, amplitudes and phase, and the noise.
-struct Sensor {
-    converter: Converter,
-    amplitudes: [f64; 2],
-    offset: f64,
-    beta: f64,
-    /// The sine is sampled so many samples later.
-    late: f64,
-    /// What stands in the channels beside them, in amplitudes.
-    correction: Correction,
-    middle: f64,
-    noise: f64,
-    random: Noise,
-}
-
-struct Sample {
-    cos: i64,
-    sin: i64,
-    /// Arctangent of the signals, turns.
-    arctangent: f64,
-}
-
-impl Sensor {
-    fn of(design: &Design) -> Self {
-        let spec = &design.spec;
-        let s = &spec.sensor;
-        let (m, o) = (s.amplitude_tolerance / 2.0, s.offset_max / 2.0);
-        // The larger signal just fits the ADC.
-        let room = spec.adc.full_scale / (s.amplitude * (1.0 + m + o));
-        let a = s.amplitude * room.min(1.0) * 0.999;
-        Self {
-            converter: Converter::of(spec),
-            amplitudes: [a * (1.0 + m), a * (1.0 - m)],
-            offset: o * a,
-            beta: s.phase_error_max_deg.to_radians() / 2.0,
-            late: spec.correction.channel_skew_s * spec.adc.sample_rate_hz,
-            correction: spec.correction.clone(),
-            middle: spec.adc.middle,
-            noise: a * s.noise_rms,
-            random: Noise(1),
-        }
-    }
-
-    fn sample(&mut self, at: f64, speed: f64) -> Sample {
-        let (alpha, alpha_of_sin) = (at * TAU, (at + self.late * speed) * TAU);
-        let (more_cos, _) = self.correction.harmonics_at(0, alpha);
-        let (more_sin, _) = self.correction.harmonics_at(1, alpha_of_sin);
-        let cos = self.amplitudes[0] * (alpha.cos() + more_cos)
-            + self.offset
-            + self.noise * self.random.next();
-        let sin = self.amplitudes[1] * ((alpha_of_sin - self.beta).sin() + more_sin) - self.offset
-            + self.noise * self.random.next();
-        Sample {
-            cos: self.converter.code(self.middle + cos),
-            sin: self.converter.code(self.middle + sin),
-            arctangent: sin.atan2(cos) / TAU,
-        }
-    }
-}
-
-/// Nearly Gaussian noise from a fixed seed: twelve uniform numbers less six.
-struct Noise(u64);
-
-impl Noise {
-    fn next(&mut self) -> f64 {
-        let mut sum = -6.0;
-        for _ in 0..12 {
-            // xorshift64
-            self.0 ^= self.0 << 13;
-            self.0 ^= self.0 >> 7;
-            self.0 ^= self.0 << 17;
-            sum += (self.0 >> 11) as f64 / (1u64 << 53) as f64;
-        }
-        sum
-    }
+/// Half of what the design promises of offsets, amplitudes and phase, and the noise; the larger signal just fits the ADC.
+fn half(design: &Design) -> Sensor {
+    let spec = &design.spec;
+    let s = &spec.sensor;
+    let reach = 1.0 + s.amplitude_tolerance / 2.0 + s.offset_max / 2.0;
+    let room = spec.adc.full_scale / (s.amplitude * reach);
+    let shares = Shares {
+        gains: [0.5, -0.5],
+        offsets: [0.5, -0.5],
+        phase: 0.5,
+        bends: [0.0; 2],
+    };
+    Sensor::of(spec, &shares, s.amplitude * room.min(1.0) * 0.999, 1)
 }

@@ -112,7 +112,7 @@ pub fn named(design: &Design, rows: usize) -> Vec<Stimulus> {
         motion("loss", &|k| {
             let gain = match k as f64 / n {
                 t if t < 0.2 => 0.72,
-                t if t > 0.6 && t < 0.62 => 0.9,
+                t if t > 0.56 && t < 0.58 => 0.9,
                 t if t < 0.66 => 1.0,
                 t if t < 0.72 => 0.0,
                 t if t < 0.9 => 0.7,

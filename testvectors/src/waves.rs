@@ -1,6 +1,7 @@
 //! Waves of the bit-true model (VCD): the signals of the Verilog under their names, samples as close as the chip allows.
 //!
-//! The strobes are there, the clock is not: the model has none, and its edges would be most of the file.
+//! The model has no clock: its step is a sample. Clock, reset and strobes are drawn as the testbench drives them, with no pause between
+//! samples; what the chip works out on its way through a sample stands where it commits, in the last clock.
 //!
 //! Every change is written as it comes, so that hours of samples need no memory.
 
@@ -30,6 +31,7 @@ pub struct Waves<W: Write> {
     /// Signal, identifier, fraction bits; no fraction for a flag.
     columns: Vec<(Column, IdCode, Option<u32>)>,
     inputs: [(IdCode, u32); 4],
+    clk: IdCode,
     rst_n: IdCode,
     sample_valid: IdCode,
     valid: IdCode,
@@ -68,8 +70,8 @@ impl<W: Write> Waves<W> {
             out.add_var(VarType::Real, 64, "speed_turns_per_sample", None)?,
         ];
         out.add_module("chip")?;
-        let strobes = ["rst_n", "sample_valid", "valid"];
-        let [rst_n, sample_valid, valid] = strobes.map(|name| vector(&mut out, name, 1));
+        let strobes = ["clk", "rst_n", "sample_valid", "valid"];
+        let [clk, rst_n, sample_valid, valid] = strobes.map(|name| vector(&mut out, name, 1));
         let adc = design.spec.adc.bits;
         let inputs = [
             (vector(&mut out, "adc_cos", adc)?, adc),
@@ -92,6 +94,7 @@ impl<W: Write> Waves<W> {
             out,
             columns: list,
             inputs,
+            clk: clk?,
             rst_n: rst_n?,
             sample_valid: sample_valid?,
             valid: valid?,
@@ -106,7 +109,7 @@ impl<W: Write> Waves<W> {
         for (id, bits) in waves.inputs {
             waves.change(id, 0, bits)?;
         }
-        for id in [waves.rst_n, waves.sample_valid, waves.valid] {
+        for id in [waves.clk, waves.rst_n, waves.sample_valid, waves.valid] {
             waves.change(id, 0, 1)?;
         }
         waves.change(position.0, 0, position_bits)?;
@@ -118,6 +121,9 @@ impl<W: Write> Waves<W> {
             waves.out.change_real(id, 0.0)?;
         }
         waves.out.end()?;
+        for half in 1..2 * RESET_CLOCKS {
+            waves.half(0, half)?;
+        }
         Ok(waves)
     }
 
@@ -136,7 +142,7 @@ impl<W: Write> Waves<W> {
     ) -> io::Result<()> {
         let start = (RESET_CLOCKS + self.samples * self.clocks) * CLOCK_NS;
         self.samples += 1;
-        self.out.timestamp(start)?;
+        self.half(start, 0)?;
         let values = [
             input.cos,
             input.sin,
@@ -148,15 +154,17 @@ impl<W: Write> Waves<W> {
         }
         self.change(self.rst_n, 1, 1)?;
         self.change(self.sample_valid, 1, 1)?;
-        // The testbench changes its side of the pins at the falling edge of the clock, the chip at the rising one.
-        let edge = CLOCK_NS / 2;
-        self.out.timestamp(start + edge)?;
-        self.change(self.valid, 0, 1)?;
-        self.out.timestamp(start + CLOCK_NS)?;
-        self.change(self.sample_valid, 0, 1)?;
-        // The chip commits at the end of its last clock.
-        self.out
-            .timestamp(start + (self.clocks - 1) * CLOCK_NS + edge)?;
+        // The testbench changes its side of the pins at the falling edge of the clock, the chip at the rising one, and it
+        // commits at that of its last clock.
+        let last = 2 * self.clocks - 1;
+        for half in 1..=last {
+            self.half(start, half)?;
+            match half {
+                1 => self.change(self.valid, 0, 1)?,
+                2 => self.change(self.sample_valid, 0, 1)?,
+                _ => {}
+            }
+        }
         self.change(self.valid, 1, 1)?;
         for i in 0..self.columns.len() {
             let ((name, _, bits), code, fraction) = &self.columns[i];
@@ -189,8 +197,14 @@ impl<W: Write> Waves<W> {
     /// What writing says.
     pub fn finish(mut self) -> io::Result<()> {
         let end = (RESET_CLOCKS + self.samples * self.clocks) * CLOCK_NS;
-        self.out.timestamp(end)?;
+        self.half(end, 0)?;
         self.out.flush()
+    }
+
+    /// So many half clocks after `start`; the clock falls at even ones.
+    fn half(&mut self, start: u64, half: u64) -> io::Result<()> {
+        self.out.timestamp(start + half * CLOCK_NS / 2)?;
+        self.change(self.clk, (half % 2).into(), 1)
     }
 
     fn change(&mut self, id: IdCode, raw: i128, bits: u32) -> io::Result<()> {
@@ -239,7 +253,7 @@ pub fn gtkw(name: &str, design: &Design, columns: &[Column], clocks: usize) -> S
     }
     let adc = design.spec.adc.bits - 1;
     out += &format!(
-        "{TITLE}\n-inputs\n{SIGNED}\nchip_tb.chip.adc_cos[{adc}:0]\nchip_tb.chip.adc_sin[{adc}:0]\n{FLAG}\nchip_tb.chip.sample_valid\nchip_tb.chip.preset\nchip_tb.chip.calibrate\n"
+        "{TITLE}\n-inputs\n{SIGNED}\nchip_tb.chip.adc_cos[{adc}:0]\nchip_tb.chip.adc_sin[{adc}:0]\n{FLAG}\nchip_tb.chip.clk\nchip_tb.chip.rst_n\nchip_tb.chip.sample_valid\nchip_tb.chip.preset\nchip_tb.chip.calibrate\n"
     );
     let f = &design.structure.formats;
     out += &format!(

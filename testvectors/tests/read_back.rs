@@ -121,12 +121,18 @@ fn waves_read_back(kind: &str, design: &Design) {
     };
     let mut now: HashMap<vcd::IdCode, u128> = HashMap::new();
     let mut reals: HashMap<vcd::IdCode, f64> = HashMap::new();
+    let strobes = ["clk", "rst_n", "sample_valid", "valid"].map(path);
     let mut time = 0;
-    let mut snapshots = vec![];
+    let (mut pins, mut results) = (vec![], vec![]);
     for command in parser {
         match command.expect("a command") {
             vcd::Command::Timestamp(t) => {
-                snapshots.push((time, now.clone(), reals.clone()));
+                let now_at = strobes.map(|id| now.get(&id) == Some(&1));
+                // Results stand where `valid` rises.
+                if now_at[3] && !pins.last().is_some_and(|last: &(u64, [bool; 4])| last.1[3]) {
+                    results.push((time, now.clone(), reals.clone()));
+                }
+                pins.push((time, now_at));
                 time = t;
             }
             vcd::Command::ChangeScalar(id, value) => {
@@ -142,27 +148,20 @@ fn waves_read_back(kind: &str, design: &Design) {
             _ => {}
         }
     }
-    // Before the first stamp, then the two strobes begin and end; the end closes the last. Results stand where `valid`
-    // rises.
-    assert_eq!(snapshots.len(), 1 + 4 * ROWS);
-    let strobed = |name: &str| {
-        let values = snapshots.iter().map(|s| s.1.get(&path(name)) == Some(&1));
-        values.collect::<Vec<bool>>()
-    };
-    let results: Vec<bool> = (0..=4 * ROWS).map(|i| i > 0 && i % 4 == 0).collect();
-    let held: Vec<bool> = (0..=4 * ROWS).map(|i| i > 1 && i % 4 <= 1).collect();
-    assert_eq!(strobed("valid"), held);
-    assert!(strobed("rst_n")[1..].iter().all(|&v| v));
-    let offered: Vec<bool> = (0..=4 * ROWS).map(|i| matches!(i % 4, 1 | 2)).collect();
-    assert_eq!(strobed("sample_valid"), offered);
+    // Half clocks: two clocks of reset, then sample after sample.
+    let each = 2 * files.clocks;
+    let drawn = (0..4 + each * ROWS).map(|i| {
+        let (sample, half) = (i.saturating_sub(4) / each, i.saturating_sub(4) % each);
+        let running = i >= 4;
+        let valid = running && (half == each - 1 || half == 0 && sample > 0);
+        let pins = [i % 2 == 1, running, running && half < 2, valid];
+        (5 * i as u64, pins)
+    });
+    assert_eq!(pins, drawn.collect::<Vec<_>>(), "{kind}");
+    assert_eq!(results.len(), ROWS, "{kind}");
     let mut replay = Chip::bit_true(design);
     let edge = |name: &str| header.find_var(&["chip_tb", name]).expect("a wave").code;
-    let after = snapshots
-        .iter()
-        .zip(&results)
-        .filter(|(_, result)| **result);
-    for (k, (after, _)) in after.enumerate() {
-        let (stamp, values, analogue) = after;
+    for (k, (stamp, values, analogue)) in results.iter().enumerate() {
         let bits = design.spec.adc.bits;
         let unsigned = design.spec.adc.coding == Coding::OffsetBinary;
         let code = |name: &str| integer(values[&path(name)] as u64, bits, unsigned) as i64;

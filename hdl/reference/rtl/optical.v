@@ -5,7 +5,7 @@
 // radial residual rho shows what the correction still misses and moves its parameters theta.
 // After S. Balemi, "Automatic calibration of sinusoidal encoder signals", IFAC 2005; equation numbers are the paper's.
 //
-// Design 5c6a34320f29: 16 products on 1 multiplier, 19 clocks per sample.
+// Design 2bd6d2d78961: 16 products on 1 multiplier, 19 clocks per sample.
 //
 // Formats: sW.F is a two's complement number of W bits, F of them behind the point; uW.F has no sign and is kept here
 // with a zero in front, so that every number is signed. Angles are in turns of a scale period. A signal that saturates
@@ -487,8 +487,8 @@ module optical (
     wire residual_large_condition_now = residual_large_condition_6 | (gamma_settled & residual_large_condition_3); // step 10
     wire residual_large_now = residual_large_condition & counted_now; // step 12
     wire hold_condition_2_now = (residual_large_now | disturbed) | held; // step 12
-    wire radius_large_now = residual_large_condition_7 & counted_now; // step 12
     wire hold = (hold_condition_2 | level_moved_below_lock_full) & gamma_settled; // step 13
+    wire radius_large_now = residual_large_condition_7 & counted_now; // step 12
     wire fresh_now = counted & ~hold; // step 13
 
     // Gradient along the radius

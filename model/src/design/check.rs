@@ -4,6 +4,7 @@ use super::DesignError;
 use super::keywords::{KEYWORDS, SYSTEM_KEYWORDS};
 use super::refuse::{between, refuse};
 use crate::graph::Graph;
+use crate::kernel::gears::SETTLED;
 use crate::spec::{CalibrationMethod, CalibrationStart, Multipliers, Spec};
 
 /// Checks every field for sense.
@@ -76,14 +77,14 @@ pub(super) fn check(spec: &Spec) -> Result<(), DesignError> {
         spec.sensor.amplitude_tolerance,
         0.0,
         0.6,
-        "calibration is bounded to what is promised here",
+        "a part of the amplitude, without sign; calibration is bounded to it",
     )?;
     between(
         "sensor.offset_max",
         spec.sensor.offset_max,
         0.0,
         0.6,
-        "a larger offset moves the origin out of the ellipse",
+        "a part of the amplitude, without sign; a larger one moves the origin out of the ellipse",
     )?;
     between(
         "sensor.amplitude",
@@ -97,14 +98,14 @@ pub(super) fn check(spec: &Spec) -> Result<(), DesignError> {
         spec.sensor.phase_error_max_deg,
         0.0,
         45.0,
-        "beyond that the two channels are nearly one",
+        "degrees without sign; with more the two channels are nearly one",
     )?;
     between(
         "sensor.noise_rms",
         spec.sensor.noise_rms,
         0.0,
         0.25,
-        "no loop locks on more noise",
+        "rms as a part of the amplitude; no loop locks on more noise than that",
     )?;
     between(
         "accuracy.rms_periods",
@@ -132,7 +133,7 @@ pub(super) fn check(spec: &Spec) -> Result<(), DesignError> {
         spec.sensor.bend_max,
         0.0,
         0.2,
-        "polynomials of third order mend no more",
+        "a part of the amplitude, without sign; polynomials of third order mend no more",
     )?;
     calibration(spec)?;
     between(
@@ -242,6 +243,18 @@ fn calibration(spec: &Spec) -> Result<(), DesignError> {
             "least_squares",
             "\"gears\", or the method \"final\" or \"exact\"",
             "the start is a batch of the radial residual; the sum of squares gathers another one",
+        );
+    }
+    let gears = c.gamma_last.saturating_sub(c.gamma_first);
+    if c.recall && gears < SETTLED {
+        return refuse(
+            "calibration.recall",
+            true,
+            format!(
+                "false, or gamma_last at least {}",
+                c.gamma_first.saturating_add(SETTLED)
+            ),
+            "parameters are held only after four gears: with fewer there is nothing to recall",
         );
     }
     if bends && c.completion && spec.sensor.periods_per_revolution == Some(1.0) {

@@ -159,6 +159,7 @@ pub(super) fn structure(
         parameters: spec.calibration.parameters,
         gradient: spec.calibration.method,
         least_squares_start: start,
+        recall: spec.calibration.parameters > 0 && spec.calibration.recall,
         forgetting: spec.calibration.forgetting,
         completion: (spec.calibration.parameters >= 8 && spec.calibration.completion)
             .then_some(spec.calibration.completion_gamma),

@@ -37,12 +37,16 @@ pub struct Gears<S: Signal> {
     pub gear: S,
     /// Periods of travel in this gear, or held.
     pub periods: S,
+    /// The periods of this gear have passed without a large residual.
+    pub passed: S::Bool,
     /// The residual was large in the running period.
     pub disturbed: S::Bool,
     /// The radius was too large in the running period.
     pub risen: S::Bool,
     /// The residual was large in the last period.
     pub held: S::Bool,
+    /// Where there is recall: parameters were recalled, and the periods of a gear have not passed quietly since.
+    pub returning: Option<S::Bool>,
 }
 
 /// What the residual of a sample says about the ones that follow.
@@ -54,6 +58,8 @@ pub struct Hold<S: Signal> {
     pub risen: S::Bool,
     /// No parameter moves.
     pub held: S::Bool,
+    /// Where there is recall: and γ is in its last gear.
+    pub recall: Option<S::Bool>,
 }
 
 /// Whether the parameters are held; `counted`: the sample counts, `follows`: neither it nor the last ones were out of the
@@ -76,10 +82,19 @@ pub fn hold<S: Signal>(
         .and(counted)
         .named("residual_large");
     let suspect = large.or(state.disturbed).or(state.held).or(follows.not());
+    let held = |suspect: S::Bool| suspect.and(settled).named("hold");
+    let (held, recall) = if structure.recall {
+        let held = held(suspect.or(state.returning));
+        let last = state.gamma_gear.less_than(k.gamma_gear_last).not();
+        (held, Some(held.and(last).named("recall")))
+    } else {
+        (held(suspect), None)
+    };
     Hold {
         large,
         risen: risen.and(counted).named("radius_large"),
-        held: suspect.and(settled).named("hold"),
+        held,
+        recall,
     }
 }
 
@@ -134,15 +149,18 @@ pub fn gears<S: Signal>(
     let done = starting.map_or(done, |starting| done.or(starting));
     let quiet = state.disturbed.or(state.held).not();
     let done = done.and(quiet);
-    let shift = tick.and(done).and(last.not()).named("gamma_shift");
+    let passed = tick.and(done);
+    let shift = passed.and(last.not()).named("gamma_shift");
     let gear = (state.gamma_gear + S::select(shift, k.one, k.zero)).quantise(&gear_format);
     let counted = (state.gear_periods + S::select(tick, k.one, k.zero)).quantise(&period_format);
     // Periods held are counted from the first, and those of a gear from the first after them.
     let begins = state.disturbed.and(state.held.not());
     let ends = state.held.and(state.disturbed.not());
-    let again = tick
-        .and(done.or(begins).or(ends))
-        .or(restart)
+    let again = tick.and(done.or(begins).or(ends)).or(restart);
+    // Periods before a loss of lock were not quiet.
+    let again = hold
+        .recall
+        .map_or(again, |_| again.or(counting.not()))
         .named("gear_periods_again");
     let within = tick.not().and(counting);
     let held = tick
@@ -152,9 +170,14 @@ pub fn gears<S: Signal>(
     Gears {
         gear: S::select(restart, k.zero, gear).quantise(&gear_format),
         periods: S::select(again, k.zero, counted).quantise(&period_format),
+        passed,
         // Where nothing counts, a new period begins without suspicion.
         disturbed: hold.large.or(state.disturbed.and(within)),
         risen: hold.risen.or(state.risen.and(within)),
         held: held.and(counting),
+        // What comes back over some periods is small again before it is whole.
+        returning: hold
+            .recall
+            .map(|recall| recall.and(passed.or(restart).not())),
     }
 }

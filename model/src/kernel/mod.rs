@@ -16,6 +16,7 @@ pub mod harmonics;
 pub mod lock;
 pub mod loop_filter;
 pub mod position;
+pub mod recall;
 pub mod sample;
 pub mod sensitivity;
 pub mod sine;
@@ -57,6 +58,8 @@ pub struct Structure {
     pub gradient: CalibrationMethod,
     /// The first periods of travel are solved by least squares.
     pub least_squares_start: bool,
+    /// Where parameters begin to be held, those of some periods before come back.
+    pub recall: bool,
     /// λ = 1 − 2^-`forgetting` of the sum of squares.
     pub forgetting: u32,
     /// γ = 2^-that of the direction that no radius shows; `None`: it is not learnt.
@@ -88,12 +91,13 @@ impl Structure {
         matches!(self.parameters, 5 | 9)
     }
 
-    /// Neither bends, nor skew, nor harmonics, nor another gradient than the final form, nor another start than its gears.
+    /// Neither bends, nor skew, nor harmonics, nor another gradient than the final form, nor another start than its gears, nor
+    /// recall.
     #[must_use]
     pub fn is_plain(&self) -> bool {
         let searches = self.gradient != CalibrationMethod::Final || self.least_squares_start;
         let known = self.skew.is_some() || self.harmonics.is_some();
-        !(self.has_bend() || known || searches)
+        !(self.has_bend() || known || searches || self.recall)
     }
 
     /// Gradients are gathered over samples: by the search or by its start.

@@ -3,7 +3,7 @@
 use super::{Coefficients, Input, Method, Probes, State, Structure};
 use super::{
     bend, calibration, completion, correction, detector, gears, gradient, harmonics, lock,
-    loop_filter, position, sine, skew, start, sum_of_squares, travel,
+    loop_filter, position, recall, sine, skew, start, sum_of_squares, travel,
 };
 use crate::format::Quantiser;
 use crate::signal::{Formula, Logic, Signal};
@@ -156,6 +156,9 @@ fn advance_of<S: Signal, const PLAIN: bool>(
         updated.theta[8] = calibration::moved(old, completed.step, 8, nominal, k, structure);
     }
     let gears = gears::gears(hold, gate, (counting, starting), state, k, structure);
+    let recalled = hold.recall.filter(|_| !PLAIN);
+    let memory = recalled
+        .map(|recall| recall::recall(&mut updated, recall, gears.passed, state, k, structure));
 
     rate.begin(&FLAGS);
     let lost = state
@@ -207,6 +210,10 @@ fn advance_of<S: Signal, const PLAIN: bool>(
     if !PLAIN {
         remember(registers, &updated, completed.as_ref());
         registers.start_periods = updated.start_periods;
+        if let (Some(memory), Some(returning)) = (memory, gears.returning) {
+            memory.keep(registers);
+            registers.returning = returning;
+        }
     }
     let [theta_1, theta_2, theta_3, theta_4, theta_5] = theta;
     let whole_period = travel.whole_period;

@@ -103,6 +103,42 @@ bundle! {
         travel_samples,
         /// Periods of travel that the start has solved.
         start_periods,
+        /// θ1 less its nominal value at the last end of some quiet periods of travel.
+        recent_1,
+        /// θ2 less its nominal value at the last end of some quiet periods of travel.
+        recent_2,
+        /// θ3 less its nominal value at the last end of some quiet periods of travel.
+        recent_3,
+        /// θ4 less its nominal value at the last end of some quiet periods of travel.
+        recent_4,
+        /// θ5 less its nominal value at the last end of some quiet periods of travel.
+        recent_5,
+        /// θ6 less its nominal value at the last end of some quiet periods of travel.
+        recent_6,
+        /// θ7 less its nominal value at the last end of some quiet periods of travel.
+        recent_7,
+        /// θ8 less its nominal value at the last end of some quiet periods of travel.
+        recent_8,
+        /// θ9 less its nominal value at the last end of some quiet periods of travel.
+        recent_9,
+        /// θ1 less its nominal value at the end before.
+        proven_1,
+        /// θ2 less its nominal value at the end before.
+        proven_2,
+        /// θ3 less its nominal value at the end before.
+        proven_3,
+        /// θ4 less its nominal value at the end before.
+        proven_4,
+        /// θ5 less its nominal value at the end before.
+        proven_5,
+        /// θ6 less its nominal value at the end before.
+        proven_6,
+        /// θ7 less its nominal value at the end before.
+        proven_7,
+        /// θ8 less its nominal value at the end before.
+        proven_8,
+        /// θ9 less its nominal value at the end before.
+        proven_9,
     } {
         /// The loop follows.
         locked,
@@ -124,6 +160,8 @@ bundle! {
         held,
         /// Whole periods of travel follow one another fast enough for the completion.
         moving,
+        /// The parameters are held until the periods of a gear have passed quietly, too (recall).
+        returning,
     }
 }
 

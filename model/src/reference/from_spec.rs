@@ -185,6 +185,7 @@ pub fn config(spec: &Spec) -> Result<Config, ReferenceError> {
             restart: k.restart_residual,
             settled: 4,
             periods: 32.0,
+            recall: k.recall.then_some(k.gear_periods.into()),
         }),
         bound: Theta::repeat(1.0),
         start: Start::Arctangent {

@@ -6,6 +6,8 @@
 
 use std::f64::consts::TAU;
 
+use super::Theta;
+
 /// When to hold.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HoldConfig {
@@ -17,6 +19,8 @@ pub struct HoldConfig {
     pub settled: u32,
     /// Periods of travel until γ begins again.
     pub periods: f64,
+    /// Periods of travel after which Θ is remembered, and which a hold outlasts; `None`: never, and not.
+    pub recall: Option<f64>,
 }
 
 /// What a sample means for the search.
@@ -56,12 +60,57 @@ impl Hold {
                 return Verdict::Changed;
             }
         }
+        let quiet = (1.0 + config.recall.unwrap_or(0.0)) * TAU;
         match self.0 {
-            Some((_, last)) if (alpha_hat - last).abs() < TAU => Verdict::Held,
+            Some((_, last)) if (alpha_hat - last).abs() < quiet => Verdict::Held,
             _ => {
                 self.0 = None;
                 Verdict::Free
             }
         }
+    }
+}
+
+/// Θ of better days: where it begins to be held, a fade has already taken it along for some periods.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Recall {
+    recent: Theta,
+    proven: Theta,
+    /// α̂ where Θ was last remembered or held, radians.
+    since: f64,
+}
+
+impl Recall {
+    /// Nothing is remembered yet.
+    #[must_use]
+    pub fn new(theta: Theta, alpha_hat: f64) -> Self {
+        Self {
+            recent: theta,
+            proven: theta,
+            since: alpha_hat,
+        }
+    }
+
+    /// Takes Θ of a sample; what it is to be, where it is held and has its `last` γ.
+    pub fn step(
+        &mut self,
+        periods: f64,
+        theta: &Theta,
+        alpha_hat: f64,
+        verdict: Verdict,
+        last: bool,
+    ) -> Option<Theta> {
+        if verdict == Verdict::Free {
+            if (alpha_hat - self.since).abs() >= periods * TAU {
+                (self.proven, self.recent) = (self.recent, *theta);
+                self.since = alpha_hat;
+            }
+            return None;
+        }
+        self.since = alpha_hat;
+        last.then(|| {
+            self.recent = self.proven;
+            self.proven
+        })
     }
 }

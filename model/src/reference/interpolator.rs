@@ -11,7 +11,7 @@ use super::completed::{CompletedConfig, Completion};
 use super::gate::{Gate, GateState, Window};
 use super::gradient::{Form, Observation, ResidualGradient};
 use super::harmonics::Harmonics;
-use super::hold::{Hold, HoldConfig, Verdict};
+use super::hold::{Hold, HoldConfig, Recall, Verdict};
 use super::loops::{Loop, LoopConfig};
 use super::recursive::{LeastSquaresStart, StartConfig};
 use super::start::{Acquisition, Start};
@@ -161,6 +161,7 @@ pub struct Reference {
     searching: Searching,
     gate: GateState,
     hold: Hold,
+    recall: Recall,
     acquisition: Option<Acquisition>,
     /// Samples out of the window, one after the other.
     astray: u32,
@@ -205,6 +206,7 @@ impl Reference {
             searching,
             gate: GateState::new(config.gate),
             hold: Hold::default(),
+            recall: Recall::new(config.theta, tracking.alpha_hat()),
             acquisition,
             astray: 0,
             geared: (0, tracking.alpha_hat()),
@@ -337,7 +339,7 @@ impl Reference {
         estimate
     }
 
-    /// Whether the search goes on; where the signal has changed, γ begins again.
+    /// Whether the search goes on; where the signal has changed, γ begins again. A Θ that is held may be an earlier one.
     fn free(&mut self, rho: f64, locked: bool) -> bool {
         let Some(config) = &self.config.hold else {
             return true;
@@ -345,6 +347,19 @@ impl Reference {
         let alpha_hat = self.tracking.alpha_hat();
         let halvings = locked.then_some(self.geared.0);
         let verdict = self.hold.step(config, rho, alpha_hat, halvings);
+        if let Some(periods) = config.recall {
+            let last = self.geared.0 >= self.config.gamma.halvings;
+            let recalled = self
+                .recall
+                .step(periods, &self.theta, alpha_hat, verdict, last);
+            if let Some(theta) = recalled {
+                self.theta = theta;
+                // A mean of the way down would be the first to act on it.
+                if let Searching::SumOfSquares(sum) = &mut self.searching {
+                    sum.clear();
+                }
+            }
+        }
         if verdict == Verdict::Changed {
             self.geared = (0, alpha_hat);
         }

@@ -62,6 +62,11 @@ impl SumOfSquares {
         }
     }
 
+    /// Forgets what was gathered.
+    pub(super) fn clear(&mut self) {
+        (self.sum, self.seen) = (Theta::zeros(), 0);
+    }
+
     /// Takes a sample; ∇J where an update is due, zero otherwise.
     pub fn step(&mut self, parameters: Parameters, theta: &Theta, y: [f64; 2]) -> Theta {
         self.step_of(

@@ -1,10 +1,12 @@
 //! `design.toml`: what the user asks for, in physical units.
 
 mod correction;
+mod place;
 mod read;
 
 pub use correction::{Correction, Harmonic};
-pub use read::{SpecError, keys, line_of_field};
+pub use place::Place;
+pub use read::{SpecError, keys};
 
 use serde::{Deserialize, Serialize};
 
@@ -165,6 +167,10 @@ pub struct Calibration {
     /// |ρ| above this holds the parameters once γ has settled: the signal may be fading. See [`Spec::hold_residual`].
     #[serde(default = "hold")]
     pub hold_residual: f64,
+    /// Where they begin to be held, the parameters go back to what they were some periods before: a fade of the signal takes
+    /// nothing along. Two registers for each parameter.
+    #[serde(default)]
+    pub recall: bool,
 }
 
 fn five() -> u32 {
@@ -264,6 +270,7 @@ impl Default for Calibration {
             gear_periods: gear_periods(),
             restart_residual: restart(),
             hold_residual: hold(),
+            recall: false,
         }
     }
 }

@@ -1,9 +1,10 @@
 //! Reading `design.toml`, with errors that name the place and the way out.
 
 use thiserror::Error;
-use toml::{Table, Value};
+use toml::de::{DeTable, DeValue};
 
 use super::Spec;
+use super::place::Place;
 
 /// What is wrong with a `design.toml`.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
@@ -17,12 +18,12 @@ pub enum SpecError {
         message: String,
     },
     /// A key that does not exist.
-    #[error("{file}:{line}: unknown key `{key}`{hint}")]
+    #[error("{file}:{place}: unknown key `{key}`{hint}")]
     UnknownKey {
         /// Name of the file.
         file: String,
-        /// Line of the key.
-        line: usize,
+        /// Where the key stands.
+        place: Place,
         /// The key with its section.
         key: String,
         /// The nearest known one.
@@ -81,6 +82,7 @@ const KEYS: &[(&str, &[&str])] = &[
             "gear_periods",
             "restart_residual",
             "hold_residual",
+            "recall",
         ],
     ),
     ("correction", &["channel_skew_s", "harmonics"]),
@@ -127,14 +129,14 @@ impl Spec {
     /// Reads the text of a `design.toml`; `file` is its name for error messages.
     ///
     /// # Errors
-    /// [`SpecError`] names file, line and what to write instead.
+    /// [`SpecError`] names file, line, column and what to write instead.
     pub fn from_toml(text: &str, file: &str) -> Result<Self, SpecError> {
         let form = |e: toml::de::Error| SpecError::Form {
             file: file.into(),
             message: place(text, &e),
         };
-        let table: Table = toml::from_str(text).map_err(form)?;
-        unknown_keys(&table, text, file)?;
+        let table = DeTable::parse(text).map_err(form)?;
+        unknown_keys(table.get_ref(), text, file)?;
         toml::from_str(text).map_err(form)
     }
 }
@@ -143,10 +145,8 @@ fn place(text: &str, error: &toml::de::Error) -> String {
     let message = error.message();
     match error.span() {
         Some(span) => {
-            let before = text.get(..span.start).unwrap_or_default();
-            let line = before.matches('\n').count() + 1;
-            let column = before.rsplit('\n').next().map_or(0, |l| l.chars().count()) + 1;
-            let here = text.lines().nth(line - 1).unwrap_or_default();
+            let place = Place::of_byte(text, span.start);
+            let here = text.lines().nth(place.line - 1).unwrap_or_default();
             let key = here.split_once('=').map_or("", |(key, _)| key.trim());
             let named =
                 message.contains(&format!("`{key}`")) || key.is_empty() || key.starts_with('#');
@@ -155,9 +155,9 @@ fn place(text: &str, error: &toml::de::Error) -> String {
             } else {
                 format!("{key}: ")
             };
-            format!("{line}:{column}: {of}{}", plain(message))
+            format!("{place}: {of}{}", plain(message))
         }
-        None => format!("1: {}", plain(message)),
+        None => format!("1:1: {}", plain(message)),
     }
 }
 
@@ -170,25 +170,22 @@ fn plain(message: &str) -> String {
         .replace("integer `", "`")
 }
 
-fn unknown_keys(table: &Table, text: &str, file: &str) -> Result<(), SpecError> {
-    check(table.keys().map(String::as_str), TOP, None, text, file)?;
+fn unknown_keys(table: &DeTable, text: &str, file: &str) -> Result<(), SpecError> {
+    check(table, TOP, None, text, file)?;
     for (section, value) in table {
-        let (Some(names), Value::Table(inner)) = (known(section), value) else {
+        let section: &str = section.get_ref();
+        let (Some(names), DeValue::Table(inner)) = (known(section), value.get_ref()) else {
             continue;
         };
-        let of = |inner: &Table, names: &[&str], section: &str| {
-            let keys = inner.keys().map(String::as_str);
-            check(keys, names, Some(section), text, file)
-        };
-        of(inner, names, section)?;
+        check(inner, names, Some(section), text, file)?;
         for (key, value) in inner {
-            let list = format!("{section}.{key}");
-            let (Some(names), Value::Array(entries)) = (known(&list), value) else {
+            let list = format!("{section}.{}", key.get_ref());
+            let (Some(names), DeValue::Array(entries)) = (known(&list), value.get_ref()) else {
                 continue;
             };
-            for (n, entry) in (1..).zip(entries) {
-                if let Value::Table(entry) = entry {
-                    of(entry, names, &format!("{list}[{n}]"))?;
+            for (n, entry) in (1..).zip(entries.iter()) {
+                if let DeValue::Table(entry) = entry.get_ref() {
+                    check(entry, names, Some(&format!("{list}[{n}]")), text, file)?;
                 }
             }
         }
@@ -196,17 +193,20 @@ fn unknown_keys(table: &Table, text: &str, file: &str) -> Result<(), SpecError> 
     Ok(())
 }
 
-fn check<'a>(
-    keys: impl Iterator<Item = &'a str>,
+fn check(
+    table: &DeTable,
     names: &[&str],
     section: Option<&str>,
     text: &str,
     file: &str,
 ) -> Result<(), SpecError> {
-    let mut unknown = keys.filter(|k| !names.contains(k));
-    let Some(key) = unknown.next() else {
+    let mut unknown = table
+        .keys()
+        .filter(|key| !names.contains(&key.get_ref().as_ref()));
+    let Some(found) = unknown.next() else {
         return Ok(());
     };
+    let key: &str = found.get_ref();
     let best = names
         .iter()
         .map(|n| (strsim::jaro_winkler(key, n), *n))
@@ -216,52 +216,10 @@ fn check<'a>(
         Some((_, name)) => format!("; did you mean `{name}`?"),
         None => format!("; known here: {}", names.join(", ")),
     };
-    let full = section.map_or_else(|| key.to_owned(), |s| format!("{s}.{key}"));
-    let line = line_of(text, section, key);
     Err(SpecError::UnknownKey {
         file: file.into(),
-        line,
-        key: full,
+        place: Place::of_byte(text, found.span().start),
+        key: section.map_or_else(|| key.to_owned(), |s| format!("{s}.{key}")),
         hint,
     })
-}
-
-/// The line of a `design.toml`, counted from 1, that gives `field` (`loop.type`, say, or `correction.harmonics[2].order` in
-/// the second of them); `None` where none does.
-#[must_use]
-pub fn line_of_field(text: &str, field: &str) -> Option<usize> {
-    let (section, key) = match field.rsplit_once('.') {
-        Some((section, key)) => (Some(section), key),
-        None => (None, field),
-    };
-    let line = line_of(text, section, key);
-    let there = text.lines().nth(line - 1)?.trim();
-    let header = there.trim_matches(['[', ']']).trim() == field;
-    (header || there.starts_with(key)).then_some(line)
-}
-
-/// The line that defines `key` in `section`; 1 if it cannot be told (a dotted key, say).
-fn line_of(text: &str, section: Option<&str>, key: &str) -> usize {
-    let full = section.map_or_else(|| key.to_owned(), |s| format!("{s}.{key}"));
-    let mut current: Option<String> = None;
-    let mut entries: Vec<&str> = vec![];
-    for (number, line) in text.lines().enumerate() {
-        let line = line.trim();
-        if let Some(header) = line.strip_prefix('[') {
-            let name = header.trim_matches(['[', ']']).trim();
-            if name == full {
-                return number + 1;
-            }
-            current = Some(if header.starts_with('[') {
-                entries.push(name);
-                let n = entries.iter().filter(|e| **e == name).count();
-                format!("{name}[{n}]")
-            } else {
-                name.to_owned()
-            });
-        } else if current.as_deref() == section && line.starts_with(key) {
-            return number + 1;
-        }
-    }
-    1
 }

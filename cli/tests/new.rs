@@ -1,0 +1,80 @@
+//! What `nonius new` writes is true of the design that stands beside it.
+
+mod support;
+
+use std::fs;
+
+use nonius_model::spec::Spec;
+use support::{done, recording};
+
+/// The design that is fitted to a recording.
+fn fitted(recording: &str) -> (String, Spec) {
+    let dir = tempfile::tempdir().expect("scratch");
+    fs::write(dir.path().join("r.csv"), recording).expect("a recording");
+    done(dir.path(), &["new", "it", "--from", "r.csv"]);
+    let text = fs::read_to_string(dir.path().join("it.toml")).expect("it.toml");
+    let spec = Spec::from_toml(&text, "it.toml").expect("a design");
+    (text, spec)
+}
+
+/// Value and comment of a key.
+fn line<'a>(text: &'a str, key: &str) -> (f64, &'a str) {
+    let line = text.lines().find(|l| l.starts_with(&format!("{key} = ")));
+    let (value, note) = line
+        .and_then(|l| l.split_once(" = ")?.1.split_once('#'))
+        .expect("a commented key");
+    (value.trim().parse().expect("a number"), note.trim())
+}
+
+/// Slow, in between and fast, each with its own reason.
+#[test]
+fn the_bandwidth_says_which_of_three_it_is() {
+    for (per_period, reason) in [
+        (
+            2000.0,
+            "2 % of the sample rate, more than 8 times the speed",
+        ),
+        (300.0, "8 times the speed"),
+        (
+            20.0,
+            "6 % of the sample rate: 8 times the speed would be more",
+        ),
+    ] {
+        let (text, spec) = fitted(&recording(8000, per_period));
+        let (bandwidth, note) = line(&text, "bandwidth_hz");
+        assert_eq!(note, reason);
+        let (speed, rate) = (spec.sensor.speed_max_periods_per_s, spec.adc.sample_rate_hz);
+        let is = |of: f64| (bandwidth / of - 1.0).abs() < 1e-3;
+        let true_of_it = match reason.split_at(1).0 {
+            "2" => is(0.02 * rate) && bandwidth > 8.0 * speed,
+            "6" => is(0.06 * rate) && bandwidth < 8.0 * speed,
+            _ => is(8.0 * speed),
+        };
+        assert!(true_of_it, "{bandwidth} of {speed} and {rate}: {note}");
+    }
+}
+
+#[test]
+fn a_line_is_written_once_and_numbers_end_with_their_last_digit() {
+    let (text, _) = fitted(&recording(8000, 61.3));
+    let comments: Vec<&str> = text.lines().take_while(|l| l.starts_with('#')).collect();
+    assert_eq!(comments.len(), 1, "{text}");
+    assert!(comments[0].starts_with("# Fitted to a recording: 8000 samples, "));
+    let mut numbers = 0;
+    for (_, note) in text.lines().filter_map(|l| l.split_once("# measured: ")) {
+        for word in note.split([' ', ';']) {
+            if let Ok(value) = word.parse::<f64>() {
+                assert_eq!(word, value.to_string(), "{note}");
+                numbers += 1;
+            }
+        }
+    }
+    assert_eq!(numbers, 6, "{text}");
+    // The fastest stretch that was measured, to the digit that the comment has, in periods per second.
+    let (_, note) = line(&text, "speed_max_periods_per_s");
+    let measured: f64 = note
+        .trim_start_matches("measured: ")
+        .parse()
+        .expect("a number");
+    assert!((measured / (1e6 / 61.3) - 1.0).abs() < 1e-2, "{note}");
+}
