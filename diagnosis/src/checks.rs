@@ -26,7 +26,13 @@ pub(crate) fn check(recording: &Recording) -> Checked {
         gaps: vec![],
         extra: vec![],
     };
-    let codes: (Vec<i64>, Vec<i64>) = recording.codes().unzip();
+    timebase::repeated(recording, &mut checked);
+    glitches(recording, &mut checked);
+    // A sample that is wrong holds any code.
+    let weight = &checked.weight;
+    let sound = || recording.codes().zip(weight).filter(|(_, w)| **w > 0.0);
+    let codes: (Vec<i64>, Vec<i64>) = sound().map(|(codes, _)| codes).unzip();
+    let mut digital = vec![];
     let adc = recording.metadata.adc;
     let described = adc.cos.source == nonius_recording::AdcSource::Described;
     for (name, codes, bits) in [
@@ -48,11 +54,10 @@ pub(crate) fn check(recording: &Recording) -> Checked {
                 })
             };
             let found = bits_and_steps(name, codes, bits).map(of_channel);
-            checked.findings.extend(found);
+            digital.extend(found);
         }
     }
-    timebase::repeated(recording, &mut checked);
-    glitches(recording, &mut checked);
+    checked.findings.splice(..0, digital);
     timebase::dropped(recording, &mut checked);
     checked
 }
@@ -124,6 +129,8 @@ const FAR: f64 = 3.65;
 const RANGES: usize = 16;
 /// Samples on either side that tell how large the noise is just there.
 const AROUND: usize = 100;
+/// So many times larger the ninth decile of so few may be by chance: two standard deviations.
+const BY_CHANCE: f64 = 1.2;
 
 /// How far a sample is off the fifth-order curve through its three neighbours on either side: motion leaves the sixth power
 /// of its share of a period per sample.
@@ -136,19 +143,23 @@ fn off_the_curve(values: &[f64], k: usize) -> f64 {
 }
 
 /// Whether what stands out at a sample is that sample, and no step of the signal before or after it: a code that the ADC
-/// gets wrong, or a time base that jumps. The next sample may ring.
-fn isolated(off: &[f64], k: usize) -> bool {
+/// gets wrong, or a time base that jumps, which either channel shows. The next sample may ring.
+fn isolated(channels: &[Vec<f64>; 2], which: usize, k: usize) -> bool {
     /// What one sample does to the ones around it, and what a step does.
     const ONE: [f64; 7] = [-1.0, 6.0, -15.0, 20.0, -15.0, 6.0, -1.0];
     const STEP: [f64; 6] = [-1.0, 5.0, -10.0, 10.0, -5.0, 1.0];
+    let off = &channels[which];
     if off[k].abs() < off[k - 1].abs().max(off[k + 1].abs()) {
         return false;
     }
     // The share of the square that a pattern holds.
     let like = |pattern: &[f64], from: usize| {
-        let pairs = || pattern.iter().zip(off.iter().skip(from));
-        let along: f64 = pairs().map(|(p, o)| p * o).sum();
-        along * along / pattern.iter().map(|p| p * p).sum::<f64>()
+        let along = |off: &Vec<f64>| -> f64 {
+            let pairs = pattern.iter().zip(off.iter().skip(from));
+            pairs.map(|(p, o)| p * o).sum()
+        };
+        let squares = channels.iter().map(|off| along(off).powi(2));
+        squares.sum::<f64>() / pattern.iter().map(|p| p * p).sum::<f64>()
     };
     let one = like(&ONE, k - REACH);
     let step = like(&STEP, k - REACH).max(like(&STEP, k + 1 - REACH));
@@ -178,9 +189,10 @@ fn glitches(recording: &Recording, checked: &mut Checked) {
     let n = recording.samples();
     let rate = recording.metadata.sample_rate_hz;
     let mut found = vec![];
-    for values in [&recording.cos, &recording.sin] {
-        let off: Vec<f64> = (0..n).map(|k| off_the_curve(values, k)).collect();
-        let sizes: Vec<f64> = off.iter().map(|o| o.abs()).collect();
+    let channels = [&recording.cos, &recording.sin];
+    let off = channels.map(|v| (0..n).map(|k| off_the_curve(v, k)).collect::<Vec<f64>>());
+    for (which, values) in channels.into_iter().enumerate() {
+        let sizes: Vec<f64> = off[which].iter().map(|o| o.abs()).collect();
         let typical = ninth(&sizes);
         let (low, high) = ends(values);
         let range = |v: f64| (((v - low) / (high - low) * RANGES as f64) as usize).min(RANGES - 1);
@@ -197,7 +209,8 @@ fn glitches(recording: &Recording, checked: &mut Checked) {
             }
             // Noise that grows with the signal, its slope or the speed is larger at some values and times than at others.
             let near = &sizes[k.saturating_sub(AROUND)..(k + AROUND + 1).min(n)];
-            let larger = (ninth(near) / typical).max(1.0) * alike[range(values[k])].max(1.0);
+            let there = (ninth(near) / typical / BY_CHANCE).max(1.0);
+            let larger = there * alike[range(values[k])].max(1.0);
             let limit = (FAR * typical * larger).max(floor);
             // A doubled sample is late, not wrong.
             let same = |j: usize| {
@@ -208,7 +221,7 @@ fn glitches(recording: &Recording, checked: &mut Checked) {
             // Across a gap in time there is no such curve.
             let step = |j: usize| recording.time_s[j] - recording.time_s[j - 1];
             let gap = (k + 1 - REACH..=k + REACH).any(|j| step(j) * rate > 1.5);
-            if sizes[k] > limit && isolated(&off, k) && !doubled && !gap {
+            if sizes[k] > limit && isolated(&off, which, k) && !doubled && !gap {
                 found.push((k, sizes[k]));
             }
         }

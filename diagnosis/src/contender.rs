@@ -1,13 +1,15 @@
 //! Which of the causes that explain most is accepted: one that holds what any shape of its domain explains, and that no
 //! more than one other explains as well.
 
-use crate::cause::{Domain, Sign};
-use crate::causes::{ACCELERATION_GAIN, Catalogue};
+use crate::beside::Beside;
+use crate::cause::{Candidate, Domain, Sign};
+use crate::causes::{self, ACCELERATION_GAIN, Catalogue};
+use crate::context::Context;
 use crate::exact;
 use crate::generic::{self, HOLDS};
 use crate::library::Shape;
 use crate::model::{Fit, System, atoms_of};
-use crate::select::{Beside, KINDS, RIVALS, SHOWN, Scored, both, score};
+use crate::select::{KINDS, RIVALS, SHOWN, Scored, both, score};
 use crate::selection::{Accepted, Unnamed};
 use crate::statistics::{after_trials, log_tail};
 use crate::steps::{self, Change};
@@ -45,10 +47,16 @@ pub(crate) fn contender(
     let (mut first, mut named): (Option<Contender>, Option<Box<Accepted>>) = (None, None);
     let mut others = vec![];
     let mut tried: Vec<(&'static str, Domain)> = vec![];
+    let mut stepped = None;
     for i in 0..scored.len() {
         let best = &scored[i];
         let one = (best.candidate.name, best.candidate.domain);
         if tried.contains(&one) || best.gain < NEARLY * most {
+            continue;
+        }
+        // What stands in for steps has to explain as much as the drift did that they are taken for.
+        let less = |s: &&Scored| best.gain + (s.freedom as f64) < s.gain;
+        if stepped.is_some_and(|i: usize| less(&&scored[i])) {
             continue;
         }
         tried.push(one);
@@ -70,9 +78,16 @@ pub(crate) fn contender(
         } else {
             HOLDS
         };
-        let slow = own.candidate.domain != Domain::Time || slowly(system, fit, &own);
+        let steps = (own.candidate.domain == Domain::Time)
+            .then(|| steps_instead(system, fit, &own))
+            .flatten();
+        let slow = steps.is_none();
+        if !slow && stepped.is_none() {
+            stepped = Some(i);
+        }
         let listed = |name: &str| name != ACCELERATION_GAIN;
-        let nameable = listed(own.candidate.name) && rivals.iter().all(|r| listed(r));
+        let locked = goes_with_angle(system.context, &own.candidate);
+        let nameable = listed(own.candidate.name) && rivals.iter().all(|r| listed(r)) && !locked;
         if nameable && slow && rivals.len() <= 1 && held.share >= least {
             system.retain(|i| i < mark);
             cause.confounded = rivals;
@@ -88,6 +103,8 @@ pub(crate) fn contender(
         let nearest = own.candidate.name.replace('_', " ");
         let why = if !listed(own.candidate.name) {
             "the catalogue holds no such cause".to_owned()
+        } else if locked {
+            "at this constant speed it goes with the angle as well".to_owned()
         } else if !slow {
             "steps explain more".to_owned()
         } else if held.share < least {
@@ -104,7 +121,8 @@ pub(crate) fn contender(
         );
         let unnamed = Unnamed {
             log_p: own.log_p,
-            gain: own.gain,
+            // What a drift leaves of steps can look like anything, too.
+            gain: own.gain.max(steps.unwrap_or_default()),
             signature,
         };
         if first.is_some() {
@@ -174,15 +192,43 @@ fn rivals(beside: &Beside, best: &Scored, others: &[&Scored]) -> Vec<String> {
     names
 }
 
-/// Whether a drift is slow: no steps in time explain more of the radius than what changes slowly does.
-fn slowly(system: &System, fit: &Fit, drift: &Scored) -> bool {
+/// Whether, at a speed that hardly changes, a line stands where something that goes with the angle would: at half orders of
+/// the scale period, or at whole ones beside a fourth or half of the sample rate, where a multiplexer puts them.
+fn goes_with_angle(context: &Context, candidate: &Candidate) -> bool {
+    /// Cycles per recording by which it may be off.
+    const NEAR: f64 = 0.7;
+    /// Highest order.
+    const TOP: i32 = 8;
+    /// Fewest scale periods, so that hardly a line stands there by chance.
+    const FEWEST: f64 = 50.0;
+    let inner = candidate.exact.as_ref().and_then(|e| e.inner.first());
+    // Vibration too: where it goes with the angle it may be an error of the sensor.
+    let line = candidate.domain == Domain::Line || candidate.name == "vibration";
+    let many = context.periods_travelled() > FEWEST;
+    let told = line && many && !causes::speed_varies_much(context);
+    let Some(hertz) = inner.filter(|_| told) else {
+        return false;
+    };
+    let duration = context.samples() as f64 / context.rate;
+    let turning = context.periods_travelled() / duration;
+    let near = |f: f64| (hertz - f).abs() * duration < NEAR;
+    let halves = (1..2 * TOP)
+        .step_by(2)
+        .map(|m| 0.5 * f64::from(m) * turning);
+    let beside_rate = (-TOP..=TOP)
+        .flat_map(|m| [0.25, 0.5].map(|share| share * context.rate + f64::from(m) * turning));
+    halves.chain(beside_rate).any(near)
+}
+
+/// Log-likelihood that steps in time explain of the radius, where that is more than a slow change does: then it is no drift.
+fn steps_instead(system: &System, fit: &Fit, drift: &Scored) -> Option<f64> {
     let change = if drift.candidate.name == "gain_drift" {
         Change::Gains
     } else {
         Change::Offsets
     };
     let left = system.residual(fit);
-    steps::slowly(system.context, &left.radial, system.noise(), change)
+    steps::instead(system.context, &left.radial, system.noise(), change)
 }
 
 /// How far a name holds, and the generic shapes that tell.
@@ -200,16 +246,27 @@ fn holds(
     best: &Scored,
     others: &[&Scored],
 ) -> Held {
-    let basis = catalogue.basis(best.candidate.domain);
-    let mut named = both(&fit.shapes, &best.candidate.shapes);
-    let same = |o: &Scored| o.candidate.domain == best.candidate.domain;
-    let beside_it = if basis.is_empty() {
-        0.0
-    } else {
-        stand_beside(system, &mut named, others, same)
+    let domain = best.candidate.domain;
+    let basis = catalogue.basis(domain);
+    // Where the axis vibrates only the radius tells what the sensor does.
+    let sure = |system: &System, shapes: &[Shape]| {
+        if domain == Domain::Motion {
+            shapes.to_vec()
+        } else {
+            system.sure(shapes)
+        }
     };
-    let beyond = Beside::new(&system.total, &named).gain(basis);
-    let share = share(best.gain + beside_it, beyond);
+    let mut named = both(&fit.shapes, &best.candidate.shapes);
+    let same = |o: &Scored| o.candidate.domain == domain;
+    if !basis.is_empty() {
+        stand_beside(system, &mut named, others, same);
+    }
+    let own = sure(system, &named[fit.shapes.len()..]);
+    let held = Beside::new(&system.total, &sure(system, &fit.shapes))
+        .gain(&own)
+        .0;
+    let beside = Beside::new(&system.total, &sure(system, &named));
+    let share = share(held, beside.gain(&sure(system, basis)));
     if share < HOLDS {
         return Held {
             share,
@@ -217,7 +274,7 @@ fn holds(
         };
     }
     // Other causes may be there too, and no name answers for them.
-    let (own, line) = (best.candidate.name, best.candidate.domain == Domain::Line);
+    let (own, line) = (best.candidate.name, domain == Domain::Line);
     stand_beside(system, &mut named, others, |o| {
         line && same(o) && o.candidate.name != own
     });
@@ -225,14 +282,18 @@ fn holds(
     let library = &mut system.samples.library;
     let around = generic::around(system.context, &best.candidate, library);
     let steady = generic::steady(system.context, &best.candidate, library);
-    let atoms = atoms_of(&[named.as_slice(), &around, &steady].concat());
+    let own = sure(system, &best.candidate.shapes);
+    let held = Beside::new(&system.total, &sure(system, &fit.shapes))
+        .gain(&own)
+        .0;
+    let [known, free, any] = [&named, &steady, &around].map(|list| sure(system, list));
+    let atoms = atoms_of(&[known.as_slice(), &any, &free].concat());
     let whole = system.among(&atoms);
     let among =
         |shapes: &[Shape]| -> Vec<Shape> { shapes.iter().map(|s| s.among(&atoms)).collect() };
-    let free = Beside::new(&whole, &among(&named)).gain(&among(&steady)).0;
-    named.extend(steady);
-    let beside = Beside::new(&whole, &among(&named));
-    let own = self::share(best.gain + free, beside.gain(&among(&around)));
+    let more = Beside::new(&whole, &among(&known)).gain(&among(&free)).0;
+    let beside = Beside::new(&whole, &among(&both(&known, &free)));
+    let own = self::share(held + more, beside.gain(&among(&any)));
     Held {
         share: share.min(own),
         beyond: around,
@@ -266,7 +327,7 @@ fn stand_beside(
 }
 
 /// What is held of it and of what is beyond.
-fn share(held: f64, (beyond, freedom): (f64, usize)) -> f64 {
+pub(crate) fn share(held: f64, (beyond, freedom): (f64, usize)) -> f64 {
     // What as many free numbers explain of noise alone does not count against it.
     let spread = (2.0 * freedom as f64).sqrt();
     let beyond = (beyond - freedom as f64 / 2.0 - 2.0 * spread).max(0.0);

@@ -6,15 +6,16 @@ use serde::Serialize;
 
 use crate::checks::{self, Checked};
 use crate::context::{Context, ContextError};
+use crate::doubt;
 use crate::exact;
-use crate::finding::{Finding, Parameter};
+use crate::finding::{Finding, Gain, Parameter};
 use crate::flicker::{self, Flicker};
 use crate::library::Row;
 use crate::model::System;
 use crate::noise;
 use crate::repair::{Repaired, repair};
-use crate::select::select;
-use crate::selection::{Accepted, Selection};
+use crate::select::{KINDS, select};
+use crate::selection::{Accepted, Selection, Unnamed};
 
 /// Most times that a recording is looked at anew.
 const ROUNDS: usize = 10;
@@ -50,6 +51,26 @@ pub struct Unexplained {
     pub p_value: f64,
     /// Where it lives and what it looks like.
     pub signature: String,
+}
+
+impl Unexplained {
+    fn nothing() -> Self {
+        Self {
+            significant: false,
+            p_value: 1.0,
+            signature: "nothing significant is left: the residue is noise".into(),
+        }
+    }
+
+    fn add(&mut self, unnamed: &Unnamed) {
+        if self.significant {
+            self.signature = format!("{}; {}", self.signature, unnamed.signature);
+        } else {
+            self.signature.clone_from(&unnamed.signature);
+        }
+        self.significant = true;
+        self.p_value = self.p_value.min(unnamed.log_p.exp());
+    }
 }
 
 /// The model with the causes that were found.
@@ -104,12 +125,43 @@ pub fn diagnose(recording: &Recording) -> Result<Diagnosis, ContextError> {
     let context = Context::new(&repaired.recording, repaired.weight.clone())?;
     let (other, _) = search(context, &checked, &repaired, false);
     let known = |name: &str| found.findings.iter().any(|f| f.cause == name);
-    let names_more = other.findings.iter().any(|f| !known(&f.cause));
-    if !names_more || other.unexplained.significant {
+    let more = other.findings.iter().filter(|f| !known(&f.cause));
+    let numbers: usize = more.map(|f| f.parameters.len()).sum();
+    if numbers == 0 {
         return Ok(found);
     }
     let left = flicker::find(&other.context, &other.residuals[1].0);
-    Ok(if left.is_none() { other } else { found })
+    if left.is_none() && !other.unexplained.significant {
+        return Ok(other);
+    }
+    // Beside flicker noise, names have to be worth their numbers.
+    let likelihood = |d: &Diagnosis| flicker::likelihood_of(&d.context, &d.residuals[1].0);
+    let n = other.context.samples() as f64;
+    let price = 0.5 * n.ln() * numbers as f64 + KINDS.ln();
+    let worth = match (likelihood(&other), likelihood(&found)) {
+        (Some(with), Some(without)) => with - without > price,
+        _ => false,
+    };
+    Ok(if worth { beside(other, left) } else { found })
+}
+
+/// A diagnosis with flicker noise beside its names, where there is any.
+fn beside(mut with: Diagnosis, noise: Option<Flicker>) -> Diagnosis {
+    match noise.as_ref().map(Flicker::finding) {
+        Some(Ok(mut finding)) => {
+            let model = &with.extended;
+            finding.gain = Gain {
+                held_out_residual_rms_before: model.held_out_residual_rms,
+                held_out_residual_rms_after: model.held_out_residual_rms,
+                position_error_rms_before_rad: model.position_error_rms_rad,
+                position_error_rms_after_rad: model.position_error_rms_rad,
+            };
+            with.findings.push(finding);
+        }
+        Some(Err(unnamed)) => with.unexplained.add(&unnamed),
+        None => {}
+    }
+    with
 }
 
 /// Looks at a recording until nothing new is found in it, and whether there is noise like flicker noise then; `coloured`:
@@ -132,9 +184,10 @@ fn search(
         if !coloured {
             system.flicker = None;
         }
-        let selection = select(&context, &mut system, &catalogue, carried.clone(), last);
+        let mut selection = select(&context, &mut system, &catalogue, carried.clone(), last);
         if selection.again.is_empty() {
             let slow = system.flicker.is_some();
+            doubt::beside_codes(&system, &mut selection, &checked.findings);
             let concluded = conclude(&system, &selection, checked, repaired);
             drop(system);
             return (concluded(context), slow);
@@ -182,7 +235,12 @@ fn conclude(
     } else {
         (vec![], vec![])
     };
-    match system.flicker.as_ref().map(Flicker::finding) {
+    // What looked like it before anything was known may have got a name.
+    let flicker = match &system.flicker {
+        Some(_) if !selection.accepted.is_empty() => flicker::find(context, &left.radial),
+        known => known.clone(),
+    };
+    match flicker.as_ref().map(Flicker::finding) {
         Some(Ok(finding)) => noisy.push(finding),
         Some(Err(unnamed)) => strange.push(unnamed),
         None => {}
@@ -210,17 +268,8 @@ fn conclude(
         finding.gain.position_error_rms_after_rad = position_after;
         findings.push(finding);
     }
-    let signature: Vec<String> = unnamed().map(|u| u.signature.clone()).collect();
-    let p_value = unnamed().map(|u| u.log_p).fold(0.0, f64::min).exp();
-    let unexplained = Unexplained {
-        significant: !signature.is_empty(),
-        p_value,
-        signature: if signature.is_empty() {
-            "nothing significant is left: the residue is noise".into()
-        } else {
-            signature.join("; ")
-        },
-    };
+    let mut unexplained = Unexplained::nothing();
+    unnamed().for_each(|u| unexplained.add(u));
     let was = system.residual(&selection.base);
     let left = system.residual(&extended.fit);
     let residuals = [(was.radial, was.tangential), (left.radial, left.tangential)];

@@ -7,11 +7,12 @@
 use nonius_calibration::Ellipse;
 use nonius_recording::Recording;
 
+use crate::beside::Beside;
 use crate::causes::Catalogue;
 use crate::context::{Context, Known, unwrapped};
 use crate::library::{Row, Shape};
 use crate::model::{Fit, System, above_motion, atoms_of};
-use crate::select::{Beside, begin};
+use crate::select::begin;
 use crate::selection::Accepted;
 use crate::spline::Spline;
 use crate::sweep::Samples;

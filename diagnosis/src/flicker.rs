@@ -226,6 +226,19 @@ pub(crate) fn gathered(context: &Context, radial: &[f64]) -> Vec<Band> {
     bands(&lines)
 }
 
+/// Log-likelihood of a radial residual as white noise and flicker noise; none of too short a record.
+pub(crate) fn likelihood_of(context: &Context, radial: &[f64]) -> Option<f64> {
+    if radial.len() < 64 {
+        return None;
+    }
+    let mut lines = spectrum(context, radial);
+    if lines.len() < FEWEST {
+        return None;
+    }
+    without_hum(&mut lines);
+    Some(corner(&lines, &bands(&lines)).1)
+}
+
 /// Whether two levels explain more of the radius than flicker noise with a gain in log-likelihood does, and leave no such noise.
 fn jumps(context: &Context, radial: &[f64], gain: f64) -> bool {
     let Some(two) = telegraph::two_levels(context, radial).filter(|two| two.gain > gain) else {

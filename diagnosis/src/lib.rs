@@ -5,6 +5,7 @@
 //! spline, and asks of every cause of the catalogue how much of the rest it explains. A name is given only to a shape
 //! that holds; what cannot be named is said to be unexplained.
 
+mod beside;
 mod block;
 mod cause;
 mod causes;
@@ -12,6 +13,7 @@ mod checks;
 mod contender;
 mod context;
 mod diagnose;
+mod doubt;
 mod exact;
 mod finding;
 mod flicker;

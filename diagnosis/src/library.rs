@@ -234,6 +234,12 @@ impl Shape {
         Self(known.collect())
     }
 
+    /// What of it stands in these atoms.
+    pub(crate) fn only(&self, kept: &[bool]) -> Self {
+        let list = self.0.iter().copied();
+        Self(list.filter(|(i, _)| kept[*i]).collect())
+    }
+
     /// So many times the shape.
     pub(crate) fn scaled(&self, by: f64) -> Self {
         Self(self.0.iter().map(|(i, x)| (*i, x * by)).collect())

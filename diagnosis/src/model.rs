@@ -121,6 +121,33 @@ impl<'a> System<'a> {
         this
     }
 
+    /// Whether what is left along the circle is the axis more than it is noise.
+    pub(crate) fn vibrates(&self) -> bool {
+        /// Knots closer than so many samples follow a motion that goes on beyond them.
+        const FAST: f64 = 10.0;
+        let coloured = !self.samples.whiteners[Row::Tangential as usize].is_white();
+        let spline = self.context.spline.as_ref();
+        let fast = spline.is_some_and(|s| s.spacing() < FAST);
+        self.context.against_reference.is_none() && (coloured || fast)
+    }
+
+    /// Which of these atoms stand along the radius.
+    pub(crate) fn radial(&self, atoms: &[usize]) -> Vec<bool> {
+        let row = |i: &usize| self.samples.library.atoms[*i].row;
+        atoms.iter().map(|i| row(i) == Row::Radial).collect()
+    }
+
+    /// What of shapes shows the sensor for sure: where the axis vibrates, what stands along the radius.
+    pub(crate) fn sure(&self, shapes: &[Shape]) -> Vec<Shape> {
+        if !self.vibrates() {
+            return shapes.to_vec();
+        }
+        let all: Vec<usize> = (0..self.samples.library.atoms.len()).collect();
+        let radial = self.radial(&all);
+        let parts = shapes.iter().map(|s| s.only(&radial));
+        parts.filter(|s| !s.0.is_empty()).collect()
+    }
+
     /// Of so many blocks of samples, one is looked at.
     pub(crate) fn every(&self) -> usize {
         self.every

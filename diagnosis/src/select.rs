@@ -1,14 +1,16 @@
 //! Which causes are in a recording: the one that explains most first, rivals named, unknown shapes left unnamed.
 
+use crate::beside::Beside;
 use crate::cause::{Candidate, Domain, Sign};
 use crate::causes::{self, Catalogue, HYSTERESIS};
 use crate::contender::{Contender, contender, lives};
 use crate::context::Context;
+use crate::doubt::doubt;
 use crate::exact::{self, Start};
 use crate::library::Shape;
 use crate::model::{Fit, System, atoms_of};
 use crate::selection::{Accepted, Selection, Unnamed};
-use crate::solve::{Normal, Solution};
+use crate::solve::Solution;
 use crate::statistics::{after_trials, log_tail};
 
 /// Global probability below which a cause is shown.
@@ -23,6 +25,10 @@ const GRID: f64 = 3.0;
 const BEYOND_UNKNOWN: f64 = 0.5;
 /// Gain in log-likelihood (an SNR of 45) from which on a part of a long recording is enough to name a cause.
 const CLEAR: f64 = 1000.0;
+/// Most that a cause of which little is seen does, in amplitudes rms.
+const LARGEST: f64 = 0.1;
+/// Share of the power of what it does that is little.
+const SEEN: f64 = 0.05;
 /// Share of the best gain below which another cause is no rival.
 pub(crate) const RIVALS: f64 = 0.6;
 
@@ -31,32 +37,8 @@ pub(crate) struct Scored {
     pub(crate) gain: f64,
     pub(crate) freedom: usize,
     pub(crate) log_p: f64,
-}
-
-/// The normal equations with the fit taken off, and how much it explains.
-pub(crate) struct Beside<'a> {
-    whole: &'a Normal,
-    rest: Normal,
-}
-
-impl<'a> Beside<'a> {
-    pub(crate) fn new(whole: &'a Normal, shapes: &[Shape]) -> Self {
-        Self {
-            whole,
-            rest: whole.deflated(shapes),
-        }
-    }
-
-    /// What shapes explain beside the fit, and how many numbers they have for it.
-    pub(crate) fn gain(&self, shapes: &[Shape]) -> (f64, usize) {
-        let solution = self.solve(shapes);
-        (solution.gain(), solution.rank)
-    }
-
-    /// The amounts of shapes beside the fit.
-    pub(crate) fn solve(&self, shapes: &[Shape]) -> Solution {
-        self.rest.solve_beside(self.whole, shapes)
-    }
+    /// All that it does, what five parameters and motion can do as well included, in units of the noise.
+    pub(crate) size: f64,
 }
 
 /// Shapes of one list, then of the other.
@@ -96,13 +78,30 @@ pub(crate) fn score(beside: &Beside, candidate: Candidate) -> Option<Scored> {
     if !possible(&candidate, &solution) {
         return None;
     }
+    if candidate.domain != Domain::Motion
+        && !beside.in_radius(&candidate.shapes, &solution.x, freedom)
+    {
+        return None;
+    }
     let log_p = after_trials(log_tail(2.0 * gain, freedom), candidate.trials * KINDS);
+    let size = beside.size(&candidate.shapes, &solution.x);
     Some(Scored {
         candidate,
         gain,
         freedom,
         log_p,
+        size,
     })
+}
+
+/// Whether a cause can be so large. Where little of it is seen, as of a delay at a speed that hardly changes, the rest would
+/// have to be made up for by opposite errors of offset, gain and phase.
+fn likely(system: &System, scored: &Scored) -> bool {
+    let samples: f64 = system.context.weight.iter().sum();
+    let large = LARGEST * (2.0 * samples).sqrt() / system.noise();
+    !matches!(scored.candidate.domain, Domain::Speed | Domain::Angle)
+        || scored.size < large
+        || 2.0 * scored.gain > SEEN * scored.size.powi(2)
 }
 
 /// Of candidates with functions of their own, those that explain something, or could rival a gain of `most`.
@@ -112,7 +111,8 @@ fn worth(system: &mut System, fit: &Fit, list: Vec<Candidate>, most: f64) -> Vec
     let whole = system.among(&atoms);
     let among =
         |shapes: &[Shape]| -> Vec<Shape> { shapes.iter().map(|s| s.among(&atoms)).collect() };
-    let beside = Beside::new(&whole, &among(&fit.shapes));
+    let known = among(&fit.shapes);
+    let beside = Beside::new(&whole, &known).where_it_moves(system, &known, &atoms);
     let mut scored: Vec<Scored> = list
         .into_iter()
         .filter_map(|mut candidate| {
@@ -239,13 +239,16 @@ fn search(
             let again = twice && c.name == HYSTERESIS;
             !closed.contains(&c.domain) && !refused.contains(&c.name) && !again
         };
-        let beside = Beside::new(&system.total, &found.fit.shapes);
+        let all: Vec<usize> = (0..system.total.right.len()).collect();
+        let shapes = &found.fit.shapes;
+        let beside = Beside::new(&system.total, shapes).where_it_moves(system, shapes, &all);
         let known = catalogue.candidates.iter().filter(|c| open(c));
         let mut scored: Vec<Scored> = known.filter_map(|c| score(&beside, c.clone())).collect();
         let most = scored.iter().map(|s| s.gain).fold(0.0, f64::max);
         let shown = shown.into_iter().filter(open).collect();
         let worth = worth(system, &found.fit, shown, most);
         scored.extend(take_in(system, fixed, &found.fit, worth));
+        scored.retain(|s| likely(system, s));
         scored.sort_by(|a, b| a.log_p.total_cmp(&b.log_p));
         if scored.is_empty() || scored[0].log_p > SHOWN.ln() {
             break;
@@ -274,8 +277,10 @@ fn search(
                 cause.first = found.fit.shapes.len();
                 let shapes = both(&found.fit.shapes, &cause.candidate.shapes);
                 let halves = system.halves(&shapes);
+                // How it was when the recording began is seen in the first block alone, and no other half knows it.
+                let lasting = &shapes[..shapes.len() - cause.candidate.given()];
                 // What does not hold on data that was not fitted is no cause.
-                if halves.held_out(&shapes) > halves.held_out(&found.fit.shapes) * 1.01 {
+                if halves.held_out(lasting) > halves.held_out(&found.fit.shapes) * 1.01 {
                     refused.push(cause.candidate.name);
                 } else {
                     let before = found.fit;
@@ -299,6 +304,7 @@ fn search(
         return found;
     }
     if system.every() == 1 {
+        closed.extend(doubt(system, catalogue, &mut found));
         let left = leftover(system, catalogue, &found.fit, &closed);
         found.unnamed.extend(left);
     }
@@ -334,7 +340,7 @@ fn keep_used(system: &mut System, fixed: usize, found: &mut Selection) {
 
 /// Domains in which something significant is left that no cause was found for.
 fn leftover(system: &System, catalogue: &Catalogue, fit: &Fit, closed: &[Domain]) -> Vec<Unnamed> {
-    let beside = Beside::new(&system.total, &fit.shapes);
+    let beside = Beside::new(&system.total, &system.sure(&fit.shapes));
     let open = [
         Domain::Angle,
         Domain::Speed,
@@ -342,7 +348,7 @@ fn leftover(system: &System, catalogue: &Catalogue, fit: &Fit, closed: &[Domain]
         Domain::Revolution,
     ];
     let tell = |domain: Domain| {
-        let (gain, freedom) = beside.gain(catalogue.basis(domain));
+        let (gain, freedom) = beside.gain(&system.sure(catalogue.basis(domain)));
         let log_p = after_trials(log_tail(2.0 * gain, freedom), 40.0);
         (log_p < SHOWN.ln()).then(|| Unnamed {
             log_p,

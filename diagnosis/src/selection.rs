@@ -20,6 +20,8 @@ pub(crate) struct Accepted {
     pub(crate) inner_error: Option<Vec<f64>>,
     /// What is left of it beside the others and what has no name, in the end.
     pub(crate) own: Own,
+    /// It does not hold in the end, and gets no name.
+    pub(crate) doubted: bool,
 }
 
 /// What a cause explains that nothing else explains.
@@ -40,6 +42,7 @@ impl Accepted {
             x: vec![0.0; candidate.shapes.len()],
             inner_error: None,
             own: Own::default(),
+            doubted: false,
             candidate,
         }
     }
@@ -85,8 +88,10 @@ impl Selection {
     /// The model that can be simulated: the five parameters and the causes that are findings, without the shapes that stand
     /// in for what has no name. Those would make anything look explained.
     pub(crate) fn named(&self, system: &System) -> Self {
-        let names = self.of(self.accepted.clone(), system);
-        let pairs = self.accepted.iter().zip(&names.accepted);
+        let sure = self.accepted.iter().filter(|a| !a.doubted);
+        let sure: Vec<Accepted> = sure.cloned().collect();
+        let names = self.of(sure.clone(), system);
+        let pairs = sure.iter().zip(&names.accepted);
         let findings = pairs.filter_map(|(one, alone)| {
             let own = self.own(one, system);
             let own = own.or_else(|| self.held(&names, alone, system))?;

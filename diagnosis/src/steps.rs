@@ -36,11 +36,16 @@ struct Changing<'a> {
     change: Change,
 }
 
-/// Whether lines explain as much of a radial residual, with noise of that rms, as steps do.
-pub(crate) fn slowly(context: &Context, radial: &[f64], noise: f64, change: Change) -> bool {
+/// Log-likelihood that steps explain of a radial residual, with noise of that rms, where they explain more than lines do.
+pub(crate) fn instead(
+    context: &Context,
+    radial: &[f64],
+    noise: f64,
+    change: Change,
+) -> Option<f64> {
     let count = STRETCHES.min(radial.len() / 8);
     if count < 2 || noise <= 0.0 {
-        return true;
+        return None;
     }
     let changing = Changing {
         context,
@@ -55,7 +60,7 @@ pub(crate) fn slowly(context: &Context, radial: &[f64], noise: f64, change: Chan
     let price = 0.5 * (radial.len() as f64).ln();
     let lines = KNOTS.into_iter().map(|knots| changing.lines(knots, price));
     let steps = steps(&stretches, CHANNELS as f64 * price + (count as f64).ln());
-    lines.fold(f64::MIN, f64::max) >= steps
+    (lines.fold(f64::MIN, f64::max) < steps).then_some(steps)
 }
 
 impl Changing<'_> {

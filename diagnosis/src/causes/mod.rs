@@ -23,7 +23,7 @@ use crate::trig::{Trig, rotated};
 
 pub(crate) use line::wave as line_wave;
 pub(crate) use place::orders as revolution_orders;
-pub(crate) use speed::varies as speed_varies;
+pub(crate) use speed::{varies as speed_varies, varies_much as speed_varies_much};
 
 /// Highest order of the scale period.
 pub(crate) const ORDERS: usize = 8;

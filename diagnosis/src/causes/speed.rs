@@ -13,18 +13,33 @@ use crate::library::{Library, Shape, Use};
 use crate::trig::{Trig, channel, derivatives};
 
 /// Share of the speed that has to change for its effects to be told from a phase error.
-const CHANGE: f64 = 0.02;
+const CHANGE: f64 = 5e-4;
+/// Share that shows most of them.
+const MUCH: f64 = 0.02;
 
 /// Products of the largest speed and a time constant that are tried.
 const REACHES: [f64; 5] = [0.003, 0.02, 0.1, 0.4, 1.0];
 
-/// Whether the speed changes enough to show what depends on it.
-pub(crate) fn varies(context: &Context) -> bool {
+/// Share of the speed that changes, rms.
+fn change(context: &Context) -> f64 {
     let n = context.samples() as f64;
     let mean = context.speed.iter().sum::<f64>() / n;
     let square = context.speed.iter().map(|v| v * v).sum::<f64>() / n;
-    let spread = (square - mean * mean).max(0.0).sqrt();
-    spread > CHANGE * square.sqrt() && square > 0.0
+    if square > 0.0 {
+        ((square - mean * mean).max(0.0) / square).sqrt()
+    } else {
+        0.0
+    }
+}
+
+/// Whether the speed changes enough to show what depends on it.
+pub(crate) fn varies(context: &Context) -> bool {
+    change(context) > CHANGE
+}
+
+/// Whether it changes so much that most of what depends on it is seen.
+pub(crate) fn varies_much(context: &Context) -> bool {
+    change(context) > MUCH
 }
 
 /// A shape that is made anew with the size of its amount.
@@ -102,7 +117,12 @@ pub(super) fn cause(
 
 pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
     let speed = Speed::new(context, &mut catalogue.library);
-    let varies = varies(context);
+    // Against a reference, what a latency leaves where the speed hardly changes looks like any of these.
+    let varies = if context.against_reference.is_some() {
+        varies_much(context)
+    } else {
+        varies(context)
+    };
     if varies {
         let orders = [ODD, EVEN, SIGN]
             .into_iter()

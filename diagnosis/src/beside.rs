@@ -1,0 +1,75 @@
+//! What shapes explain beside a fit.
+
+use crate::library::Shape;
+use crate::model::{System, amounts};
+use crate::solve::{Normal, Solution};
+use crate::statistics::log_tail;
+
+/// The normal equations with the fit taken off, and how much it explains.
+pub(crate) struct Beside<'a> {
+    whole: &'a Normal,
+    rest: Normal,
+    /// The equations of the radius alone and which atoms stand in it, where what is seen along the circle may be the axis.
+    radius: Option<(Normal, Vec<bool>)>,
+}
+
+/// Probability below which the radius has to show a cause of the sensor where the axis vibrates.
+const RADIUS: f64 = 1e-3;
+/// Share of what a cause claims for the radius that has to be there.
+const CLAIMED: f64 = 0.5;
+
+impl<'a> Beside<'a> {
+    pub(crate) fn new(whole: &'a Normal, shapes: &[Shape]) -> Self {
+        Self {
+            whole,
+            rest: whole.deflated(shapes),
+            radius: None,
+        }
+    }
+
+    /// The same where the axis may vibrate; `atoms` are those of the equations.
+    pub(crate) fn where_it_moves(
+        mut self,
+        system: &System,
+        shapes: &[Shape],
+        atoms: &[usize],
+    ) -> Self {
+        if system.vibrates() {
+            let radial = system.radial(atoms);
+            let parts: Vec<Shape> = shapes.iter().map(|s| s.only(&radial)).collect();
+            self.radius = Some((self.whole.deflated(&parts), radial));
+        }
+        self
+    }
+
+    /// Whether the radius shows its part of shapes in these amounts. A vibration that the prediction of the noise does not
+    /// hold is in every shape that stands along the circle, but it never shows in the radius; a cause of the sensor does.
+    pub(crate) fn in_radius(&self, shapes: &[Shape], x: &[f64], freedom: usize) -> bool {
+        let Some((radius, radial)) = &self.radius else {
+            return true;
+        };
+        let part = Shape(amounts(shapes, x)).only(radial);
+        let claimed = radius.product(&part, &part).max(0.0).sqrt();
+        let shown: f64 = part.0.iter().map(|(i, x)| x * radius.right[*i]).sum();
+        let seen = shown.max(0.0) / claimed.max(f64::MIN_POSITIVE);
+        seen > CLAIMED * claimed && log_tail(seen * seen, freedom) < RADIUS.ln()
+    }
+
+    /// What shapes explain beside the fit, and how many numbers they have for it.
+    pub(crate) fn gain(&self, shapes: &[Shape]) -> (f64, usize) {
+        let solution = self.solve(shapes);
+        (solution.gain(), solution.rank)
+    }
+
+    /// The amounts of shapes beside the fit.
+    pub(crate) fn solve(&self, shapes: &[Shape]) -> Solution {
+        self.rest.solve_beside(self.whole, shapes)
+    }
+
+    /// Size of all that shapes in these amounts do, what the fit and the motion can do as well included, in units of the
+    /// noise.
+    pub(crate) fn size(&self, shapes: &[Shape], x: &[f64]) -> f64 {
+        let all = Shape(amounts(shapes, x));
+        self.whole.product(&all, &all).max(0.0).sqrt()
+    }
+}

@@ -1,0 +1,157 @@
+//! Names that do not hold in the end. A name is accepted beside what is not known yet; once everything is known, a domain
+//! in which too much is left is one that its names do not explain, and what a strong error of the channel leaves is no
+//! error of its own: no model holds to the last per cent.
+
+use crate::beside::Beside;
+use crate::cause::Domain;
+use crate::causes::Catalogue;
+use crate::contender::{lives, share};
+use crate::finding::Finding;
+use crate::generic::HOLDS;
+use crate::library::Shape;
+use crate::model::System;
+use crate::selection::{Selection, Unnamed};
+
+/// Share of what a static error explains below which another kind of static error is what the first one's model leaves: an
+/// SNR between a fourth and a fifth of its.
+const LEFTOVER: f64 = 0.05;
+
+/// What depends on the code depends on the angle too.
+fn home(domain: Domain) -> Domain {
+    if domain == Domain::Code {
+        Domain::Angle
+    } else {
+        domain
+    }
+}
+
+/// Takes names back that do not hold, and returns the domains that have none for what is in them.
+pub(crate) fn doubt(system: &System, catalogue: &Catalogue, found: &mut Selection) -> Vec<Domain> {
+    let mut closed = vec![];
+    for domain in [
+        Domain::Angle,
+        Domain::Speed,
+        Domain::Time,
+        Domain::Revolution,
+    ] {
+        // Slow noise is in all that is slow, and has its own name.
+        let slow = matches!(domain, Domain::Speed | Domain::Time);
+        if slow && system.flicker.is_some() {
+            continue;
+        }
+        let own: Vec<usize> = (0..found.accepted.len())
+            .filter(|i| home(found.accepted[*i].candidate.domain) == domain)
+            .collect();
+        if own.is_empty() {
+            continue;
+        }
+        if let Some(unnamed) = too_much_left(system, catalogue, found, domain, &own) {
+            own.iter().for_each(|i| found.accepted[*i].doubted = true);
+            found.unnamed.push(unnamed);
+            closed.push(domain);
+        } else if domain == Domain::Angle
+            && let Some(unnamed) = leftovers(system, found, &own)
+        {
+            found.unnamed.push(unnamed);
+            closed.push(domain);
+        }
+    }
+    closed
+}
+
+/// What the fit explains more than without some of its causes.
+fn gain_of(system: &System, found: &Selection, own: &[usize]) -> f64 {
+    let within = |k: usize| own.iter().any(|i| found.accepted[*i].range().contains(&k));
+    let shapes = found.fit.shapes.iter().enumerate();
+    let others: Vec<Shape> = shapes
+        .filter(|(k, _)| !within(*k))
+        .map(|(_, s)| s.clone())
+        .collect();
+    let gain = |shapes: &[Shape]| system.fit(system.sure(shapes)).solution.gain();
+    gain(&found.fit.shapes) - gain(&others)
+}
+
+/// More of a domain is left than its names may leave.
+fn too_much_left(
+    system: &System,
+    catalogue: &Catalogue,
+    found: &Selection,
+    domain: Domain,
+    own: &[usize],
+) -> Option<Unnamed> {
+    let beside = Beside::new(&system.total, &system.sure(&found.fit.shapes));
+    let beyond = beside.gain(&system.sure(catalogue.basis(domain)));
+    let gain = gain_of(system, found, own);
+    let share = share(gain, beyond);
+    let nearest = found.accepted[own[0]].candidate.name.replace('_', " ");
+    (share < HOLDS).then(|| Unnamed {
+        log_p: -gain,
+        gain,
+        signature: format!(
+            "{}; nearest likeness: {nearest}, but it holds {:.0} % of what any shape there explains",
+            lives(domain),
+            share.max(0.0) * 100.0
+        ),
+    })
+}
+
+/// Static errors of another kind that are a small part of the strongest.
+fn leftovers(system: &System, found: &mut Selection, own: &[usize]) -> Option<Unnamed> {
+    let gains: Vec<f64> = own.iter().map(|i| gain_of(system, found, &[*i])).collect();
+    let strongest = (0..own.len()).max_by(|a, b| gains[*a].total_cmp(&gains[*b]))?;
+    let name = found.accepted[own[strongest]].candidate.name;
+    let small = |j: &usize| {
+        found.accepted[own[*j]].candidate.name != name && gains[*j] < LEFTOVER * gains[strongest]
+    };
+    let small: Vec<usize> = (0..own.len()).filter(small).collect();
+    let first = *small.first()?;
+    let nearest = found.accepted[own[first]].candidate.name;
+    for j in &small {
+        found.accepted[own[*j]].doubted = true;
+    }
+    Some(Unnamed {
+        log_p: -gains[first],
+        gain: gains[first],
+        signature: format!(
+            "{}; nearest likeness: {}, but it is {:.1} % of what {} explains, whose model may leave as much",
+            lives(Domain::Angle),
+            nearest.replace('_', " "),
+            100.0 * gains[first] / gains[strongest],
+            name.replace('_', " ")
+        ),
+    })
+}
+
+/// Takes names of static errors back that are smaller than the error that a stuck bit or coarse steps make in the codes:
+/// that error repeats with the angle, too, and is in the data as it is.
+pub(crate) fn beside_codes(system: &System, found: &mut Selection, digital: &[Finding]) {
+    let context = system.context;
+    let lsb = context.adc.cos.lsb.max(context.adc.sin.lsb) / context.ellipse.amplitude();
+    let error = |f: &Finding| match f.cause.as_str() {
+        // Of a bit that is lost half of the time, and of even steps.
+        "stuck_bit" => f.parameter("bit").map(|bit| 2f64.powf(bit) / 2.0),
+        "coarse_quantisation" => f.parameter("step_lsb").map(|step| step / 12f64.sqrt()),
+        _ => None,
+    };
+    let error = lsb * digital.iter().filter_map(error).fold(0.0, f64::max);
+    let samples: f64 = context.weight.iter().sum();
+    let mut first = None;
+    for i in 0..found.accepted.len() {
+        let candidate = &found.accepted[i].candidate;
+        let gain = gain_of(system, found, &[i]);
+        let size = system.noise() * (2.0 * gain.max(0.0) / samples).sqrt();
+        if home(candidate.domain) == Domain::Angle && size < error {
+            first = first.or(Some((candidate.name, gain)));
+            found.accepted[i].doubted = true;
+        }
+    }
+    found.unnamed.extend(first.map(|(name, gain)| Unnamed {
+        log_p: -gain,
+        gain,
+        signature: format!(
+            "{}; nearest likeness: {}, but the codes themselves are off by more",
+            lives(Domain::Angle),
+            name.replace('_', " ")
+        ),
+    }));
+}
