@@ -16,6 +16,10 @@ use crate::selection::{Selection, Unnamed};
 /// SNR between a fourth and a fifth of its.
 const LEFTOVER: f64 = 0.05;
 
+/// Scale periods travelled from which what depends on the code is told from what depends on the angle: where each code stands at one
+/// angle only, neither is what the other leaves.
+const APART: f64 = 2.0;
+
 /// What depends on the code depends on the angle too.
 fn home(domain: Domain) -> Domain {
     if domain == Domain::Code {
@@ -42,7 +46,8 @@ pub(crate) fn doubt(system: &System, catalogue: &Catalogue, found: &mut Selectio
         let own: Vec<usize> = (0..found.accepted.len())
             .filter(|i| home(found.accepted[*i].candidate.domain) == domain)
             .collect();
-        if own.is_empty() {
+        let one = domain == Domain::Angle && system.context.periods_travelled() < APART;
+        if own.is_empty() || one {
             continue;
         }
         if let Some(unnamed) = too_much_left(system, catalogue, found, domain, &own) {
