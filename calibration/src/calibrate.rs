@@ -169,7 +169,7 @@ pub fn undetermined(method: Method, cos: &[f64], sin: &[f64], why: &Error) -> Ca
         scatter: None,
         arc: 0.0,
         bound: None,
-        cannot_tell: vec![words::of_nothing(words::slimness(cos, sin), why)],
+        cannot_tell: vec![words::of_nothing(cos, sin, why)],
         remarks: vec![],
     }
 }

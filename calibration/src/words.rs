@@ -156,7 +156,7 @@ pub(crate) fn beside_unbiased(method: Method, found: &Parameters, fit: &Fit) -> 
 }
 
 /// Standard deviation across the samples' main direction over that along it, 0 to 1.
-pub(crate) fn slimness(cos: &[f64], sin: &[f64]) -> f64 {
+fn slimness(cos: &[f64], sin: &[f64]) -> f64 {
     let n = cos.len() as f64;
     let mean = |v: &[f64]| v.iter().sum::<f64>() / n;
     let (c0, s0) = (mean(cos), mean(sin));
@@ -169,11 +169,41 @@ pub(crate) fn slimness(cos: &[f64], sin: &[f64]) -> f64 {
     (values.min().max(0.0) / values.max().max(f64::MIN_POSITIVE)).sqrt()
 }
 
+/// At how many places of the period the samples stand, seen from their mean: clusters that are a gap of 20° and more apart. A cloud
+/// about its mean, and an arc, have one.
+fn places(cos: &[f64], sin: &[f64]) -> usize {
+    /// Degrees.
+    const GAP: f64 = 20.0;
+    let n = cos.len() as f64;
+    let (c0, s0) = (cos.iter().sum::<f64>() / n, sin.iter().sum::<f64>() / n);
+    let angle = |(c, s): (&f64, &f64)| (s - s0).atan2(c - c0).to_degrees();
+    let mut angles: Vec<f64> = cos.iter().zip(sin).map(angle).collect();
+    angles.sort_by(f64::total_cmp);
+    let around = angles
+        .first()
+        .zip(angles.last())
+        .map(|(a, b)| a + 360.0 - b);
+    let between = angles.windows(2).map(|pair| pair[1] - pair[0]);
+    between
+        .chain(around)
+        .filter(|gap| *gap > GAP)
+        .count()
+        .max(1)
+}
+
 /// Where the samples draw no ellipse at all.
-pub(crate) fn of_nothing(slimness: f64, why: &Error) -> String {
+pub(crate) fn of_nothing(cos: &[f64], sin: &[f64], why: &Error) -> String {
     /// Slimmer than this is a line, rounder a cloud.
     const LINE: f64 = 0.4;
+    let (slimness, places) = (slimness(cos, sin), places(cos, sin));
     let seen = match why {
+        Error::NoEllipse if places > 2 => {
+            return format!(
+                "a_c, b_c, a_s, b_s, beta, theta: the samples stand at {places} places of the period only, which is too few: the speed \
+                 was exactly {places} samples a period; record at another speed; the values are half the sums and differences of \
+                 the extremes"
+            );
+        }
         Error::NoEllipse if slimness < LINE => {
             "the samples lie on a line within their noise: the arc is too short, or both channels carry one signal"
                 .into()

@@ -56,6 +56,23 @@ fn a_short_arc() {
     insta::assert_snapshot!(text(Method::Unbiased, &signals(0.3, 0.004, 0.0)));
 }
 
+/// Exactly three and four samples a period: the places are counted, and nothing is said of a scale that stands still.
+#[test]
+fn few_places_of_the_period() {
+    for places in [3, 4] {
+        let (cos, sin) = signals(2000.0 / f64::from(places), 0.004, 0.0);
+        let why =
+            calibrate(&cos, &sin, Method::Unbiased, &Options::default()).expect_err("a refusal");
+        let text = report(&undetermined(Method::Unbiased, &cos, &sin, &why), None);
+        let said = format!("stand at {places} places");
+        let flowing = text.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(
+            flowing.contains(&said) && !flowing.contains("cloud"),
+            "{text}"
+        );
+    }
+}
+
 #[test]
 fn a_standstill() {
     let (cos, sin) = signals(0.0, 0.004, 0.0);
