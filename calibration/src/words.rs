@@ -155,29 +155,30 @@ pub(crate) fn beside_unbiased(method: Method, found: &Parameters, fit: &Fit) -> 
     })
 }
 
+/// The samples as vectors from their mean.
+fn centred(cos: &[f64], sin: &[f64]) -> Vec<nalgebra::Vector2<f64>> {
+    let pairs = cos.iter().zip(sin);
+    let all: Vec<_> = pairs.map(|(c, s)| nalgebra::Vector2::new(*c, *s)).collect();
+    let mean = all.iter().sum::<nalgebra::Vector2<f64>>() / all.len() as f64;
+    all.into_iter().map(|y| y - mean).collect()
+}
+
 /// Standard deviation across the samples' main direction over that along it, 0 to 1.
-fn slimness(cos: &[f64], sin: &[f64]) -> f64 {
-    let n = cos.len() as f64;
-    let mean = |v: &[f64]| v.iter().sum::<f64>() / n;
-    let (c0, s0) = (mean(cos), mean(sin));
-    let mut spread = nalgebra::Matrix2::zeros();
-    for (c, s) in cos.iter().zip(sin) {
-        let y = nalgebra::Vector2::new(c - c0, s - s0);
-        spread += y * y.transpose();
-    }
+fn slimness(centred: &[nalgebra::Vector2<f64>]) -> f64 {
+    let spread: nalgebra::Matrix2<f64> = centred.iter().map(|y| y * y.transpose()).sum();
     let values = spread.symmetric_eigenvalues();
     (values.min().max(0.0) / values.max().max(f64::MIN_POSITIVE)).sqrt()
 }
 
 /// At how many places of the period the samples stand, seen from their mean: clusters that are a gap of 20° and more apart. A cloud
 /// about its mean, and an arc, have one.
-fn places(cos: &[f64], sin: &[f64]) -> usize {
+fn places(centred: &[nalgebra::Vector2<f64>]) -> usize {
     /// Degrees.
     const GAP: f64 = 20.0;
-    let n = cos.len() as f64;
-    let (c0, s0) = (cos.iter().sum::<f64>() / n, sin.iter().sum::<f64>() / n);
-    let angle = |(c, s): (&f64, &f64)| (s - s0).atan2(c - c0).to_degrees();
-    let mut angles: Vec<f64> = cos.iter().zip(sin).map(angle).collect();
+    let mut angles: Vec<f64> = centred
+        .iter()
+        .map(|y| y.y.atan2(y.x).to_degrees())
+        .collect();
     angles.sort_by(f64::total_cmp);
     let around = angles
         .first()
@@ -195,26 +196,29 @@ fn places(cos: &[f64], sin: &[f64]) -> usize {
 pub(crate) fn of_nothing(cos: &[f64], sin: &[f64], why: &Error) -> String {
     /// Slimmer than this is a line, rounder a cloud.
     const LINE: f64 = 0.4;
-    let (slimness, places) = (slimness(cos, sin), places(cos, sin));
-    let seen = match why {
-        Error::NoEllipse if places > 2 => {
-            return format!(
-                "a_c, b_c, a_s, b_s, beta, theta: the samples stand at {places} places of the period only, which is too few: the speed \
-                 was exactly {places} samples a period; record at another speed; the values are half the sums and differences of \
-                 the extremes"
-            );
-        }
-        Error::NoEllipse if slimness < LINE => {
+    const MOVE: &str = "move the scale by a period or more while recording";
+    let centred = centred(cos, sin);
+    let (slimness, places) = (slimness(&centred), places(&centred));
+    let (seen, advice) = match why {
+        Error::NoEllipse if places > 2 => (
+            format!(
+                "the samples stand at {places} places of the period only, which is too few: the speed was exactly {places} \
+                 samples a period"
+            ),
+            "record at another speed",
+        ),
+        Error::NoEllipse if slimness < LINE => (
             "the samples lie on a line within their noise: the arc is too short, or both channels carry one signal"
-                .into()
-        }
-        Error::NoEllipse => {
-            "the samples are a cloud and no ring: the scale stands still, or the signals are no sin/cos pair".into()
-        }
-        other => other.to_string(),
+                .into(),
+            MOVE,
+        ),
+        Error::NoEllipse => (
+            "the samples are a cloud and no ring: the scale stands still, or the signals are no sin/cos pair".into(),
+            MOVE,
+        ),
+        other => (other.to_string(), MOVE),
     };
     format!(
-        "a_c, b_c, a_s, b_s, beta, theta: {seen}; move the scale by a period or more while recording; the values are \
-         half the sums and differences of the extremes"
+        "a_c, b_c, a_s, b_s, beta, theta: {seen}; {advice}; the values are half the sums and differences of the extremes"
     )
 }

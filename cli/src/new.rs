@@ -8,7 +8,7 @@ use anyhow::{Context, Result, bail};
 use clap::Args;
 use nonius_model::design::{Design, DesignError};
 use nonius_model::spec::Spec;
-use nonius_package::engineering;
+use nonius_package::{digits, engineering};
 use nonius_recording::{AdcSource, Recording, Survey};
 
 use crate::recording_args::RecordingArgs;
@@ -144,12 +144,6 @@ fn rounded_up(value: f64) -> f64 {
 /// Four digits.
 fn short(value: f64) -> f64 {
     digits(value, 4)
-}
-
-/// So many digits, and no zeros behind them when it is written.
-fn digits(value: f64, n: usize) -> f64 {
-    let after = n - 1;
-    format!("{value:.after$e}").parse().unwrap_or(value)
 }
 
 fn plain(name: &str) -> Draft {

@@ -261,10 +261,11 @@ fn holds(
     if !basis.is_empty() {
         stand_beside(system, &mut named, others, same);
     }
-    let own = sure(system, &named[fit.shapes.len()..]);
-    let held = Beside::new(&system.total, &sure(system, &fit.shapes))
-        .gain(&own)
-        .0;
+    let gained = |system: &System, shapes: &[Shape]| {
+        let beside = Beside::new(&system.total, &sure(system, &fit.shapes));
+        beside.gain(&sure(system, shapes)).0
+    };
+    let held = gained(system, &named[fit.shapes.len()..]);
     let beside = Beside::new(&system.total, &sure(system, &named));
     let share = share(held, beside.gain(&sure(system, basis)));
     if share < HOLDS {
@@ -282,10 +283,7 @@ fn holds(
     let library = &mut system.samples.library;
     let around = generic::around(system.context, &best.candidate, library);
     let steady = generic::steady(system.context, &best.candidate, library);
-    let own = sure(system, &best.candidate.shapes);
-    let held = Beside::new(&system.total, &sure(system, &fit.shapes))
-        .gain(&own)
-        .0;
+    let held = gained(system, &best.candidate.shapes);
     let [known, free, any] = [&named, &steady, &around].map(|list| sure(system, list));
     let atoms = atoms_of(&[known.as_slice(), &any, &free].concat());
     let whole = system.among(&atoms);

@@ -76,6 +76,16 @@ fn gain_of(system: &System, found: &Selection, own: &[usize]) -> f64 {
     gain(&found.fit.shapes) - gain(&others)
 }
 
+/// What is taken back, and why; `gain` is what its name explained.
+fn unnamed(domain: Domain, nearest: &str, gain: f64, but: &str) -> Unnamed {
+    let nearest = nearest.replace('_', " ");
+    Unnamed {
+        log_p: -gain,
+        gain,
+        signature: format!("{}; nearest likeness: {nearest}, but {but}", lives(domain)),
+    }
+}
+
 /// More of a domain is left than its names may leave.
 fn too_much_left(
     system: &System,
@@ -88,16 +98,10 @@ fn too_much_left(
     let beyond = beside.gain(&system.sure(catalogue.basis(domain)));
     let gain = gain_of(system, found, own);
     let share = share(gain, beyond);
-    let nearest = found.accepted[own[0]].candidate.name.replace('_', " ");
-    (share < HOLDS).then(|| Unnamed {
-        log_p: -gain,
-        gain,
-        signature: format!(
-            "{}; nearest likeness: {nearest}, but it holds {:.0} % of what any shape there explains",
-            lives(domain),
-            share.max(0.0) * 100.0
-        ),
-    })
+    let held = share.max(0.0) * 100.0;
+    let but = format!("it holds {held:.0} % of what any shape there explains");
+    let nearest = found.accepted[own[0]].candidate.name;
+    (share < HOLDS).then(|| unnamed(domain, nearest, gain, &but))
 }
 
 /// Static errors of another kind that are a small part of the strongest.
@@ -114,17 +118,12 @@ fn leftovers(system: &System, found: &mut Selection, own: &[usize]) -> Option<Un
     for j in &small {
         found.accepted[own[*j]].doubted = true;
     }
-    Some(Unnamed {
-        log_p: -gains[first],
-        gain: gains[first],
-        signature: format!(
-            "{}; nearest likeness: {}, but it is {:.1} % of what {} explains, whose model may leave as much",
-            lives(Domain::Angle),
-            nearest.replace('_', " "),
-            100.0 * gains[first] / gains[strongest],
-            name.replace('_', " ")
-        ),
-    })
+    let but = format!(
+        "it is {:.1} % of what {} explains, whose model may leave as much",
+        100.0 * gains[first] / gains[strongest],
+        name.replace('_', " ")
+    );
+    Some(unnamed(Domain::Angle, nearest, gains[first], &but))
 }
 
 /// Takes names of static errors back that are smaller than the error that a stuck bit or coarse steps make in the codes:
@@ -150,13 +149,7 @@ pub(crate) fn beside_codes(system: &System, found: &mut Selection, digital: &[Fi
             found.accepted[i].doubted = true;
         }
     }
-    found.unnamed.extend(first.map(|(name, gain)| Unnamed {
-        log_p: -gain,
-        gain,
-        signature: format!(
-            "{}; nearest likeness: {}, but the codes themselves are off by more",
-            lives(Domain::Angle),
-            name.replace('_', " ")
-        ),
-    }));
+    let but = "the codes themselves are off by more";
+    let taken = first.map(|(name, gain)| unnamed(Domain::Angle, name, gain, but));
+    found.unnamed.extend(taken);
 }

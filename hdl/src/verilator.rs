@@ -27,7 +27,8 @@ pub enum Effort {
 }
 
 impl Effort {
-    /// What is quicker in all for so many rows of vectors: at a hundred thousand -O0 is 21 s in all, -O3 39 s.
+    /// What is quicker in all for so many rows of vectors: up to some hundred thousand an optimised build takes longer than the run it
+    /// saves.
     pub fn for_rows(rows: u64) -> Effort {
         if rows < 200_000 {
             Effort::QuickBuild

@@ -99,22 +99,12 @@ impl<S: Signal> Chip<S> {
 
 /// The accumulator whose value a register of the recall remembers.
 fn remembered(name: &str) -> Option<&'static str> {
-    const THETA: [&str; 9] = [
-        "theta_1_deviation",
-        "theta_2_deviation",
-        "theta_3_deviation",
-        "theta_4_deviation",
-        "theta_5_deviation",
-        "theta_6_deviation",
-        "theta_7_deviation",
-        "theta_8_deviation",
-        "theta_9_deviation",
-    ];
     let of = name
         .strip_prefix("recent_")
         .or_else(|| name.strip_prefix("proven_"))?;
-    let i: usize = of.parse().ok()?;
-    THETA.get(i.checked_sub(1)?).copied()
+    let theta = format!("theta_{of}_deviation");
+    let values = State::<Bits>::VALUES.iter();
+    values.copied().find(|value| *value == theta)
 }
 
 /// Which registers this structure has.
@@ -123,7 +113,7 @@ pub fn registers(structure: &Structure) -> (Vec<&'static str>, Vec<&'static str>
     let one = structure.method == crate::kernel::Method::One;
     let two_products = structure.method != crate::kernel::Method::Two;
     let exact = structure.parameters > 0 && structure.gradient == CalibrationMethod::Exact;
-    let of_search = |name: &str| match name {
+    let is_used = |name: &str| match name {
         "alpha_hat_previous" => one,
         "rate" => !one,
         "error_previous" => structure.method != crate::kernel::Method::Two,
@@ -140,7 +130,7 @@ pub fn registers(structure: &Structure) -> (Vec<&'static str>, Vec<&'static str>
         "theta_9_deviation" | "null_gradient" | "null_gradient_rate" | "travel_samples"
         | "moving" => structure.completion.is_some(),
         "start_periods" => structure.least_squares_start,
-        "returning" => structure.recall && structure.parameters >= 4,
+        "returning" => structure.recall,
         "null_gradient_error" => structure.completion.is_some() && two_products,
         name if name.starts_with("alpha_gradient") => {
             let phase = name.ends_with('5');
@@ -152,11 +142,11 @@ pub fn registers(structure: &Structure) -> (Vec<&'static str>, Vec<&'static str>
         name if name.starts_with("gathered") => structure.gathers(),
         _ => true,
     };
-    let used = |name: &str| match remembered(name) {
-        Some(theta) => structure.recall && of_search(theta),
-        None => of_search(name),
+    let kept = |name: &str| match remembered(name) {
+        Some(theta) => structure.recall && is_used(theta),
+        None => is_used(name),
     };
-    let keep = |names: &[&'static str]| names.iter().copied().filter(|n| used(n)).collect();
+    let keep = |names: &[&'static str]| names.iter().copied().filter(|n| kept(n)).collect();
     (keep(State::<Bits>::VALUES), keep(State::<Bits>::FLAGS))
 }
 

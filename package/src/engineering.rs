@@ -1,10 +1,17 @@
 //! Numbers as engineers write them.
 
+/// So many digits, and no zeros behind them when it is written.
+#[must_use]
+pub fn digits(value: f64, n: usize) -> f64 {
+    let after = n.saturating_sub(1);
+    format!("{value:.after$e}").parse().unwrap_or(value)
+}
+
 /// A number with three digits and a prefix.
 #[must_use]
 pub fn engineering(value: f64, unit: &str) -> String {
     // Rounded first: 999.96 is 1.00 k.
-    let value: f64 = format!("{value:.2e}").parse().unwrap_or(value);
+    let value = digits(value, 3);
     if value == 0.0 || !value.is_finite() {
         return format!("{value} {unit}");
     }

@@ -17,7 +17,7 @@ mod tracking;
 mod write;
 
 pub use design_json::DesignJson;
-pub use engineering::engineering;
+pub use engineering::{digits, engineering};
 pub use pull_in::{BOTH_WAYS, PullIn, Worst, pull_in};
 pub use signals::{Signal, signals};
 pub use simulation::{Accuracy, Simulation, simulate};

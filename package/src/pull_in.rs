@@ -8,6 +8,7 @@ use nonius_model::spec::Spec;
 use rayon::prelude::*;
 use serde::Serialize;
 
+use crate::engineering::digits;
 use crate::sensor::{Sensor, Shares};
 
 /// How the chip pulls in from power-up, with every promised error at either end of its range and the promised noise.
@@ -94,7 +95,7 @@ impl fmt::Display for Worst {
                 self.bends[0], self.bends[1]
             )?;
         }
-        write!(f, ", at {} periods/s", short(self.speed_periods_per_s))
+        write!(f, ", at {} periods/s", digits(self.speed_periods_per_s, 3))
     }
 }
 
@@ -112,10 +113,9 @@ pub fn pull_in(design: &Design, parts: &[f64]) -> PullIn {
         .map(|start| samples_to_lock(design, start))
         .collect();
     let starts_each = each.len() / sensors as usize;
-    let failed = |all: &[Option<u64>]| all.iter().filter(|found| found.is_none()).count();
     let (mut not_locked, mut worst): (u32, Option<Worst>) = (0, None);
     for (starts, found) in each.chunks(starts_each).zip(found.chunks(starts_each)) {
-        let count = failed(found) as u32;
+        let count = found.iter().filter(|found| found.is_none()).count() as u32;
         let first = starts.iter().zip(found).find(|(_, found)| found.is_none());
         if let Some((first, _)) = first {
             not_locked += 1;
@@ -234,11 +234,6 @@ impl Worst {
     }
 }
 
-/// Three digits.
-fn short(value: f64) -> f64 {
-    format!("{value:.2e}").parse().unwrap_or(value)
-}
-
 /// The largest promise and the largest speed, by tenths, of which every sensor locks.
 fn remedies(spec: &Spec, parts: &[f64]) -> Vec<String> {
     let tenths = [0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3, 0.2, 0.1];
@@ -250,7 +245,7 @@ fn remedies(spec: &Spec, parts: &[f64]) -> Vec<String> {
             &mut s.offset_max,
             &mut s.phase_error_max_deg,
         ] {
-            *error = short(*error * tenth);
+            *error = digits(*error * tenth, 3);
         }
         let text = format!(
             "sensor.amplitude_tolerance = {}, sensor.offset_max = {} and sensor.phase_error_max_deg = {}",
@@ -261,7 +256,7 @@ fn remedies(spec: &Spec, parts: &[f64]) -> Vec<String> {
     let slower = |tenth: f64| {
         let mut slower = spec.clone();
         let top = &mut slower.sensor.speed_max_periods_per_s;
-        *top = short(*top * tenth);
+        *top = digits(*top * tenth, 3);
         let text = format!("sensor.speed_max_periods_per_s = {}", *top);
         (slower, text)
     };

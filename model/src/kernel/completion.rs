@@ -5,6 +5,7 @@
 //! cannot tell from motion. Hence the gate: whole periods of net travel must follow one another fast enough. Standstill,
 //! slow motion and vibration, however fast, rest, and so does a sample whose |e| is more than a sensor's error: a stop or a start.
 
+use super::detector::within;
 use super::sensitivity::{self, Sensitivity};
 use super::travel::Travel;
 use super::{Coefficients, State, Structure};
@@ -35,9 +36,9 @@ pub struct Completion<S: Signal> {
     pub moving: S::Bool,
 }
 
-/// The completion of this sample; `w` is sin α̂ cos α̂, `open` says that the loop follows.
+/// The completion of this sample; `w` is sin α̂ cos α̂, `open` says that samples count and parameters may move.
 pub fn complete<S: Signal>(
-    (w, e): (S, S),
+    (w, e, rho): (S, S, S),
     open: S::Bool,
     counting: S::Bool,
     travel: &Travel<S>,
@@ -68,7 +69,7 @@ pub fn complete<S: Signal>(
         .scale(-gamma)
         .named("gradient_9")
         .quantise(&structure.formats.step);
-    let allowed = state.moving.and(open);
+    let allowed = state.moving.and(follows(e, rho, open, k, structure));
     Completion {
         step: S::select(allowed, step, k.zero).named("step_9"),
         sensitivity,
@@ -76,4 +77,22 @@ pub fn complete<S: Signal>(
             .quantise(&Quantiser::wrapping(structure.formats.travel_samples)),
         moving,
     }
+}
+
+/// The loop follows, on a circle.
+fn follows<S: Signal>(
+    e: S,
+    rho: S,
+    open: S::Bool,
+    k: &Coefficients<S>,
+    structure: &Structure,
+) -> S::Bool {
+    // What fades or is not yet calibrated along the radius teaches nothing across it.
+    let round = open.and(within(rho, k.completion_residual));
+    if structure.filter_type == 1 {
+        // A loop of type 1 always lags.
+        return round;
+    }
+    // Where the loop catches up with motion, e is no error of the sensor.
+    round.and(within(e, k.completion_error))
 }

@@ -39,14 +39,14 @@ pub struct Gears<S: Signal> {
     pub periods: S,
     /// The periods of this gear have passed without a large residual.
     pub passed: S::Bool,
+    /// The search begins again.
+    pub restart: S::Bool,
     /// The residual was large in the running period.
     pub disturbed: S::Bool,
     /// The radius was too large in the running period.
     pub risen: S::Bool,
     /// The residual was large in the last period.
     pub held: S::Bool,
-    /// Where there is recall: parameters were recalled, and the periods of a gear have not passed quietly since.
-    pub returning: Option<S::Bool>,
 }
 
 /// What the residual of a sample says about the ones that follow.
@@ -82,20 +82,27 @@ pub fn hold<S: Signal>(
         .and(counted)
         .named("residual_large");
     let suspect = large.or(state.disturbed).or(state.held).or(follows.not());
-    let held = |suspect: S::Bool| suspect.and(settled).named("hold");
-    let (held, recall) = if structure.recall {
-        let held = held(suspect.or(state.returning));
-        let last = state.gamma_gear.less_than(k.gamma_gear_last).not();
-        (held, Some(held.and(last).named("recall")))
+    let suspect = if structure.recall {
+        suspect.or(state.returning)
     } else {
-        (held(suspect), None)
+        suspect
     };
+    let held = suspect.and(settled).named("hold");
+    let recall = structure.recall.then(|| {
+        let last = last_gear(state, k);
+        held.and(last).named("recall")
+    });
     Hold {
         large,
         risen: risen.and(counted).named("radius_large"),
         held,
         recall,
     }
+}
+
+/// γ is as small as it becomes.
+fn last_gear<S: Signal>(state: &State<S>, k: &Coefficients<S>) -> S::Bool {
+    state.gamma_gear.less_than(k.gamma_gear_last).not()
 }
 
 /// γ has settled. With fewer gears it never has.
@@ -144,7 +151,7 @@ pub fn gears<S: Signal>(
     let period_format = Quantiser::wrapping(structure.formats.gear_periods);
     let tick = gate.tick;
     let restart = restart(gate, state, k, structure);
-    let last = state.gamma_gear.less_than(k.gamma_gear_last).not();
+    let last = last_gear(state, k);
     let done = state.gear_periods.less_than(k.gear_periods_last).not();
     let done = starting.map_or(done, |starting| done.or(starting));
     let quiet = state.disturbed.or(state.held).not();
@@ -171,13 +178,10 @@ pub fn gears<S: Signal>(
         gear: S::select(restart, k.zero, gear).quantise(&gear_format),
         periods: S::select(again, k.zero, counted).quantise(&period_format),
         passed,
+        restart,
         // Where nothing counts, a new period begins without suspicion.
         disturbed: hold.large.or(state.disturbed.and(within)),
         risen: hold.risen.or(state.risen.and(within)),
         held: held.and(counting),
-        // What comes back over some periods is small again before it is whole.
-        returning: hold
-            .recall
-            .map(|recall| recall.and(passed.or(restart).not())),
     }
 }

@@ -6,6 +6,7 @@
 //! comes back over some periods is nearly whole before it is whole: they stay held until as many quiet periods have passed.
 
 use super::calibration::Update;
+use super::gears::Gears;
 use super::{Coefficients, State, Structure};
 use crate::signal::{Formula, Logic, Signal};
 use crate::spec::CalibrationMethod;
@@ -22,19 +23,22 @@ pub struct Memory<S: Signal> {
     pub recent: [S; 9],
     /// As at the end before it.
     pub proven: [S; 9],
+    /// Parameters were recalled, and the periods of a gear have not passed quietly since.
+    pub returning: S::Bool,
 }
 
-/// Puts proven parameters in the place of the others; `passed`: the periods of a gear have passed quietly.
+/// Puts proven parameters in the place of the others where `recall` says so.
 pub fn recall<S: Signal>(
     updated: &mut Update<S>,
     recall: S::Bool,
-    passed: S::Bool,
+    gears: &Gears<S>,
     state: &State<S>,
     k: &Coefficients<S>,
     structure: &Structure,
 ) -> Memory<S> {
     state.gamma_gear.begin(&RECALL);
     let before = Memory::of(state);
+    let passed = gears.passed;
     updated.theta = std::array::from_fn(|i| S::select(recall, before.proven[i], updated.theta[i]));
     if structure.gradient == CalibrationMethod::SumOfSquares {
         // A mean gradient of the way down would be the first to act on what was recalled.
@@ -46,6 +50,8 @@ pub fn recall<S: Signal>(
     Memory {
         recent: std::array::from_fn(recent),
         proven: std::array::from_fn(|i| S::select(older, before.recent[i], before.proven[i])),
+        // What comes back over some periods is small again before it is whole.
+        returning: recall.and(passed.or(gears.restart).not()),
     }
 }
 
@@ -74,6 +80,7 @@ impl<S: Signal> Memory<S> {
                 state.proven_8,
                 state.proven_9,
             ],
+            returning: state.returning,
         }
     }
 
@@ -101,5 +108,6 @@ impl<S: Signal> Memory<S> {
             next.proven_8,
             next.proven_9,
         ] = self.proven;
+        next.returning = self.returning;
     }
 }

@@ -144,18 +144,9 @@ fn advance_of<S: Signal, const PLAIN: bool>(
     let mut updated = calibration::update::<S, PLAIN>(&seen, gate, state, k, structure);
     let completion = if PLAIN { None } else { structure.completion };
     let completed = completion.map(|_| {
-        // What fades or is not yet calibrated along the radius teaches nothing across it.
-        let open = counting
-            .and(detector::within(rho, k.completion_residual))
-            .and(hold.held.not());
-        // Where the loop catches up with motion, e is no error of the sensor. A loop of type 1 always lags.
-        let open = if structure.filter_type == 1 {
-            open
-        } else {
-            open.and(detector::within(e, k.completion_error))
-        };
-        let w = updated.w_null;
-        completion::complete((w, e), open, counting, &travel, state, k, structure)
+        let open = counting.and(hold.held.not());
+        let seen = (updated.w_null, e, rho);
+        completion::complete(seen, open, counting, &travel, state, k, structure)
     });
     if let Some(completed) = &completed {
         let (old, nominal) = (state.theta_9_deviation, gears::nominal(state, k));
@@ -163,8 +154,8 @@ fn advance_of<S: Signal, const PLAIN: bool>(
     }
     let gears = gears::gears(hold, gate, (counting, starting), state, k, structure);
     let recalled = hold.recall.filter(|_| !PLAIN);
-    let memory = recalled
-        .map(|recall| recall::recall(&mut updated, recall, gears.passed, state, k, structure));
+    let memory =
+        recalled.map(|recall| recall::recall(&mut updated, recall, &gears, state, k, structure));
 
     rate.begin(&FLAGS);
     let lost = state
@@ -216,9 +207,8 @@ fn advance_of<S: Signal, const PLAIN: bool>(
     if !PLAIN {
         remember(registers, &updated, completed.as_ref());
         registers.start_periods = updated.start_periods;
-        if let (Some(memory), Some(returning)) = (memory, gears.returning) {
+        if let Some(memory) = memory {
             memory.keep(registers);
-            registers.returning = returning;
         }
     }
     let [theta_1, theta_2, theta_3, theta_4, theta_5] = theta;

@@ -1,0 +1,346 @@
+//! Single faults in the Verilog, each of one place.
+
+/// The one line that holds all of `words`.
+fn line_with<'a>(verilog: &'a str, words: &[&str]) -> &'a str {
+    let mut lines = verilog
+        .lines()
+        .filter(|line| words.iter().all(|word| line.contains(word)));
+    let found = lines.next();
+    assert!(lines.next().is_none(), "{words:?} stand in two lines");
+    found.unwrap_or_else(|| panic!("no line holds {words:?}"))
+}
+
+fn replaced(verilog: &str, words: &[&str], from: &str, to: &str) -> String {
+    let line = line_with(verilog, words);
+    assert!(line.contains(from), "{from} is not in {line}");
+    verilog.replacen(line, &line.replacen(from, to, 1), 1)
+}
+
+/// The text between `from` and `to` in the one line that holds all of `words`.
+fn between(verilog: &str, words: &[&str], from: &str, to: &str) -> String {
+    let line = line_with(verilog, words);
+    let rest = line.split_once(from).map(|parts| parts.1);
+    let inner = rest.and_then(|rest| rest.split_once(to));
+    inner.unwrap_or_else(|| panic!("{line}")).0.to_owned()
+}
+
+/// The chip that commits some steps late or early.
+fn another_last_step(verilog: &str, by: i32) -> String {
+    let step = between(verilog, &["wire last ="], "5'd", ";");
+    let other = step.parse::<i32>().expect("a number") + by;
+    replaced(verilog, &["wire last ="], &step, &other.to_string())
+}
+
+/// The chip that rounds `name` to the nearest, but exact halves down in place of up.
+fn half_down(verilog: &str, name: &str) -> String {
+    let words = ["wire", &format!(" {name}_rounded =")];
+    let guard = between(verilog, &words, "'b0, ", "};");
+    let (signal, bit) = guard.trim_end_matches(']').split_once('[').expect("a bit");
+    let below = bit.parse::<u32>().expect("a number") - 1;
+    let down = format!("{guard} & (|{signal}[{below}:0])");
+    replaced(
+        verilog,
+        &words,
+        &format!("{guard}}};"),
+        &format!("{down}}};"),
+    )
+}
+
+/// What it is, and how it comes into the Verilog.
+pub(crate) type Fault = (&'static str, Box<dyn Fn(&str) -> String>);
+
+fn fault(name: &'static str, change: fn(&str) -> String) -> Fault {
+    (name, Box::new(change))
+}
+
+/// Of the one line that holds all of `words`, `from` becomes `to`.
+fn swap(
+    name: &'static str,
+    words: &'static [&'static str],
+    from: &'static str,
+    to: &'static str,
+) -> Fault {
+    (name, Box::new(move |v| replaced(v, words, from, to)))
+}
+
+/// Faults in the Verilog, each of one place.
+pub(crate) fn faults() -> Vec<Fault> {
+    vec![
+        swap(
+            "rounding of the phase error: by the wrong bit",
+            &["wire", " e_seen_rounded ="],
+            "e_exact[15]}",
+            "e_exact[14]}",
+        ),
+        swap(
+            "rounding of c: cut off",
+            &["wire", " c_rounded ="],
+            "c_exact[10]",
+            "1'b0",
+        ),
+        swap(
+            "rounding of theta_1: cut off",
+            &["wire", " theta_1_rounded ="],
+            "200 +",
+            "000 +",
+        ),
+        swap(
+            "half of theta_1's last bit rounds down",
+            &["wire", " theta_1_rounded ="],
+            "5000200 +",
+            "50001ff +",
+        ),
+        fault("half of theta_5's last bit rounds down", |v| {
+            half_down(v, "theta_5")
+        }),
+        fault("half of c's last bit rounds down", |v| half_down(v, "c")),
+        fault("half of s's last bit rounds down", |v| half_down(v, "s")),
+        fault("half of e_seen's last bit rounds down", |v| {
+            half_down(v, "e_seen")
+        }),
+        fault("half of rho_c's last bit rounds down", |v| {
+            half_down(v, "rho_c")
+        }),
+        fault("half of rho_s's last bit rounds down", |v| {
+            half_down(v, "rho_s")
+        }),
+        fault("saturation of s: wraps", |v| {
+            let kept = between(v, &["wire", " s_now = "], "? ", " :");
+            let all = between(v, &["wire", " s_now = "], "= ", ";");
+            replaced(v, &["wire", " s_now = "], &all, &kept)
+        }),
+        fault("saturation of theta_2: wraps", |v| {
+            let words = ["wire", " theta_2_deviation_next_bits = "];
+            let kept = between(v, &words, "? ", " :");
+            let all = between(v, &words, "= ", ";");
+            replaced(v, &words, &all, &kept)
+        }),
+        swap(
+            "saturation of theta_4: at the other end",
+            &["wire", " theta_4_deviation_next_bits = "],
+            "{24{~",
+            "{24{",
+        ),
+        swap(
+            "sign extension of a product",
+            &["wire", " sin_magnitude_sum ="],
+            "{{7{sin_slope_times_sin_inside[24]}}",
+            "{7'b0",
+        ),
+        swap(
+            "sign extension of the speed",
+            &["wire", " alpha_hat_sum ="],
+            "{{3{speed[25]}}",
+            "{3'b0",
+        ),
+        swap(
+            "logical shift in place of the arithmetic one",
+            &["wire", " kick_shifted ="],
+            ">>>",
+            ">>",
+        ),
+        fault("latency: one clock more", |v| another_last_step(v, 1)),
+        fault("latency: a register committed one step early", |v| {
+            another_last_step(v, -1)
+        }),
+        swap(
+            "a chip that does not wait for samples",
+            &["wire start ="],
+            " & sample_valid",
+            "",
+        ),
+        swap(
+            "a sample that an early strobe begins anew",
+            &["wire start ="],
+            "(step == 5'd0) & sample_valid",
+            "sample_valid",
+        ),
+        swap(
+            "valid longer than a clock",
+            &["valid <= last"],
+            "last",
+            "last | (valid & (step == 5'd0) & ~sample_valid)",
+        ),
+        swap(
+            "a step counter that runs by itself",
+            &["else if (start |"],
+            "else if (start | (step != 5'd0))",
+            "else",
+        ),
+        swap(
+            "last bit of the coefficient a",
+            &["operand_", "sh1cf1c"],
+            "sh1cf1c",
+            "sh1cf1d",
+        ),
+        swap(
+            "last bit of the coefficient a + b",
+            &["operand_", "sh13b1b"],
+            "sh13b1b",
+            "sh13b1a",
+        ),
+        swap(
+            "last bit of the lock limit",
+            &["wire in_window_now ="],
+            "6'sd7",
+            "6'sd8",
+        ),
+        swap(
+            "last bit of the limit that begins again",
+            &["wire residual_large_condition_7_now ="],
+            "< 4'sd1)",
+            "< 4'sd2)",
+        ),
+        swap(
+            "last bit of the limit that holds",
+            &["wire residual_large_condition_3_now ="],
+            "~rho_now[17:12]) < 6'sd1)",
+            "~rho_now[17:12]) < 6'sd2)",
+        ),
+        swap(
+            "direction forwards from twice the speed on",
+            &["wire speed_below_direction_rate_now ="],
+            "< 15'sd1;",
+            "< 15'sd2;",
+        ),
+        swap(
+            "sectors counted again by turning back behind",
+            &["wire sector_behind_condition_now ="],
+            " & behind_used",
+            " & 1'b0",
+        ),
+        swap(
+            "sectors counted again by turning back ahead",
+            &["wire sector_ahead_now ="],
+            " & ahead_used",
+            " & 1'b0",
+        ),
+        swap(
+            "turning back that is never forgotten",
+            &["wire behind_used_next_now ="],
+            "(whole_period_now | sector_behind)",
+            "whole_period_now",
+        ),
+        fault(
+            "parameters of the next sample at the ports too early",
+            |v| {
+                let idle = "if (start) begin\n            upper_half <=";
+                assert_eq!(v.matches(idle).count(), 1);
+                v.replace(idle, &idle.replace("start", "step == 5'd0"))
+            },
+        ),
+        fault("a stale operand", |v| {
+            let forwarded = |line: &&str| line.contains("operand_") && line.ends_with("_now;");
+            let line = v.lines().find(forwarded).expect("a forwarded operand");
+            v.replacen(line, &line.replace("_now;", ";"), 1)
+        }),
+    ]
+}
+
+/// Faults in the correction of channel skew.
+pub(crate) fn skew_faults() -> Vec<Fault> {
+    vec![
+        swap(
+            "skew taken the other way round",
+            &["wire", " s_difference_now ="],
+            "} - {{",
+            "} + {{",
+        ),
+        swap(
+            "half of the skew's product left out of the second order",
+            &["wire", " s_between_rounded ="],
+            "} - {{",
+            "} + {{",
+        ),
+        swap(
+            "skew before lock",
+            &["wire", " skew_chosen ="],
+            "locked ?",
+            "1'b1 ?",
+        ),
+        swap(
+            "phase of the sensor with the wrong sign",
+            &["wire", " skew_slope_difference_now ="],
+            " - ",
+            " + ",
+        ),
+    ]
+}
+
+/// Faults in the correction of stored harmonics.
+pub(crate) fn harmonic_faults() -> Vec<Fault> {
+    vec![
+        swap(
+            "harmonics of the cosine added",
+            &["wire", " c_difference ="],
+            "} - {{",
+            "} + {{",
+        ),
+        swap(
+            "harmonics of the sine added",
+            &["wire", " s_difference_2_now ="],
+            "} - {{",
+            "} + {{",
+        ),
+        swap(
+            "phase correction of the harmonics the other way round",
+            &["wire", " s_rounded ="],
+            "} - {{",
+            "} + {{",
+        ),
+        swap(
+            "second order of the phase correction with the wrong sign",
+            &["wire", " harmonic_through ="],
+            "} + {{",
+            "} - {{",
+        ),
+        swap(
+            "expanded about the segment's beginning",
+            &["wire", " harmonic_inside_now ="],
+            "'sh400;",
+            "'sh000;",
+        ),
+    ]
+}
+
+/// Faults in the recall.
+pub(crate) fn recall_faults() -> Vec<Fault> {
+    vec![
+        swap(
+            "recall before the last gear",
+            &["wire recall_now ="],
+            " & recall_condition",
+            "",
+        ),
+        swap(
+            "recall of what is recent",
+            &["wire", " theta_2_deviation_next ="],
+            "recall ? proven_2",
+            "recall ? recent_2",
+        ),
+        swap(
+            "no recall of the phase",
+            &["wire", " theta_5_deviation_next ="],
+            "recall ?",
+            "1'b0 ?",
+        ),
+        swap(
+            "what is recent is proven in recall",
+            &["wire remember_now ="],
+            " & ~recall_now",
+            "",
+        ),
+        swap(
+            "held for a period only",
+            &["wire returning_next_now ="],
+            "recall_now &",
+            "1'b0 &",
+        ),
+        swap(
+            "quiet periods counted from before the loss",
+            &["wire gear_periods_again ="],
+            " | travel_clear_condition",
+            "",
+        ),
+    ]
+}
