@@ -79,64 +79,94 @@ struct Seen {
     back: u32,
 }
 
-/// Calibrates for 300 periods of travel, loses the signal and watches it come back.
-fn watch(spec: &Spec, loss: Loss, seed: u32) -> Seen {
+/// A chip that has calibrated for 300 periods of travel.
+#[derive(Clone)]
+struct Settled<F> {
+    bench: Bench,
+    signals: F,
+    /// Samples, and travel.
+    samples: u32,
+    turns: f64,
+    /// The parameters, their miscalibration, and the largest in the last hundred periods.
+    theta: [Bits; 5],
+    now: f64,
+    before: f64,
+}
+
+fn settled(spec: &Spec, seed: u32) -> Settled<impl Fn(f64) -> (f64, f64) + Clone + use<>> {
     // What is not calibrated would hide the rest.
     let beta = if matches!(spec.calibration.parameters, 5 | 9) {
         5.0
     } else {
         0.0
     };
-    let signals = sensor_of(seed, beta);
-    let mut bench = Bench::new(spec, u64::from(seed));
-    // At another place of the period each time.
-    let settled = 300 * PERIOD + 83 * seed % PERIOD;
-    let back = settled + loss.samples();
-    let end = back + AFTER * PERIOD;
-    let mut turns = 0.0;
-    let mut seen = Seen {
+    let bench = Bench::new(spec, u64::from(seed));
+    let mut all = Settled {
+        theta: linear(&bench),
+        bench,
+        signals: sensor_of(seed, beta),
+        // At another place of the period each time.
+        samples: 300 * PERIOD + 83 * seed % PERIOD,
+        turns: 0.0,
+        now: 0.0,
         before: 0.0,
+    };
+    for k in 0..all.samples {
+        all.bench.step((all.signals)(TAU * all.turns));
+        all.turns += 1.0 / f64::from(PERIOD);
+        if k > all.samples - 100 * PERIOD {
+            all.look(k);
+            all.before = all.before.max(all.now);
+        }
+    }
+    all
+}
+
+impl<F: Fn(f64) -> (f64, f64)> Settled<F> {
+    /// The miscalibration where it may have changed.
+    fn look(&mut self, k: u32) {
+        if k.is_multiple_of(PERIOD) || linear(&self.bench) != self.theta {
+            self.theta = linear(&self.bench);
+            self.now = largest(&self.bench.miscalibration_at(72, &self.signals));
+        }
+    }
+}
+
+/// Loses the signal and watches it come back.
+fn watch<F: Fn(f64) -> (f64, f64) + Clone>(settled: &Settled<F>, loss: Loss) -> Seen {
+    let mut all = settled.clone();
+    let back = all.samples + loss.samples();
+    let end = back + AFTER * PERIOD;
+    let mut seen = Seen {
+        before: all.before,
         worst: 0.0,
         after: 0.0,
         end: 0.0,
         back: 0,
     };
-    let (mut theta, mut now) = (linear(&bench), 0.0f64);
-    for k in 0..end {
-        let (c, s) = signals(TAU * turns);
-        let lost = k >= settled;
-        let [left_c, left_s] = if lost {
-            loss.left(k - settled)
-        } else {
-            [1.0; 2]
-        };
-        bench.step((left_c * c, left_s * s));
-        let speed = if loss.moves || k < settled {
+    for k in all.samples..end {
+        let (c, s) = (all.signals)(TAU * all.turns);
+        let [left_c, left_s] = loss.left(k - all.samples);
+        all.bench.step((left_c * c, left_s * s));
+        let speed = if loss.moves {
             1.0
         } else {
             (f64::from(k.saturating_sub(back + 500)) / 2000.0).min(1.0)
         };
-        turns += speed / f64::from(PERIOD);
-        if k > settled - 100 * PERIOD && (k % PERIOD == 0 || linear(&bench) != theta) {
-            theta = linear(&bench);
-            now = largest(&bench.miscalibration_at(72, &signals));
-        }
-        if lost {
-            seen.worst = seen.worst.max(now);
-        } else {
-            seen.before = seen.before.max(now);
-        }
+        all.turns += speed / f64::from(PERIOD);
+        all.look(k);
+        seen.worst = seen.worst.max(all.now);
         if k >= back {
-            seen.after = seen.after.max(now);
+            seen.after = seen.after.max(all.now);
         }
-        if k >= back && now > 2.0 * seen.before {
+        if k >= back && all.now > 2.0 * seen.before {
             seen.back = (k - back) / PERIOD + 1;
         }
         if k >= end - 10 * PERIOD {
-            seen.end = seen.end.max(now);
+            seen.end = seen.end.max(all.now);
         }
     }
-    assert!(bench.chip.state.locked, "{loss:?}: no lock again");
+    assert!(all.bench.chip.state.locked, "{loss:?}: no lock again");
     seen
 }
 
@@ -146,20 +176,32 @@ const FADES: [u32; 3] = [3, 10, 33];
 /// Both channels, or one.
 const CHANNELS: [[f64; 2]; 3] = [[1.0, 1.0], [1.0, 0.0], [0.0, 1.0]];
 
-/// The worst that a loss of both channels, or of either, does.
-fn worst(variant: &Variant, fade: [u32; 2], moves: bool) -> Seen {
-    let mut seen = (0..).zip(CHANNELS).map(|(i, lost)| {
-        let loss = Loss { lost, fade, moves };
-        watch(&variant.spec, loss, 3 * i)
-    });
-    let first = seen.next().expect("there are channels");
-    seen.fold(first, |a, b| Seen {
-        before: a.before.max(b.before),
-        worst: a.worst.max(b.worst),
-        after: a.after.max(b.after),
-        end: a.end.max(b.end),
-        back: a.back.max(b.back),
-    })
+/// The worst that a loss of both channels, or of either, does to a search.
+fn worst_of(spec: &Spec) -> impl Fn([u32; 2], bool) -> Seen {
+    let settled: Vec<_> = (0..)
+        .zip(CHANNELS)
+        .map(|(i, lost)| (settled(spec, 3 * i), lost))
+        .collect();
+    move |fade, moves| {
+        let seen = settled.iter().map(|(from, lost)| {
+            watch(
+                from,
+                Loss {
+                    lost: *lost,
+                    fade,
+                    moves,
+                },
+            )
+        });
+        seen.reduce(|a, b| Seen {
+            before: a.before.max(b.before),
+            worst: a.worst.max(b.worst),
+            after: a.after.max(b.after),
+            end: a.end.max(b.end),
+            back: a.back.max(b.back),
+        })
+        .expect("there are channels")
+    }
 }
 
 const HEAD: &str = "\
@@ -193,11 +235,12 @@ fn the_signal_goes_and_comes_back() {
 fn row(variant: &Variant) -> String {
     let parameters = variant.spec.calibration.parameters;
     let name = format!("{}, {parameters}", variant.what);
-    let at_once = worst(variant, [0, 0], true);
-    let standing = worst(variant, [0, 0], false);
-    let third = worst(variant, [PERIOD / 3; 2], true);
-    let longer = FADES.map(|n| worst(variant, [n * PERIOD; 2], true));
-    let longest = worst(variant, [100 * PERIOD, 0], true);
+    let worst = worst_of(&variant.spec);
+    let at_once = worst([0, 0], true);
+    let standing = worst([0, 0], false);
+    let third = worst([PERIOD / 3; 2], true);
+    let longer = FADES.map(|n| worst([n * PERIOD; 2], true));
+    let longest = worst([100 * PERIOD, 0], true);
     println!("{name}: {at_once:?} {standing:?} {third:?} {longer:?} {longest:?}");
     for seen in [at_once, standing, third] {
         assert!(seen.worst < 1.5 * seen.before + 2e-4, "{name}: {seen:?}");
@@ -210,7 +253,8 @@ fn row(variant: &Variant) -> String {
     }
     let mut recalling = variant.clone();
     recalling.spec.calibration.recall = true;
-    let recalled = FADES.map(|n| worst(&recalling, [n * PERIOD; 2], true));
+    let recalling = worst_of(&recalling.spec);
+    let recalled = FADES.map(|n| recalling([n * PERIOD; 2], true));
     println!("{name}, recall: {recalled:?}");
     for seen in recalled {
         assert!(seen.after < 1.5 * seen.before, "{name}, recall: {seen:?}");

@@ -158,7 +158,7 @@ pub(crate) fn sensor(signs: u32) -> impl Fn(f64) -> (f64, f64) {
 }
 
 /// The same with another β, degrees.
-pub(crate) fn sensor_of(signs: u32, beta: f64) -> impl Fn(f64) -> (f64, f64) {
+pub(crate) fn sensor_of(signs: u32, beta: f64) -> impl Fn(f64) -> (f64, f64) + Clone {
     let sign = move |bit: u32| if signs >> bit & 1 == 0 { 1.0 } else { -1.0 };
     let ratio = 1.2f64.powf(0.5 * sign(0));
     let beta = beta.to_radians() * sign(3);
