@@ -5,7 +5,7 @@ use std::io::Read;
 use std::path::Path;
 
 use anyhow::{Context, Result, anyhow, bail};
-use nonius_model::design::{Design, DesignError};
+use nonius_model::design::Design;
 use nonius_model::spec::{Place, Spec};
 
 /// A design is a page of text; what is longer is something else.
@@ -21,10 +21,7 @@ pub(crate) fn read_with_text(path: &Path) -> Result<(Design, String)> {
     let file = path.display().to_string();
     let text = text(path, &file)?;
     let design = Design::new(&Spec::from_toml(&text, &file)?).map_err(|error| {
-        let place = match &error {
-            DesignError::Field { field, .. } => place(path, &text, field),
-            DesignError::Range(_) => file.clone(),
-        };
+        let place = place(path, &text, error.field());
         anyhow!("{place}: {error}")
     })?;
     Ok((design, text))

@@ -384,6 +384,8 @@ impl Draft {
         );
         out += "\n[chip]\n";
         out += &line("multipliers", "1".into(), "1, 2, ... or \"all\"");
+        out += "\n# [formats]                             # any word length in place of the chosen one: see\n";
+        out += "# signal_fraction = 16                  # budget.words of design.json for keys, values and limits\n";
         out
     }
 }

@@ -152,10 +152,12 @@ fn convert(
             (term.range.1 + offset) >> drop,
         );
         let bits = covering(range.0, range.1);
-        let below = w.slice(&term, half, half);
+        // Above its own bits the sign goes on.
+        let top = term.width - 1;
+        let below = w.slice(&term, half.min(top), half.min(top));
         let whole = Term {
-            source: Source::Signal(source.clone(), base + drop),
-            width: term.width - drop,
+            source: Source::Signal(source.clone(), base + drop.min(top)),
+            width: term.width.saturating_sub(drop).max(1),
             fraction: term.fraction - drop,
             range: (term.range.0 >> drop, term.range.1 >> drop),
         };

@@ -247,7 +247,11 @@ impl<'a> Writer<'a> {
             let half = half.map_or(0, |h| 1i128 << h);
             return literal((raw << zeros) + half, bits);
         }
-        let own = term.width.min(bits - zeros.min(bits - 1));
+        if zeros >= bits {
+            // Nothing of it is left.
+            return literal(half.map_or(0, |h| 1i128 << h), bits);
+        }
+        let own = term.width.min(bits - zeros);
         let copies = bits - zeros - own;
         let mut parts = vec![];
         if copies > 0 {

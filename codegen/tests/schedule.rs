@@ -5,9 +5,11 @@ mod shipped;
 
 use nonius_codegen::evaluate::evaluate;
 use nonius_codegen::schedule::schedule;
+use nonius_model::design::Design;
 use nonius_model::graph::{Evaluation, Graph};
+use nonius_model::spec::Overrides;
 use rand::{Rng, SeedableRng, rngs::StdRng};
-use shipped::variants::kinds;
+use shipped::variants::{self, kinds};
 
 #[test]
 fn scheduled_graph_equals_recorded_graph() {
@@ -37,6 +39,40 @@ fn scheduled_equals_recorded(kind: &str, graph: &Graph, random: &mut StdRng) {
             }
         }
     }
+}
+
+/// Whatever word is said, the shortest and the longest of each: the schedule computes the graph, and the Verilog is written.
+#[test]
+fn chips_of_other_words_are_scheduled_and_written() {
+    let mut random = StdRng::seed_from_u64(8);
+    let mut chips = kinds();
+    chips.extend(variants::poles().into_iter().take(1));
+    chips.extend(variants::skewed().into_iter().take(1));
+    chips.extend(variants::harmonics().into_iter().take(1));
+    let mut done = std::collections::BTreeSet::new();
+    for chip in chips {
+        for word in chip.design().word_lengths() {
+            let key = word.key.strip_prefix("formats.").expect("of [formats]");
+            // Each word in one chip that has it.
+            if !done.insert(key.to_owned()) {
+                continue;
+            }
+            let mut built = 0;
+            for value in [word.lowest, word.highest] {
+                let mut spec = chip.spec.clone();
+                assert!(spec.formats.set(key, Some(value)));
+                let Ok(design) = Design::new(&spec) else {
+                    continue;
+                };
+                built += 1;
+                let what = format!("{}, {key} = {value}", chip.what);
+                scheduled_equals_recorded(&what, &design.graph, &mut random);
+                nonius_codegen::generate(&design, "0", &[]).expect("Verilog");
+            }
+            assert!(built > 0, "{}: {key}", chip.what);
+        }
+    }
+    assert_eq!(done.len(), Overrides::KEYS.len());
 }
 
 #[test]

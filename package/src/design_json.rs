@@ -1,6 +1,6 @@
 //! `design.json`: every number that was derived.
 
-use nonius_model::design::Design;
+use nonius_model::design::{Design, Word};
 use nonius_model::physical::{metres, radians_of_revolution};
 use nonius_model::spec::Spec;
 use serde::Serialize;
@@ -140,6 +140,8 @@ pub struct Budget {
     pub total: f64,
     /// The arithmetic's part by source.
     pub terms: Vec<Term>,
+    /// The word lengths that make it, each by the key that overrides it.
+    pub words: Vec<Word>,
 }
 
 /// A source of error.
@@ -219,6 +221,7 @@ impl DesignJson {
                         rms_periods: t.rms_periods,
                     })
                     .collect(),
+                words: design.word_lengths(),
             },
             simulated,
             pull_in,

@@ -19,6 +19,8 @@ pub struct Signal {
     pub resolution: f64,
     /// Why it is as wide as it is.
     pub why: String,
+    /// The keys of `design.toml` that set its format; none where it follows from the algorithm or from its operands.
+    pub set_by: Vec<String>,
 }
 
 /// Every signal with a name that is no flag.
@@ -47,51 +49,66 @@ pub fn signals(design: &Design) -> Vec<Signal> {
             range: [node.range.0 as f64 * lsb, node.range.1 as f64 * lsb],
             resolution: lsb,
             why: why(design, name, node).unwrap_or_default().into(),
+            set_by: set_by(design, name, node),
         });
     }
     list
 }
 
-/// Reasons of what is rounded or cut, by names without their numbers. What is not here is one of the signals.
-const REASONS: &[(&[&str], &str)] = &[
-    (&["adc_cos", "adc_sin"], "the ADC"),
+/// Reasons of what is rounded or cut, by names without their numbers, and the keys that set it. What is not here is one of the
+/// signals.
+const REASONS: &[(&[&str], &str, &[&str])] = &[
+    (&["adc_cos", "adc_sin"], "the ADC", &["adc.bits"]),
     (
         &["alpha_hat", "alpha_hat_previous"],
         "phase: the budget's dead band of the integrator",
+        &["formats.phase_bits"],
     ),
     (
         &["rate", "rate_before", "rate_lost", "speed", "kick", "drift"],
         "increments of the phase: its resolution, up to what the largest speed needs",
+        &["formats.phase_bits"],
     ),
     (
         &["rate_high"],
         "the upper part of the rate, as wide as a signal, for a multiplier of that width",
+        &["formats.rate_high_bits"],
     ),
-    (&["count"], "counted periods, as asked for"),
-    (&["carry"], "whole periods gone by in a sample"),
+    (
+        &["count"],
+        "counted periods, as asked for",
+        &["chip.count_bits"],
+    ),
+    (&["carry"], "whole periods gone by in a sample", &[]),
     (
         &["sine_phase"],
         "phase in the sine: the budget's truncation",
+        &["formats.sine_phase_bits"],
     ),
     (
         &["quarter_phase"],
         "the phase within a quarter turn, to every bit of the phase in the sine",
+        &["formats.sine_phase_bits"],
     ),
     (
         &["theta_deviation", "recent", "proven"],
         "parameter: bounded to what the design promises, a quarter more, up to a power of two; resolution by the budget",
+        &["formats.accumulator_fraction"],
     ),
     (
         &["theta", "theta_solved", "cubic_c", "cubic_s"],
         "parameter as it is multiplied: as wide as a signal, its point as far left as its bounds allow",
+        &[],
     ),
     (
         &["solved"],
         "step of a parameter: one bit more than the widest of them",
+        &["formats.accumulator_fraction"],
     ),
     (
         &["rho_limited"],
         "residual: a quarter of the radius at most moves a parameter; a signal's resolution",
+        &["formats.residual_fraction"],
     ),
     (
         &[
@@ -101,29 +118,43 @@ const REASONS: &[(&[&str], &str)] = &[
             "null_gradient_rate",
         ],
         "gradient of the phase: two turns at most, to its resolution",
+        &["formats.sensitivity_fraction"],
     ),
     (
         &["gathered"],
         "gathered gradient: its bound, to a parameter's resolution",
+        &["formats.gathered_fraction"],
     ),
     (
         &["lock_level"],
         "counts so many samples to lock as the loop takes to settle",
+        &["formats.lock_level_bits"],
     ),
-    (&["level_moved"], "lock_level before it starts again"),
-    (&["loop_gear"], "numbers the gears of acquisition"),
-    (&["gamma_gear"], "numbers the gears of gamma"),
+    (
+        &["level_moved"],
+        "lock_level before it starts again",
+        &["formats.lock_level_bits"],
+    ),
+    (&["loop_gear"], "numbers the gears of acquisition", &[]),
+    (
+        &["gamma_gear"],
+        "numbers the gears of gamma",
+        &["calibration.gamma_first", "calibration.gamma_last"],
+    ),
     (
         &["gear_periods"],
         "counts the periods of travel in a gear of gamma, or held",
+        &["calibration.gear_periods"],
     ),
     (
         &["start_periods"],
         "counts the periods of travel that the start has solved",
+        &[],
     ),
     (
         &["travel_samples"],
         "counts the samples of a period of travel at a fifth of the loop's bandwidth",
+        &[],
     ),
     (
         &[
@@ -134,27 +165,37 @@ const REASONS: &[(&[&str], &str)] = &[
             "travel_high",
         ],
         "sectors, 64 a period, of four periods",
+        &[],
     ),
-    (&["sectors"], "sectors passed in a sample, up to a period"),
+    (
+        &["sectors"],
+        "sectors passed in a sample, up to a period",
+        &[],
+    ),
     (
         &["harmonic_cos", "harmonic_sin", "harmonic_turned"],
         "harmonics: a quarter of the amplitude at most, to a signal's resolution",
+        &["formats.harmonic_fraction"],
     ),
     (
         &["harmonic_phase_late"],
         "phase in the table of harmonics, as that in the sine, where the sine is sampled later",
+        &["formats.sine_phase_bits"],
     ),
     (
         &["skew_turns"],
         "phase of the sine's delay in turns, to the resolution of the phase",
+        &["formats.phase_bits"],
     ),
     (
         &["skew_rate"],
         "speed up to a quarter above the design's largest, as wide as a signal",
+        &["formats.skew_rate_bits"],
     ),
     (
         &["skew", "skew_moving"],
         "phase of the sine's delay at that speed, six bits finer than a signal",
+        &["formats.skew_bits"],
     ),
 ];
 
@@ -171,11 +212,70 @@ fn why(design: &Design, name: &str, node: &Entry) -> Option<&'static str> {
         Op::Input | Op::Quantise(..) | Op::QuantiseGeared { .. } => {}
         _ => return Some("exact: every bit of the operation, range by interval analysis"),
     }
-    let words = name.split('_').filter(|w| w.parse::<u32>().is_err());
-    let stem = words.collect::<Vec<_>>().join("_");
-    if let Some((_, why)) = REASONS.iter().find(|r| r.0.contains(&stem.as_str())) {
+    if let Some((_, why, _)) = REASONS.iter().find(|r| r.0.contains(&stem(name).as_str())) {
         return Some(why);
     }
     let signal = design.structure.formats.signal.format;
     (node.format == signal).then_some("signals: the budget's rounding of signals")
+}
+
+/// A name without its numbers.
+fn stem(name: &str) -> String {
+    let words = name.split('_').filter(|w| w.parse::<u32>().is_err());
+    words.collect::<Vec<_>>().join("_")
+}
+
+/// The keys that set the format of a named signal.
+fn set_by(design: &Design, name: &str, node: &Entry) -> Vec<String> {
+    let keys: &[&str] = match node.op {
+        Op::Lookup { .. } => match (name.starts_with("harmonic"), name.ends_with("slope")) {
+            (false, false) => &["formats.sine_value_fraction"],
+            (false, true) => &["formats.sine_slope_fraction"],
+            (true, false) => &["formats.harmonic_value_fraction"],
+            (true, true) => &["formats.harmonic_slope_fraction"],
+        },
+        Op::Input | Op::Quantise(..) | Op::QuantiseGeared { .. } => {
+            let stem = stem(name);
+            match REASONS.iter().find(|r| r.0.contains(&stem.as_str())) {
+                Some((_, _, keys)) => keys,
+                None => &["formats.signal_fraction"],
+            }
+        }
+        _ => return vec![],
+    };
+    let own = keys.iter().chain(by_parameter(name));
+    let held = design.word_lengths();
+    let has = |key: &&&str| !key.starts_with("formats.") || held.iter().any(|w| w.key == **key);
+    own.filter(has).map(ToString::to_string).collect()
+}
+
+/// Words and ranges that differ from parameter to parameter.
+fn by_parameter(name: &str) -> &'static [&'static str] {
+    const GAIN: [&str; 2] = ["formats.gain_range_log2", "formats.gain_bits"];
+    const CROSS: [&str; 2] = ["formats.cross_range_log2", "formats.cross_bits"];
+    const BEND: [&str; 2] = ["formats.bend_range_log2", "formats.bend_bits"];
+    let number = name.split('_').find_map(|w| w.parse::<u32>().ok());
+    let (range, kept) = match (stem(name).as_str(), number) {
+        ("cubic_c" | "cubic_s", _) => {
+            return &["formats.bend_range_log2", "formats.cubic_bits"];
+        }
+        ("solved", _) => {
+            return &[
+                "formats.gain_range_log2",
+                "formats.offset_range_log2",
+                "formats.cross_range_log2",
+                "formats.bend_range_log2",
+            ];
+        }
+        ("theta_deviation" | "recent" | "proven", Some(n)) => (n, true),
+        ("theta" | "theta_solved", Some(n)) => (n, false),
+        _ => return &[],
+    };
+    let all: &'static [&'static str; 2] = match range {
+        1 | 3 => &GAIN,
+        2 | 4 => return &["formats.offset_range_log2"],
+        5 => &CROSS,
+        _ => &BEND,
+    };
+    if kept { &all[..1] } else { all }
 }

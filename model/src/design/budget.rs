@@ -2,7 +2,9 @@
 
 use std::f64::consts::TAU;
 
-use super::{DesignError, Loop, harmonics, normalisation};
+use super::followers::Followers;
+use super::formats::multiplied;
+use super::{DesignError, Loop, harmonics, normalisation, word};
 use crate::format::exp2;
 use crate::spec::{Overrides, Spec};
 
@@ -115,8 +117,20 @@ pub(super) fn rounding(fraction: u32) -> f64 {
 fn terms(words: &Words, spec: &Spec, tracking: &Loop) -> Vec<Term> {
     let f = words.signal_fraction;
     let amplitude = normalisation(spec).0;
-    // θ1 and θ3 need at least one integer bit beside the sign.
-    let gain = rounding(f) * 2.0;
+    let follow = Followers::of(words, spec, tracking);
+    let o = &spec.formats;
+    let [theta_1, _, theta_5] = multiplied(spec, &follow).theta;
+    let gain = if o.gain_bits.is_some() || o.gain_range_log2.is_some() {
+        rounding(theta_1.format.fraction)
+    } else {
+        // θ1 and θ3 need at least one integer bit beside the sign.
+        rounding(f) * 2.0
+    };
+    let cross = if o.cross_bits.is_some() || o.cross_range_log2.is_some() {
+        rounding(theta_5.format.fraction)
+    } else {
+        rounding(f)
+    };
     // Smallest change of the rate is half its last bit: errors below that die in the integrator.
     let dead_band = exp2(-i64::from(words.phase_bits) - 1) / tracking.ab / 3f64.sqrt();
     let segment = TAU * exp2(-i64::from(words.sine_rows_log2) - 3);
@@ -134,7 +148,7 @@ fn terms(words: &Words, spec: &Spec, tracking: &Loop) -> Vec<Term> {
         ("gains as multiplied", gain * amplitude * 0.25f64.sqrt()),
         (
             "phase parameter as multiplied",
-            rounding(f) * amplitude * 0.375f64.sqrt(),
+            cross * amplitude * 0.375f64.sqrt(),
         ),
         ("phase and its increments", dead_band),
         ("parameter accumulators", accumulator(words, spec)),
@@ -142,7 +156,8 @@ fn terms(words: &Words, spec: &Spec, tracking: &Loop) -> Vec<Term> {
     if spec.correction.has_skew() {
         list.push(("channel skew", skew));
     }
-    list.extend(harmonics::terms(words, spec));
+    list.extend(harmonics::terms(words, &follow, spec));
+    list.extend(follow.terms(words, spec));
     list.into_iter()
         .map(|(source, radians)| Term {
             source,
@@ -165,6 +180,7 @@ const MUCH_AS_GOOD: f64 = 1.05;
 
 /// Chooses the shortest words, one after the other, that keep the sum of all errors within what is allowed.
 pub(super) fn choose(spec: &Spec, tracking: &Loop) -> Result<(Words, Budget), DesignError> {
+    word::plausible(spec)?;
     let (amplitude, power) = normalisation(spec);
     let adc = rounding(spec.adc.bits - 1 - power) / amplitude / TAU;
     let noise = spec.sensor.noise_rms / TAU * tracking.noise_gain.sqrt();
@@ -193,38 +209,39 @@ pub(super) fn choose(spec: &Spec, tracking: &Loop) -> Result<(Words, Budget), De
     // What is missed with the longest words is missed because of a word that the user chose: then the others are as
     // long as adds little to that.
     let enough = |longest: &Words| allowed.max(MUCH_AS_GOOD * budget(longest).arithmetic());
-    let pick = |chosen: Option<u32>,
-                low: u32,
-                high: u32,
-                field: &'static str,
-                set: &dyn Fn(u32) -> Words| match chosen {
-        Some(n) if (low..=high).contains(&n) => Ok(set(n)),
-        Some(n) => Err(DesignError::Field {
-            field: field.into(),
-            value: n.to_string(),
-            // The other end depends on the other words.
-            limit: if n > high {
-                format!("at most {high}")
-            } else {
-                format!("at least {low}")
-            },
-            reason: "the chip cannot be built with it".into(),
-        }),
-        None => {
-            let enough = if *o == Overrides::default() {
-                allowed
-            } else {
-                enough(&set(high))
-            };
-            (low..=high)
-                .map(set)
-                .find(|w| budget(w).arithmetic() <= enough)
-                .ok_or_else(|| DesignError::Field {
-                    field: field.into(),
-                    value: format!("more than {high} bits"),
-                    limit: format!("{high} bits"),
-                    reason: "the accuracy asked for needs longer words than the chip has".into(),
-                })
+    let pick = |key: &str, before: &Words, set: &dyn Fn(u32) -> Words| {
+        let (low, high) = limits(key, before);
+        let field = || format!("formats.{key}").into();
+        match o.given(key).map(|n| u32::try_from(n).unwrap_or(u32::MAX)) {
+            Some(n) if (low..=high).contains(&n) => Ok(set(n)),
+            Some(n) => Err(DesignError::Field {
+                field: field(),
+                value: n.to_string(),
+                // The other end depends on the other words.
+                limit: if n > high {
+                    format!("at most {high}")
+                } else {
+                    format!("at least {low}")
+                },
+                reason: "the chip cannot be built with it".into(),
+            }),
+            None => {
+                let enough = if *o == Overrides::default() {
+                    allowed
+                } else {
+                    enough(&set(high))
+                };
+                (low..=high)
+                    .map(set)
+                    .find(|w| budget(w).arithmetic() <= enough)
+                    .ok_or_else(|| DesignError::Field {
+                        field: field(),
+                        value: format!("more than {high} bits"),
+                        limit: format!("{high} bits"),
+                        reason: "the accuracy asked for needs longer words than the chip has"
+                            .into(),
+                    })
+            }
         }
     };
     let generous = |f: u32| Words {
@@ -235,44 +252,35 @@ pub(super) fn choose(spec: &Spec, tracking: &Loop) -> Result<(Words, Budget), De
         harmonic_rows_log2: o.harmonic_rows_log2.unwrap_or(harmonics::ROWS_LOG2_MAX),
         accumulator_fraction: o.accumulator_fraction.unwrap_or(44),
     };
-    let field = "formats.signal_fraction";
-    let w = pick(o.signal_fraction, 8, 24, field, &generous)?;
-    let field = "formats.sine_rows_log2";
-    let rows = |n| Words {
+    let w = pick("signal_fraction", &generous(8), &generous)?;
+    let w = pick("sine_rows_log2", &w, &|n| Words {
         sine_rows_log2: n,
         ..w
-    };
-    let w = pick(o.sine_rows_log2, 4, 13, field, &rows)?;
-    let field = "formats.harmonic_rows_log2";
-    let w = pick(
-        o.harmonic_rows_log2,
-        4,
-        harmonics::ROWS_LOG2_MAX,
-        field,
-        &|n| Words {
-            harmonic_rows_log2: n,
-            ..w
-        },
-    )?;
-    let field = "formats.sine_phase_bits";
-    let phase = |n| Words {
-        sine_phase_bits: n,
-        ..w
-    };
-    let low = (w.sine_rows_log2 + 3).max(w.harmonic_rows_log2 + 1);
-    let w = pick(o.sine_phase_bits, low, 30, field, &phase)?;
-    let (field, low) = (
-        "formats.phase_bits",
-        w.sine_phase_bits.max(w.signal_fraction + 3),
-    );
-    let w = pick(o.phase_bits, low, 44, field, &|n| Words {
-        phase_bits: n,
+    })?;
+    let w = pick("harmonic_rows_log2", &w, &|n| Words {
+        harmonic_rows_log2: n,
         ..w
     })?;
-    let (field, low) = ("formats.accumulator_fraction", w.signal_fraction);
-    let words = pick(o.accumulator_fraction, low, 44, field, &|n| Words {
+    let w = pick("sine_phase_bits", &w, &|n| Words {
+        sine_phase_bits: n,
+        ..w
+    })?;
+    let w = pick("phase_bits", &w, &|n| Words { phase_bits: n, ..w })?;
+    let words = pick("accumulator_fraction", &w, &|n| Words {
         accumulator_fraction: n,
         ..w
     })?;
     Ok((words, budget(&words)))
+}
+
+/// What a word of the budget may be, with those that are settled before it as they are.
+pub(super) fn limits(key: &str, w: &Words) -> (u32, u32) {
+    match key {
+        "signal_fraction" => (8, 24),
+        "sine_rows_log2" => (4, 13),
+        "harmonic_rows_log2" => (4, harmonics::ROWS_LOG2_MAX),
+        "sine_phase_bits" => ((w.sine_rows_log2 + 3).max(w.harmonic_rows_log2 + 1), 30),
+        "phase_bits" => (w.sine_phase_bits.max(w.signal_fraction + 3), 44),
+        _ => (w.signal_fraction, 44),
+    }
 }

@@ -2,6 +2,8 @@
 
 use std::f64::consts::{SQRT_2, TAU};
 
+use super::followers::Followers;
+use super::ranges::ranges;
 use super::{Acquisition, DesignError, Loop, Words, harmonics, normalisation, skew};
 use crate::format::{Format, Quantiser, exp2};
 use crate::kernel::gears::{HELD, SETTLED};
@@ -11,47 +13,11 @@ use crate::kernel::{Coefficients, Constant, Formats, Method, Structure};
 use crate::rom::{Column, Rom};
 use crate::spec::{CalibrationMethod, CalibrationStart, Coding, Spec};
 
-/// What the parameters can reach: the promise of the design, a quarter more, up to a power of two.
-struct Ranges {
-    /// log2 of the largest deviation of θ1 … θ9.
-    deviation: [i32; 9],
-    nominal: f64,
-}
-
-fn ranges(spec: &Spec) -> Ranges {
-    let nominal = 1.0 / normalisation(spec).0;
-    let (m, offset) = (spec.sensor.amplitude_tolerance, spec.sensor.offset_max);
-    let beta = spec.sensor.phase_error_max_deg.to_radians();
-    let gain = nominal / (1.0 - m) / beta.cos() - nominal;
-    let shift = offset / (1.0 - m) * (1.0 / beta.cos() + beta.tan());
-    let phase = beta.tan() * nominal / (1.0 - m);
-    let power = |need: f64| (need.max(1.0 / 64.0) * 1.25).log2().ceil() as i32;
-    Ranges {
-        deviation: [
-            power(gain),
-            power(shift),
-            power(gain),
-            power(shift),
-            if spec.calibration.parameters >= 8 {
-                // It acts on the corrected cosine.
-                power(beta.tan() / (1.0 - m))
-            } else {
-                power(phase)
-            },
-            power(spec.sensor.bend_max),
-            power(spec.sensor.bend_max),
-            power(spec.sensor.bend_max),
-            power(spec.sensor.bend_max),
-        ],
-        nominal,
-    }
-}
-
-fn power_of(value: f64) -> i32 {
+pub(super) fn power_of(value: f64) -> i32 {
     value.log2().ceil() as i32
 }
 
-fn level_bits(tracking: &Loop) -> u32 {
+pub(super) fn level_bits(tracking: &Loop) -> u32 {
     (power_of(4.0 / tracking.omega).clamp(5, 12)) as u32
 }
 
@@ -66,22 +32,79 @@ fn counting_to(last: u32) -> Format {
     Format::unsigned((32 - last.leading_zeros()).max(1), 0)
 }
 
-/// Saturating, as wide as a signal or as `finest` fraction bits need, for values up to `largest` in magnitude.
-fn held(largest: f64, width: u32, finest: u32) -> Quantiser {
+/// Saturating, so wide or as `finest` fraction bits need, for values up to `largest` in magnitude.
+pub(super) fn held(largest: f64, width: u32, finest: u32) -> Quantiser {
     let power = power_of(largest).max(1 - finest as i32);
     let fraction = (width as i32 - 1 - power).clamp(1 - power, finest as i32);
     Quantiser::saturating(Format::signed(bits(1 + power + fraction), bits(fraction)))
 }
 
-fn bits(n: i32) -> u32 {
+pub(super) fn bits(n: i32) -> u32 {
     u32::try_from(n).unwrap_or(0)
+}
+
+/// A quarter either way.
+fn quarter(fraction: u32) -> Quantiser {
+    Quantiser::saturating(Format::signed(fraction - 1, fraction))
+}
+
+/// Speeds up to here are corrected for the delay of the sine, turns per sample.
+pub(super) fn speed_top(spec: &Spec) -> f64 {
+    1.25 * spec.sensor.speed_max_periods_per_s / spec.adc.sample_rate_hz
+}
+
+/// Phases of that delay up to here, radians.
+pub(super) fn skew_top(spec: &Spec) -> f64 {
+    2.5 * skew::phase_max(spec)
+}
+
+/// The calibration begins by least squares.
+pub(super) fn starts(spec: &Spec) -> bool {
+    spec.calibration.parameters > 0 && spec.calibration.start == CalibrationStart::LeastSquares
+}
+
+/// log2 of the largest gathered gradient.
+pub(super) fn gathered_power(spec: &Spec) -> i32 {
+    if starts(spec) {
+        // Sums of 64 residuals, each a quarter at most.
+        4
+    } else if spec.calibration.method == CalibrationMethod::Batch {
+        7
+    } else {
+        1
+    }
+}
+
+/// Parameters as they are multiplied.
+pub(super) struct Multiplied {
+    /// θ1, θ3, θ5.
+    pub(super) theta: [Quantiser; 3],
+    /// θ6 and θ7.
+    pub(super) bend: Quantiser,
+    /// 4 (θ8 ± θ9).
+    pub(super) cubic: Quantiser,
+}
+
+/// Their points as far left as their ranges allow.
+pub(super) fn multiplied(spec: &Spec, follow: &Followers) -> Multiplied {
+    let r = ranges(spec);
+    let word = |largest: f64, width: u32| {
+        let format = Format::signed(width, bits(width as i32 - 1 - power_of(largest)));
+        Quantiser::saturating(format)
+    };
+    let reach = |n: usize| exp2(r.deviation[n].into());
+    let gain = word(r.nominal + reach(0), follow.gain_bits);
+    Multiplied {
+        theta: [gain, gain, word(reach(4), follow.cross_bits)],
+        bend: word(reach(5), follow.bend_bits),
+        cubic: word(8.0 * reach(7), follow.cubic_bits),
+    }
 }
 
 pub(super) fn structure(
     spec: &Spec,
-    tracking: &Loop,
     acquisition: &Acquisition,
-    words: &Words,
+    (words, follow): (&Words, &Followers),
 ) -> Result<Structure, DesignError> {
     let f = words.signal_fraction;
     let width = f + 2;
@@ -94,16 +117,10 @@ pub(super) fn structure(
         let facc = words.accumulator_fraction;
         Quantiser::saturating(Format::signed(bits(1 + power + facc as i32), facc))
     };
-    let multiplied = |largest: f64| {
-        let format = Format::signed(width, bits(width as i32 - 1 - power_of(largest)));
-        Quantiser::saturating(format)
-    };
-    let gain = multiplied(r.nominal + exp2(r.deviation[0].into()));
     let fp = words.phase_bits;
-    let start =
-        spec.calibration.parameters > 0 && spec.calibration.start == CalibrationStart::LeastSquares;
+    let start = starts(spec);
     let fast = spec.sensor.speed_max_periods_per_s > 0.2 * spec.adc.sample_rate_hz;
-    let top = 1.25 * spec.sensor.speed_max_periods_per_s / spec.adc.sample_rate_hz;
+    let multiplied = multiplied(spec, follow);
     let formats = Formats {
         adc: if offset_binary {
             Format::unsigned(adc_bits, adc_bits)
@@ -112,38 +129,38 @@ pub(super) fn structure(
         },
         y,
         signal: Quantiser::saturating(Format::signed(width, f)),
-        residual: Quantiser::saturating(Format::signed(f - 1, f)),
+        residual: quarter(follow.residual_fraction),
         alpha: Format::unsigned(fp, fp),
         // A quarter of a turn each way, and twice that where the design comes near it.
         rate: Quantiser::saturating(Format::signed(if fast { fp } else { fp - 1 }, fp)),
-        rate_high: Quantiser::grid(Format::signed(width, if fast { width } else { width + 1 })),
-        harmonic: Quantiser::saturating(Format::signed(f - 1, f)),
-        skew_rate: held(top, width, fp),
-        skew: held(2.5 * skew::phase_max(spec), width, f + 6),
+        rate_high: {
+            let high = follow.rate_high_bits;
+            Quantiser::grid(Format::signed(high, if fast { high } else { high + 1 }))
+        },
+        harmonic: quarter(follow.harmonic_fraction),
+        skew_rate: held(speed_top(spec), follow.skew_rate_bits, fp),
+        skew: held(skew_top(spec), follow.skew_bits, f + 6),
         sine_phase: Quantiser::truncating(Format::unsigned(
             words.sine_phase_bits,
             words.sine_phase_bits,
         )),
         count: Format::signed(spec.chip.count_bits, spec.chip.count_bits),
-        theta: [gain, gain, multiplied(exp2(r.deviation[4].into()))],
-        theta_bend: multiplied(exp2(r.deviation[5].into())),
-        theta_cubic: multiplied(exp2(i64::from(r.deviation[7]) + 3)),
+        theta: multiplied.theta,
+        theta_bend: multiplied.bend,
+        theta_cubic: multiplied.cubic,
         deviation: r.deviation.map(accumulator),
-        alpha_gradient: Quantiser::saturating(Format::signed(fp + 2, fp)),
-        gathered: if start {
-            // Sums of 64 residuals, each a quarter at most.
-            Quantiser::saturating(Format::signed(f + 5, f))
-        } else {
-            accumulator(if spec.calibration.method == CalibrationMethod::Batch {
-                7
-            } else {
-                1
-            })
+        alpha_gradient: {
+            let g = follow.sensitivity_fraction;
+            Quantiser::saturating(Format::signed(g + 2, g))
+        },
+        gathered: {
+            let (g, power) = (follow.gathered_fraction, gathered_power(spec));
+            Quantiser::saturating(Format::signed(bits(1 + power + g as i32), g))
         },
         start_periods: counting_to(START_PERIODS),
         travel_samples: counting_to(travel_samples(spec)),
         step: accumulator(r.deviation.into_iter().max().unwrap_or(0)),
-        level: Quantiser::saturating(Format::unsigned(level_bits(tracking), 0)),
+        level: Quantiser::saturating(Format::unsigned(follow.lock_level_bits, 0)),
         // Two bits even where one would do.
         loop_gear: counting_to(acquisition.gears.max(3)),
         gamma_gear: counting_to(spec.calibration.gamma_last - spec.calibration.gamma_first),
@@ -164,10 +181,10 @@ pub(super) fn structure(
         completion: (spec.calibration.parameters >= 8 && spec.calibration.completion)
             .then_some(spec.calibration.completion_gamma),
         skew: spec.correction.has_skew().then_some(Order::Second),
-        harmonics: harmonics::structure(spec, words)?,
+        harmonics: harmonics::structure(spec, words, follow)?,
         offset_binary,
         formats,
-        sine: sine_table(words)?,
+        sine: sine_table(words, follow)?,
         loop_gears: acquisition.gears,
         gamma_first: spec.calibration.gamma_first,
         // To the nearest power of two.
@@ -178,7 +195,7 @@ pub(super) fn structure(
 
 /// A quarter wave, each segment expanded about its centre; the value is lowered by half the error at the ends. It
 /// carries the half bit that rounds the interpolated result.
-fn sine_table(words: &Words) -> Result<Rom, DesignError> {
+fn sine_table(words: &Words, follow: &Followers) -> Result<Rom, DesignError> {
     let (rows, f) = (words.sine_rows_log2, words.signal_fraction);
     let segment = exp2(-i64::from(rows) - 2);
     let lower = 1.0 - (TAU * segment / 2.0).powi(2) / 4.0;
@@ -187,7 +204,7 @@ fn sine_table(words: &Words) -> Result<Rom, DesignError> {
         .map(|i| centre(i).sin() * lower)
         .collect();
     let slopes = (0..1usize << rows).map(|i| TAU * centre(i).cos()).collect();
-    let slope_fraction = (f + 1).saturating_sub(rows).max(1);
+    let (value_fraction, slope_fraction) = (follow.sine_value_fraction, follow.sine_slope_fraction);
     let unfit = |row: usize| DesignError::Field {
         field: "formats.sine_rows_log2".into(),
         value: rows.to_string(),
@@ -201,7 +218,7 @@ fn sine_table(words: &Words) -> Result<Rom, DesignError> {
         columns: vec![
             Column::new(
                 "value",
-                Format::unsigned(f + 3, f + 2),
+                Format::unsigned(value_fraction + 1, value_fraction),
                 values,
                 exp2(-i64::from(f) - 1),
             )
@@ -221,11 +238,10 @@ pub(super) fn constants(
     spec: &Spec,
     tracking: &Loop,
     acquisition: &Acquisition,
-    words: &Words,
+    (words, follow): (&Words, &Followers),
     structure: &Structure,
 ) -> Coefficients<Constant> {
-    let width = words.signal_fraction + 2;
-    let f = words.signal_fraction;
+    let (f, width) = (words.signal_fraction, follow.coefficient_bits);
     let whole = |n: i64| Constant::rounded(n as f64, 0);
     let p = words.sine_phase_bits;
     let half_bit = exp2(-i64::from(p) - 1);
@@ -238,7 +254,7 @@ pub(super) fn constants(
         ranges(spec).nominal,
         structure.formats.theta[0].format.fraction,
     );
-    let full = (1i64 << level_bits(tracking)) - 1;
+    let full = (1i64 << follow.lock_level_bits) - 1;
     let s = &spec.sensor;
     let more = 5.0 * s.noise_rms
         + if spec.calibration.parameters >= 8 {

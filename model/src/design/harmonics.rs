@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 
 use super::budget::rounding;
+use super::followers::Followers;
 use super::promised::{Promised, errors, promised};
 use super::refuse::{between, number, refuse};
 use super::{Budget, DesignError, Words};
@@ -123,11 +124,12 @@ fn steepest(correction: &Correction) -> f64 {
 }
 
 /// What the words of the table add to the angle, radians rms.
-pub(super) fn terms(words: &Words, spec: &Spec) -> Vec<(&'static str, f64)> {
+pub(super) fn terms(words: &Words, follow: &Followers, spec: &Spec) -> Vec<(&'static str, f64)> {
     let list = &spec.correction.harmonics;
     if list.is_empty() {
         return vec![];
     }
+    let (read, value) = (follow.harmonic_fraction, follow.harmonic_value_fraction);
     let f = words.signal_fraction;
     let half = TAU * exp2(-i64::from(words.harmonic_rows_log2) - 1);
     // Of a cosine in each channel, of which cosine and sine of the angle take half each: over a segment x²/2 less its half at
@@ -142,7 +144,8 @@ pub(super) fn terms(words: &Words, spec: &Spec) -> Vec<(&'static str, f64)> {
     let within = (1.0f64 / 20.0 - 1.0 / 12.0 + 1.0 / 16.0).sqrt();
     let phase = TAU * rounding(words.sine_phase_bits);
     // Each channel: the table's word, what is read, and the sine once more behind the phase.
-    let roundings = 2.0 * rounding(f + 2).powi(2) + 2.0 * rounding(f).powi(2) + rounding(f).powi(2);
+    let roundings =
+        2.0 * rounding(value).powi(2) + 2.0 * rounding(read).powi(2) + rounding(f).powi(2);
     vec![
         (
             "harmonic table interpolation",
@@ -154,21 +157,25 @@ pub(super) fn terms(words: &Words, spec: &Spec) -> Vec<(&'static str, f64)> {
 }
 
 /// Table and structure; how far the phase is followed is settled later.
-pub(super) fn structure(spec: &Spec, words: &Words) -> Result<Option<Stored>, DesignError> {
+pub(super) fn structure(
+    spec: &Spec,
+    words: &Words,
+    follow: &Followers,
+) -> Result<Option<Stored>, DesignError> {
     let list = &spec.correction.harmonics;
     if list.is_empty() {
         return Ok(None);
     }
     Ok(Some(Stored {
-        table: table(&spec.correction, words)?,
+        table: table(&spec.correction, words, follow)?,
         order: Order::Second,
     }))
 }
 
 /// A period, each segment expanded about its centre; the value of each order is lowered by half its error at the ends. It
 /// carries the half bit that rounds the interpolated result.
-fn table(correction: &Correction, words: &Words) -> Result<Rom, DesignError> {
-    let (rows, f) = (words.harmonic_rows_log2, words.signal_fraction);
+fn table(correction: &Correction, words: &Words, follow: &Followers) -> Result<Rom, DesignError> {
+    let rows = words.harmonic_rows_log2;
     let segment = TAU * exp2(-i64::from(rows));
     let lowered = correction.harmonics.iter().map(|h| {
         let lower = 1.0 - (f64::from(h.order) * segment / 2.0).powi(2) / 4.0;
@@ -197,8 +204,7 @@ fn table(correction: &Correction, words: &Words) -> Result<Rom, DesignError> {
         .into_iter()
         .chain(slopes(1))
         .fold(0.0f64, |m, x| m.max(x.abs()));
-    // A segment is so much longer than those of the quarter-wave table.
-    let slope_fraction = (f + 3).saturating_sub(rows).max(1);
+    let slope_fraction = follow.harmonic_slope_fraction;
     let slope_integer = (steepest + 1.0).log2().ceil().max(0.0) as u32;
     let slope_format = Format::signed(1 + slope_integer + slope_fraction, slope_fraction);
     let unfit = |row: usize| DesignError::Field {
@@ -207,14 +213,15 @@ fn table(correction: &Correction, words: &Words) -> Result<Rom, DesignError> {
         limit: "smaller amplitudes".into(),
         reason: format!("row {row} of the table of harmonics does not fit its word"),
     };
-    let carried = exp2(-i64::from(f) - 1);
+    let carried = exp2(-i64::from(follow.harmonic_fraction) - 1);
+    let value_fraction = follow.harmonic_value_fraction;
     let largest = values(0)
         .into_iter()
         .chain(values(1))
         .fold(0.0f64, |m, x| m.max(x.abs()));
     // The sign, and the bits that the largest has.
-    let raw = ((largest + carried) * exp2(i64::from(f) + 2)).ceil() as u64;
-    let value_format = Format::signed(1 + (u64::BITS - raw.leading_zeros()), f + 2);
+    let raw = ((largest + carried) * exp2(value_fraction.into())).ceil() as u64;
+    let value_format = Format::signed(1 + (u64::BITS - raw.leading_zeros()), value_fraction);
     let value =
         |name, which| Column::new(name, value_format, values(which), carried).map_err(unfit);
     let slope = |name, which| Column::new(name, slope_format, slopes(which), 0.0).map_err(unfit);

@@ -1,19 +1,25 @@
 //! From physical units to integers: [`Spec`] becomes [`Design`].
 
+mod blame;
 mod budget;
 mod check;
+mod followers;
 mod formats;
 mod harmonics;
 mod keywords;
 mod poles;
 mod promised;
+mod ranges;
 mod refuse;
 mod skew;
+mod word;
 
 pub use budget::{Budget, Term, Words};
+pub use followers::Followers;
 pub use harmonics::{Harmonics, ORDER_MAX};
 pub use poles::{Acquisition, Loop};
 pub use skew::{PHASE_MAX, Skew};
+pub use word::Word;
 
 use std::borrow::Cow;
 
@@ -40,8 +46,43 @@ pub enum DesignError {
         reason: String,
     },
     /// A signal does not fit.
-    #[error("the formats cannot hold the design: {0}")]
-    Range(#[from] RangeError),
+    #[error("{field} = {value}: the formats cannot hold the design: {error}")]
+    Range {
+        /// The key in `design.toml` that leads there.
+        field: Cow<'static, str>,
+        /// What it says.
+        value: String,
+        /// The signal and its worst case.
+        error: Box<RangeError>,
+    },
+}
+
+impl DesignError {
+    /// The key in `design.toml` that it is about, with its section.
+    #[must_use]
+    pub fn field(&self) -> &str {
+        match self {
+            Self::Field { field, .. } | Self::Range { field, .. } => field,
+        }
+    }
+}
+
+/// Why a design cannot work, as it is found.
+enum Refused {
+    Field(DesignError),
+    Range(RangeError),
+}
+
+impl From<DesignError> for Refused {
+    fn from(error: DesignError) -> Self {
+        Self::Field(error)
+    }
+}
+
+impl From<RangeError> for Refused {
+    fn from(error: RangeError) -> Self {
+        Self::Range(error)
+    }
 }
 
 /// The quantised chip.
@@ -53,8 +94,10 @@ pub struct Design {
     pub tracking: Loop,
     /// How the loop widens in acquisition.
     pub acquisition: Acquisition,
-    /// Word lengths.
+    /// Word lengths that the budget settles.
     pub words: Words,
+    /// Those that follow from them.
+    pub followers: Followers,
     /// What each word costs.
     pub budget: Budget,
     /// Correction of channel skew, where there is one.
@@ -75,14 +118,31 @@ impl Design {
     /// # Errors
     /// [`DesignError`] names the field, its value, the limit and the reason.
     pub fn new(spec: &Spec) -> Result<Self, DesignError> {
+        Self::recorded(spec).map_err(|refused| match refused {
+            Refused::Field(error) => error,
+            Refused::Range(error) => blame::of_range(spec, error),
+        })
+    }
+
+    /// The same; where a signal does not fit nobody has looked yet for the key that leads there.
+    fn recorded(spec: &Spec) -> Result<Self, Refused> {
         check::check(spec)?;
         let tracking = Loop::new(spec)?;
         skew::check(spec, &tracking)?;
         harmonics::check(spec)?;
         let acquisition = Acquisition::new(spec, &tracking);
         let (words, mut budget) = budget::choose(spec, &tracking)?;
-        let mut structure = formats::structure(spec, &tracking, &acquisition, &words)?;
-        let constants = formats::constants(spec, &tracking, &acquisition, &words, &structure);
+        let followers = Followers::of(&words, spec, &tracking);
+        for list in [
+            word::of_budget(&words, spec),
+            followers.limits(&words, spec),
+        ] {
+            word::present(spec, &list)?;
+            word::inside(spec, &list)?;
+        }
+        let all = (&words, &followers);
+        let mut structure = formats::structure(spec, &acquisition, all)?;
+        let constants = formats::constants(spec, &tracking, &acquisition, all, &structure);
         let skew = skew::settle(spec, &budget, &mut structure, &constants);
         let harmonics = harmonics::settle(spec, &mut budget, &mut structure, &constants);
         let graph = record(&structure, &constants, chip_kernel)?;
@@ -93,6 +153,7 @@ impl Design {
             tracking,
             acquisition,
             words,
+            followers,
             budget,
             skew,
             harmonics,

@@ -1,10 +1,12 @@
 //! `design.toml`: what the user asks for, in physical units.
 
 mod correction;
+mod overrides;
 mod place;
 mod read;
 
 pub use correction::{Correction, Harmonic};
+pub use overrides::Overrides;
 pub use place::Place;
 pub use read::{SpecError, keys};
 
@@ -353,27 +355,4 @@ impl Multipliers {
             Self::All(_) => products.max(1),
         }
     }
-}
-
-/// `[formats]`: any of these replaces what the analysis chose.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Overrides {
-    /// Fraction bits of the signals.
-    #[serde(default)]
-    pub signal_fraction: Option<u32>,
-    /// Bits of the phase and its increments.
-    #[serde(default)]
-    pub phase_bits: Option<u32>,
-    /// Bits of the phase that address and interpolate the sine table.
-    #[serde(default)]
-    pub sine_phase_bits: Option<u32>,
-    /// Rows of the quarter-wave table: 2^`sine_rows_log2`.
-    #[serde(default)]
-    pub sine_rows_log2: Option<u32>,
-    /// Rows of the table of harmonics: 2^`harmonic_rows_log2`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub harmonic_rows_log2: Option<u32>,
-    /// Fraction bits of the parameter accumulators.
-    #[serde(default)]
-    pub accumulator_fraction: Option<u32>,
 }

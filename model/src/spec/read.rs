@@ -3,8 +3,8 @@
 use thiserror::Error;
 use toml::de::{DeTable, DeValue};
 
-use super::Spec;
 use super::place::Place;
+use super::{Overrides, Spec};
 
 /// What is wrong with a `design.toml`.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
@@ -98,17 +98,7 @@ const KEYS: &[(&str, &[&str])] = &[
     ),
     ("accuracy", &["rms_periods", "arithmetic_share"]),
     ("chip", &["multipliers", "clock_hz", "count_bits"]),
-    (
-        "formats",
-        &[
-            "signal_fraction",
-            "phase_bits",
-            "sine_phase_bits",
-            "sine_rows_log2",
-            "harmonic_rows_log2",
-            "accumulator_fraction",
-        ],
-    ),
+    ("formats", Overrides::KEYS),
 ];
 
 /// Every section of a design, and a key that may stand in it.
@@ -165,6 +155,7 @@ fn place(text: &str, error: &toml::de::Error) -> String {
 fn plain(message: &str) -> String {
     message
         .replace("expected u32", "expected a whole number, 0 or more")
+        .replace("expected i32", "expected a whole number")
         .replace("expected f64", "expected a number")
         .replace("floating point `", "`")
         .replace("integer `", "`")

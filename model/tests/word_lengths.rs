@@ -1,0 +1,293 @@
+//! Every word length that the analysis chooses may be overridden; what cannot be is refused with its limits.
+
+mod graph_support;
+mod support;
+
+use std::collections::BTreeSet;
+
+use graph_support::graph_equals_chip;
+use nonius_model::chip::Chip;
+use nonius_model::design::{Design, DesignError, Word};
+use nonius_model::kernel::Input;
+use nonius_model::spec::{CalibrationMethod, Coding, Overrides, Spec};
+use proptest::prelude::*;
+use support::shipped::variants::{self, Variant};
+use support::{Encoder, optical, wrapped};
+
+/// One chip of each kind, a loop of type 1, and chips with known corrections: every word is in one of them.
+fn chips() -> Vec<Variant> {
+    let mut list = variants::kinds();
+    list.extend(variants::poles().into_iter().take(1));
+    list.extend(variants::skewed().into_iter().take(1));
+    list.extend(variants::harmonics().into_iter().take(1));
+    list
+}
+
+fn key(word: &Word) -> &str {
+    word.key
+        .strip_prefix("formats.")
+        .expect("a word of [formats]")
+}
+
+fn set(spec: &mut Spec, key: &str, value: i64) {
+    assert!(spec.formats.set(key, Some(value)), "{key}");
+}
+
+/// The same chip, with every word said.
+fn all_said(design: &Design) -> Spec {
+    let mut spec = design.spec.clone();
+    for word in design.word_lengths() {
+        set(&mut spec, key(&word), word.value);
+    }
+    spec
+}
+
+/// Codes of a slow sweep of the sensor that the design is for.
+fn codes(spec: &Spec) -> impl Fn(u32) -> [i64; 2] {
+    let encoder = Encoder::miscalibrated(spec);
+    let middle = match spec.adc.coding {
+        Coding::OffsetBinary => 1i64 << (spec.adc.bits - 1),
+        Coding::TwosComplement => 0,
+    };
+    move |k| {
+        encoder
+            .codes(0.0173 * f64::from(k))
+            .map(|code| code + middle)
+    }
+}
+
+#[test]
+fn what_the_analysis_chooses_may_be_said() {
+    let mut seen = BTreeSet::new();
+    for chip in chips() {
+        let chosen = chip.design();
+        let said = Design::new(&all_said(&chosen)).expect("the same words");
+        assert_eq!(said.structure, chosen.structure, "{}", chip.what);
+        assert_eq!(said.constants, chosen.constants, "{}", chip.what);
+        assert_eq!(said.graph, chosen.graph, "{}", chip.what);
+        for word in chosen.word_lengths() {
+            assert!(
+                (word.lowest..=word.highest).contains(&word.value),
+                "{word:?}"
+            );
+            assert!(!word.overridden && !word.meaning.is_empty(), "{word:?}");
+            seen.insert(key(&word).to_owned());
+        }
+        assert!(said.word_lengths().iter().all(|word| word.overridden));
+    }
+    let all: BTreeSet<_> = Overrides::KEYS.iter().map(ToString::to_string).collect();
+    assert_eq!(seen, all);
+}
+
+/// Another value makes another chip, whose graph is the chip in every bit.
+#[test]
+fn each_key_changes_its_word() {
+    for chip in chips() {
+        let chosen = chip.design();
+        let said = all_said(&chosen);
+        for word in chosen.word_lengths() {
+            let mut built = 0;
+            for value in [word.lowest, word.value - 1, word.value + 1, word.highest] {
+                if value == word.value || !(word.lowest..=word.highest).contains(&value) {
+                    continue;
+                }
+                let mut spec = said.clone();
+                set(&mut spec, key(&word), value);
+                // Other words may stand on this one.
+                let Ok(design) = Design::new(&spec) else {
+                    continue;
+                };
+                built += 1;
+                let same =
+                    design.structure == chosen.structure && design.constants == chosen.constants;
+                assert!(!same, "{}: {} = {value}", chip.what, word.key);
+                graph_equals_chip(&design, codes(&spec), 40);
+            }
+            assert!(built > 0, "{}: {word:?}", chip.what);
+        }
+    }
+}
+
+/// Rms difference of the bit-true chip from the unrounded one, periods, once both have locked.
+fn rounding(design: &Design) -> f64 {
+    let bits = design.spec.adc.bits;
+    let (mut chip, mut real) = (Chip::bit_true(design), Chip::unrounded(design));
+    let codes = codes(&design.spec);
+    let (mut sum, samples) = (0.0, 12_000);
+    for k in 0..samples {
+        let [cos, sin] = codes(k);
+        chip.step_codes(cos, sin, false, true);
+        let [adc_cos, adc_sin] = [cos, sin].map(|code| code as f64 / 2f64.powi(bits as i32));
+        real.step(&Input {
+            adc_cos,
+            adc_sin,
+            preset: false,
+            calibrate: true,
+        });
+        if k >= samples / 2 {
+            sum += wrapped(chip.position() - real.position()).powi(2);
+        }
+    }
+    assert!(chip.state.locked && real.state.locked, "not locked");
+    (sum / f64::from(samples / 2)).sqrt()
+}
+
+/// Whatever word is shortened by three bits, the chip differs from the unrounded one by no more than its budget says.
+#[test]
+fn a_shorter_word_costs_what_the_budget_says() {
+    let mut sum_of_squares = optical();
+    sum_of_squares.calibration.method = CalibrationMethod::SumOfSquares;
+    let mut late = optical();
+    late.correction.channel_skew_s = 1e-7;
+    let mut nine = optical();
+    nine.calibration.parameters = 9;
+    let mut wavy = optical();
+    wavy.correction.harmonics = variants::third_and_fifth();
+    let mut exact = optical();
+    exact.calibration.method = CalibrationMethod::Exact;
+    for spec in [optical(), sum_of_squares, late, nine, wavy, exact] {
+        let chosen = Design::new(&spec).expect("a design that works");
+        let said = all_said(&chosen);
+        for word in chosen.word_lengths() {
+            let value = (word.value - 3).max(word.lowest);
+            let with = |spec: &Spec| {
+                let mut spec = spec.clone();
+                set(&mut spec, key(&word), value);
+                Design::new(&spec)
+            };
+            // Where the others may not stay as they are, they follow.
+            let design = with(&said)
+                .or_else(|_| with(&spec))
+                .expect("a shorter word");
+            let (found, budget) = (rounding(&design), design.budget.arithmetic());
+            println!(
+                "{}: {:.2e} found, {:.2e} in the budget",
+                word.key, found, budget
+            );
+            assert!(
+                found <= 2.0 * budget,
+                "{}: {found:e} of {budget:e}",
+                word.key
+            );
+        }
+    }
+}
+
+/// Refused at its ends, with both of them.
+#[test]
+fn what_cannot_be_is_refused_with_its_limits() {
+    for chip in chips() {
+        let chosen = chip.design();
+        let said = all_said(&chosen);
+        for word in chosen.word_lengths() {
+            for value in [word.lowest - 1, word.highest + 1] {
+                let mut spec = said.clone();
+                set(&mut spec, key(&word), value);
+                let refused = Design::new(&spec).expect_err("outside its limits");
+                let message = refused.to_string();
+                let DesignError::Field { field, limit, .. } = refused else {
+                    panic!("{message}");
+                };
+                assert_eq!(field, word.key, "{message}");
+                let end = if value < word.lowest {
+                    word.lowest
+                } else {
+                    word.highest
+                };
+                assert!(limit.contains(&end.to_string()), "{message}");
+            }
+        }
+    }
+}
+
+/// Ranges that do not hold what is promised name the registers and the worst case.
+#[test]
+fn a_range_that_does_not_hold_the_promise_names_the_parameter_and_the_sensor() {
+    let mut spec = optical();
+    spec.formats.gain_range_log2 = Some(-4);
+    let message = Design::new(&spec).expect_err("too narrow").to_string();
+    for part in [
+        "formats.gain_range_log2 = -4",
+        "theta_1_deviation and theta_3_deviation reach 0.226",
+        "sensor.amplitude_tolerance is 0.15 and sensor.phase_error_max_deg is 5",
+        "limit: -2 … 4",
+    ] {
+        assert!(message.contains(part), "{message}");
+    }
+}
+
+/// A word that the chip does not have is refused with the reason.
+#[test]
+fn a_word_without_effect_is_refused() {
+    let chosen = Design::new(&optical()).expect("a shipped design");
+    let held = chosen.word_lengths();
+    let mut absent = 0;
+    for name in Overrides::KEYS {
+        if held.iter().any(|word| key(word) == *name) {
+            continue;
+        }
+        absent += 1;
+        let mut spec = optical();
+        set(&mut spec, name, 9);
+        let message = Design::new(&spec).expect_err("no such word").to_string();
+        let said = format!("formats.{name} = 9: this chip has no such word: ");
+        assert!(message.starts_with(&said), "{message}");
+    }
+    assert!(absent > 5, "{absent}");
+}
+
+/// What does not fit is refused with the key that leads there, alone or with others, or with the promise.
+#[test]
+fn a_signal_that_does_not_fit_names_the_key_that_leads_there() {
+    let blamed = |change: &dyn Fn(&mut Spec)| {
+        let mut spec = optical();
+        spec.adc.bits = 18;
+        spec.sensor.noise_rms = 0.0;
+        spec.calibration.parameters = 9;
+        spec.calibration.method = CalibrationMethod::SumOfSquares;
+        change(&mut spec);
+        let refused = Design::new(&spec).expect_err("too many bits");
+        assert!(matches!(refused, DesignError::Range { .. }), "{refused}");
+        refused.field().to_owned()
+    };
+    let longest = |s: &mut Spec| {
+        s.formats.signal_fraction = Some(24);
+        s.formats.phase_bits = Some(44);
+        s.formats.accumulator_fraction = Some(44);
+    };
+    assert_eq!(blamed(&longest), "formats.accumulator_fraction");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(400))]
+
+    /// Any words together are a chip whose graph is the chip in every bit, or a refusal that names one of them.
+    #[test]
+    fn any_words_are_a_chip_or_a_refusal(
+        chip in 0..64usize,
+        said in prop::collection::vec((0..Overrides::KEYS.len(), prop_oneof![
+            4 => (0..=1000i64).prop_map(|share| (true, share)),
+            1 => (-70..70i64).prop_map(|value| (false, value)),
+        ]), 0..10),
+    ) {
+        let chips = chips();
+        let chosen = chips[chip % chips.len()].design();
+        let held = chosen.word_lengths();
+        let mut spec = chosen.spec.clone();
+        for (n, (within, value)) in said {
+            // Mostly within the limits of a word that the chip has.
+            let word = &held[n % held.len()];
+            let (key, value) = if within {
+                (key(word), word.lowest + (word.highest - word.lowest) * value / 1000)
+            } else {
+                (Overrides::KEYS[n], value)
+            };
+            // Where it can be said at all.
+            let _ = spec.formats.set(key, Some(value));
+        }
+        match Design::new(&spec) {
+            Ok(design) => graph_equals_chip(&design, codes(&spec), 25),
+            Err(error) => prop_assert!(error.field().starts_with("formats."), "{}", error),
+        }
+    }
+}
