@@ -1,10 +1,14 @@
 //! `nonius build`: the whole package of a design.
 
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use anyhow::{Result, bail};
 use clap::Args;
-use nonius_package::{DesignJson, PullIn, ROWS, engineering, package_with, write};
+use indicatif::{ProgressBar, ProgressStyle};
+use nonius_package::{
+    DesignJson, Event, PullIn, ROWS, engineering, package_followed, periods_per_second, write,
+};
 use nonius_testvectors::stimulus;
 
 use crate::play;
@@ -36,7 +40,7 @@ pub(crate) struct Build {
 
 /// Whether the chip reaches the accuracy that was asked for and locks on every sensor that is promised.
 pub(crate) fn run(args: &Build) -> Result<bool> {
-    let (design, text) = crate::design_file::read_with_text(&args.design)?;
+    let (design, text) = crate::design_file::read(&args.design)?;
     let spec = &design.spec;
     let mut stimuli = stimulus::named(&design, args.rows as usize);
     let shown = match (&args.play, &args.sensor) {
@@ -51,7 +55,9 @@ pub(crate) fn run(args: &Build) -> Result<bool> {
         play::check(spec, &recording, &path, args.repeat)?;
         stimuli.push(play::stimulus(shown, spec, &recording, args.repeat));
     }
-    let package = package_with(&design, stimuli, shown)?;
+    let bar = Bar::new();
+    let package = package_followed(&design, stimuli, shown, &|event| bar.follow(event))?;
+    drop(bar);
     let needed = package.json.latency.clock_hz_min;
     if let Some(clock) = spec.chip.clock_hz.filter(|clock| *clock < needed) {
         bail!(
@@ -65,6 +71,48 @@ pub(crate) fn run(args: &Build) -> Result<bool> {
     write(&package.files, &args.output)?;
     summary(&package.json, &args.output, shown);
     Ok(package.json.holds())
+}
+
+/// What is being done, on a terminal only.
+struct Bar(ProgressBar);
+
+impl Bar {
+    fn new() -> Self {
+        let line = ProgressBar::new_spinner();
+        line.enable_steady_tick(Duration::from_millis(100));
+        Self(line)
+    }
+
+    fn follow(&self, event: Event) {
+        let doing = match event {
+            Event::Generating => "writes the Verilog",
+            Event::Simulating => "simulates the chip",
+            Event::Starting { starts } => {
+                self.0.set_length(starts as u64);
+                let bar = "{bar:40} {pos}/{len} {msg}, {eta} left";
+                if let Ok(style) = ProgressStyle::with_template(bar) {
+                    self.0.set_style(style);
+                }
+                "starts from power-up"
+            }
+            Event::Started => return self.0.inc(1),
+            Event::Remedying | Event::Writing => {
+                self.0.set_style(ProgressStyle::default_spinner());
+                if event == Event::Writing {
+                    "makes vectors, waves and report"
+                } else {
+                    "looks for a promise with which every sensor locks"
+                }
+            }
+        };
+        self.0.set_message(doing);
+    }
+}
+
+impl Drop for Bar {
+    fn drop(&mut self) {
+        self.0.finish_and_clear();
+    }
 }
 
 fn summary(j: &DesignJson, output: &Path, shown: &str) {
@@ -99,9 +147,9 @@ fn summary(j: &DesignJson, output: &Path, shown: &str) {
         j.sine_table.bits + j.harmonics.as_ref().map_or(0, |h| h.bits)
     );
     say!(
-        "  bandwidth   {} at -3 dB, to {} periods/s",
+        "  bandwidth   {} at -3 dB, to {}",
         engineering(j.tracking.bandwidth_3db_hz, "Hz"),
-        engineering(j.tracking.speed_max_periods_per_s, "").trim_end()
+        periods_per_second(j.tracking.speed_max_periods_per_s)
     );
     say!("  position    {}", position(j));
     pulled_in(&j.pull_in);

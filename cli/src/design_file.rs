@@ -11,13 +11,8 @@ use nonius_model::spec::{Place, Spec};
 /// A design is a page of text; what is longer is something else.
 const LONGEST: u64 = 1 << 20;
 
-/// The design in a file, quantised; an error names the place of the field that cannot be.
-pub(crate) fn read(path: &Path) -> Result<Design> {
-    Ok(read_with_text(path)?.0)
-}
-
-/// The same, and the file's text.
-pub(crate) fn read_with_text(path: &Path) -> Result<(Design, String)> {
+/// The design in a file, quantised, and the file's text; an error names the place of the field that cannot be.
+pub(crate) fn read(path: &Path) -> Result<(Design, String)> {
     let file = path.display().to_string();
     let text = text(path, &file)?;
     let design = Design::new(&Spec::from_toml(&text, &file)?).map_err(|error| {

@@ -55,7 +55,7 @@ struct About {
 pub(crate) fn run(args: &Diagnose) -> Result<bool> {
     let recording = Recording::read(&args.recording, &args.recording_args.overrides())?;
     let given = args.design.as_deref();
-    let design = given.map(crate::design_file::read_with_text).transpose()?;
+    let design = given.map(crate::design_file::read).transpose()?;
     let found = diagnose(&recording)
         .map_err(|error| anyhow::anyhow!("{}: {error}", args.recording.display()))?;
     for note in &found.notes {

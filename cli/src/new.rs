@@ -8,7 +8,7 @@ use anyhow::{Context, Result, bail};
 use clap::Args;
 use nonius_model::design::{Design, DesignError};
 use nonius_model::spec::Spec;
-use nonius_package::{digits, engineering};
+use nonius_package::{digits, periods_per_second};
 use nonius_recording::{AdcSource, Recording, Survey};
 
 use crate::recording_args::RecordingArgs;
@@ -80,10 +80,10 @@ pub(crate) fn run(args: &New) -> Result<()> {
         .with_context(|| format!("cannot write {}", path.display()))?;
     target.keep_new()?;
     say!(
-        "{}: accuracy {:.2e} periods rms predicted, speed to {} periods/s",
+        "{}: accuracy {:.2e} periods rms predicted, speed to {}",
         path.display(),
         design.budget.total(),
-        engineering(draft.speed_max.0, "").trim_end()
+        periods_per_second(draft.speed_max.0)
     );
     say!("next: nonius build {} -o out/{}", path.display(), args.name);
     Ok(())

@@ -156,8 +156,7 @@ fn exact(raw: i128, fraction: u32) -> String {
 
 pub(crate) fn run(args: &Simulate) -> Result<()> {
     apart(args)?;
-    let file = args.design.display().to_string();
-    let design = crate::design_file::read(&args.design)?;
+    let (design, text) = crate::design_file::read(&args.design)?;
     let spec = &design.spec;
     let (recording, path) = play::source(
         args.recording.as_deref(),
@@ -185,7 +184,10 @@ pub(crate) fn run(args: &Simulate) -> Result<()> {
         })
     };
     let units = if args.physical {
-        units(spec).with_context(|| file.clone())?
+        units(
+            spec,
+            &crate::design_file::place(&args.design, &text, "sensor"),
+        )?
     } else {
         vec![]
     };
@@ -244,8 +246,9 @@ fn apart(args: &Simulate) -> Result<()> {
     Ok(())
 }
 
-/// What the position is written in besides periods: column and unit per period, equation (1).
-fn units(spec: &Spec) -> Result<Vec<(&'static str, f64)>> {
+/// What the position is written in besides periods: column and unit per period, equation (1). `place` is where the design
+/// describes its sensor.
+fn units(spec: &Spec, place: &str) -> Result<Vec<(&'static str, f64)>> {
     let known = [
         ("position_m", metres(spec, 1.0)),
         ("position_rad", radians_of_revolution(spec, 1.0)),
@@ -256,7 +259,8 @@ fn units(spec: &Spec) -> Result<Vec<(&'static str, f64)>> {
         .collect();
     if units.is_empty() {
         anyhow::bail!(
-            "--physical: neither sensor.scale_period_m nor sensor.periods_per_revolution is given"
+            "{place}: --physical: neither sensor.scale_period_m nor sensor.periods_per_revolution is given; write one of them \
+             here, or leave out --physical"
         );
     }
     Ok(units)

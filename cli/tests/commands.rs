@@ -372,6 +372,38 @@ fn designs_that_no_chip_can_have_are_refused() {
             ["d.toml:32:1: chip.multipliers = 0", "need a multiplier"],
         ),
         (
+            "[chip]",
+            "[formats]\nsignal_fraction = 24\nphase_bits = 44\nresidual_fraction = 3\n[chip]",
+            [
+                "d.toml:34:1: formats.residual_fraction = 3",
+                "limit: 4 … 24",
+            ],
+        ),
+        (
+            "[chip]",
+            "[formats]\n gain_range_log2 = -4\n[chip]",
+            [
+                "d.toml:32:2: formats.gain_range_log2 = -4",
+                "theta_1_deviation",
+            ],
+        ),
+        (
+            "[chip]",
+            "[formats]\nharmonic_fraction = 12\n[chip]",
+            [
+                "d.toml:32:1: formats.harmonic_fraction = 12",
+                "leave it out",
+            ],
+        ),
+        (
+            "parameters = 5",
+            "parameters = 9\nmethod = \"sum_of_squares\"\n[formats]\nsignal_fraction = 24\naccumulator_fraction = 44\n",
+            [
+                "d.toml:29:1: formats.accumulator_fraction = 44: the formats cannot hold the design: ",
+                "does not fit s63.48",
+            ],
+        ),
+        (
             "[calibration]\nparameters = 5",
             "[calibration]\n  parameters = 7",
             ["d.toml:25:3: calibration.parameters = 7", "limit"],

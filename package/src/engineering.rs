@@ -22,6 +22,31 @@ pub fn engineering(value: f64, unit: &str) -> String {
     format!("{scaled:.digits$} {prefix}{unit}")
 }
 
+/// A speed in scale periods per second: three digits, a prefix above a thousand, plain below 1, where "65.5 m" would be read as
+/// metres.
+#[must_use]
+pub fn periods_per_second(value: f64) -> String {
+    let value = digits(value, 3);
+    if value.abs() < 1.0 {
+        return format!("{value} periods/s");
+    }
+    format!("{} periods/s", engineering(value, "").trim_end())
+}
+
+#[test]
+fn slow_speeds_are_plain() {
+    for (value, text) in [
+        (0.06554, "0.0655 periods/s"),
+        (-2e-5, "-0.00002 periods/s"),
+        (0.0, "0 periods/s"),
+        (0.9999, "1.00 periods/s"),
+        (65.54, "65.5 periods/s"),
+        (1e5, "100 k periods/s"),
+    ] {
+        assert_eq!(periods_per_second(value), text);
+    }
+}
+
 #[test]
 fn prefixes_are_those_of_the_si() {
     for (value, text) in [

@@ -7,6 +7,7 @@ mod design_json;
 mod diagram;
 mod engineering;
 mod harmonics;
+mod progress;
 mod pull_in;
 mod report;
 mod sensor;
@@ -17,8 +18,9 @@ mod tracking;
 mod write;
 
 pub use design_json::DesignJson;
-pub use engineering::{digits, engineering};
-pub use pull_in::{BOTH_WAYS, PullIn, Worst, pull_in};
+pub use engineering::{digits, engineering, periods_per_second};
+pub use progress::{Event, Progress, silent};
+pub use pull_in::{BOTH_WAYS, PullIn, Worst, pull_in, pull_in_followed};
 pub use signals::{Signal, signals};
 pub use simulation::{Accuracy, Simulation, simulate};
 pub use sine::{SineError, sine_error};
@@ -72,14 +74,30 @@ pub fn package_with(
     stimuli: Vec<Stimulus>,
     shown: &str,
 ) -> Result<Package, PackageError> {
+    package_followed(design, stimuli, shown, &silent)
+}
+
+/// The same; `progress` hears what is being done.
+///
+/// # Errors
+/// Only defects of the generator.
+pub fn package_followed(
+    design: &Design,
+    stimuli: Vec<Stimulus>,
+    shown: &str,
+    progress: Progress,
+) -> Result<Package, PackageError> {
+    progress(Event::Generating);
     let names: Vec<_> = stimuli
         .iter()
         .map(|s| (s.name.clone(), s.samples.len()))
         .collect();
     let hash = nonius_codegen::hash(design);
     let chip = nonius_codegen::generate(design, &hash, &names)?;
+    progress(Event::Simulating);
     let simulation = simulate(design);
-    let pull_in = pull_in(design, &BOTH_WAYS);
+    let pull_in = pull_in_followed(design, &BOTH_WAYS, progress);
+    progress(Event::Writing);
     let json = DesignJson::of(design, &hash, chip.clocks, simulation.accuracy, pull_in);
     let mut files: Vec<(String, Vec<u8>)> = chip
         .files

@@ -9,6 +9,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::engineering::digits;
+use crate::progress::{Event, Progress, silent};
 use crate::sensor::{Sensor, Shares};
 
 /// How the chip pulls in from power-up, with every promised error at either end of its range and the promised noise.
@@ -102,15 +103,26 @@ impl fmt::Display for Worst {
 /// Starts the chip with every promised sensor, at each of these parts of the largest speed ([`BOTH_WAYS`], and others for a test).
 #[must_use]
 pub fn pull_in(design: &Design, parts: &[f64]) -> PullIn {
+    pull_in_followed(design, parts, &silent)
+}
+
+/// The same; `progress` hears of every start.
+#[must_use]
+pub fn pull_in_followed(design: &Design, parts: &[f64], progress: Progress) -> PullIn {
     let spec = &design.spec;
     let rate = spec.adc.sample_rate_hz;
     let sensors = sensors(spec);
     let each: Vec<Start> = (0..sensors)
         .flat_map(|signs| starts(design, signs, parts))
         .collect();
+    progress(Event::Starting { starts: each.len() });
     let found: Vec<Option<u64>> = each
         .par_iter()
-        .map(|start| samples_to_lock(design, start))
+        .map(|start| {
+            let found = samples_to_lock(design, start);
+            progress(Event::Started);
+            found
+        })
         .collect();
     let starts_each = each.len() / sensors as usize;
     let (mut not_locked, mut worst): (u32, Option<Worst>) = (0, None);
@@ -133,7 +145,10 @@ pub fn pull_in(design: &Design, parts: &[f64]) -> PullIn {
         longest_s: longest_samples as f64 / rate,
         remedies: match not_locked {
             0 => vec![],
-            _ => remedies(spec, parts),
+            _ => {
+                progress(Event::Remedying);
+                remedies(spec, parts)
+            }
         },
         worst,
     }

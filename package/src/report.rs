@@ -8,7 +8,7 @@ use nonius_plot::{Axis, Look, Mark, Plot, Series};
 use crate::curves;
 use crate::design_json::DesignJson;
 use crate::diagram::Diagram;
-use crate::engineering::engineering;
+use crate::engineering::{engineering, periods_per_second};
 use crate::simulation::Simulation;
 
 #[derive(Template)]
@@ -146,7 +146,7 @@ fn said(design: &Design, j: &DesignJson) -> Vec<(&'static str, String, String)> 
         ),
         (
             "Largest speed",
-            format!("{} periods/s", engineering(t.speed_max_periods_per_s, "")),
+            periods_per_second(t.speed_max_periods_per_s),
             format!("lag there {:.2e} periods", t.lag_at_top_speed_periods),
         ),
         (

@@ -106,3 +106,21 @@ fn the_package_says_so() {
     assert!(page.contains(&format!("{sensors} of 32 sensors do not lock")));
     assert!(page.contains("class=\"fact missed\""));
 }
+
+/// Whoever waits hears of every start.
+#[test]
+fn every_start_is_heard_of() {
+    use std::sync::Mutex;
+    let heard = Mutex::new(vec![]);
+    let design = Design::new(&shipped::optical()).expect("a shipped design");
+    let found = nonius_package::pull_in_followed(&design, &BOTH_WAYS, &|event| {
+        heard.lock().expect("no panic").push(event);
+    });
+    let heard = heard.into_inner().expect("no panic");
+    let starts = (found.sensors * found.starts_each) as usize;
+    assert_eq!(heard[0], nonius_package::Event::Starting { starts });
+    let started = heard
+        .iter()
+        .filter(|e| **e == nonius_package::Event::Started);
+    assert_eq!((started.count(), heard.len()), (starts, starts + 1));
+}
