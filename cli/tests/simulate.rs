@@ -110,7 +110,11 @@ fn positions_have_the_units_that_the_design_knows() {
     ];
     refused(
         &nonius(dir.path(), &arguments),
-        &["--physical", "scale_period_m"],
+        &[
+            "neither.toml:5:2: --physical",
+            "scale_period_m",
+            "write one of them here",
+        ],
     );
 }
 
@@ -144,4 +148,52 @@ fn simulate_refuses_what_cannot_be() {
         &["none.toml"],
     );
     assert!(!dir.path().join("o.csv").exists());
+}
+
+/// Within three periods of lock the start by least squares has found Θ, in the chip and in the paper; the gears have not.
+#[test]
+fn the_start_by_least_squares_is_that_of_chip_and_paper() {
+    let dir = tempfile::tempdir().expect("scratch");
+    fs::write(dir.path().join("r.csv"), recording(300, 64.37)).expect("recording");
+    let text = fs::read_to_string(design()).expect("a design");
+    let started = text.replace(
+        "parameters = 5",
+        "parameters = 5\nstart = \"least_squares\"",
+    );
+    fs::write(dir.path().join("gears.toml"), text).expect("a design");
+    fs::write(dir.path().join("started.toml"), started).expect("a design");
+    // θ1 = 1/a_c, θ2 = -b_c/a_c, θ3 = 1/(a_s cos β), θ5 = tan β/a_c.
+    let truth = [
+        1.0 / 0.75,
+        -0.04 / 0.75,
+        1.0 / (0.85 * 0.03f64.cos()),
+        f64::NAN,
+        0.03f64.tan() / 0.75,
+    ];
+    let off = |design: &str, flags: &[&str]| {
+        let common = ["simulate", design, "r.csv", "-o", "o.csv"];
+        assert!(
+            nonius(dir.path(), &[&common, flags].concat())
+                .status
+                .success()
+        );
+        let csv = fs::read_to_string(dir.path().join("o.csv")).expect("o.csv");
+        let row: Vec<f64> = csv
+            .lines()
+            .last()
+            .expect("rows")
+            .split(',')
+            .map(|cell| cell.parse().expect("a number"))
+            .collect();
+        let misses = row[4..9]
+            .iter()
+            .zip(truth)
+            .map(|(is, should)| (is - should).abs());
+        misses.fold(0.0, f64::max)
+    };
+    let [chip, paper] = [&[][..], &["--reference"]].map(|flags| off("started.toml", flags));
+    let [slow, slow_paper] = [&[][..], &["--reference"]].map(|flags| off("gears.toml", flags));
+    println!("least squares {chip:.4}, {paper:.4}; gears {slow:.4}, {slow_paper:.4}");
+    assert!(chip < 0.001 && paper < 0.001, "{chip} {paper}");
+    assert!(slow > 0.004 && slow_paper > 0.004, "{slow} {slow_paper}");
 }

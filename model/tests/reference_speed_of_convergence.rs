@@ -47,6 +47,11 @@ fn equalised(gamma: f64) -> Steps {
 
 /// Largest share of the first miscalibration (rms) that is left after so many periods of travel, over all signs.
 fn left(search: Search, gamma: Gamma, periods: u32) -> f64 {
+    left_after(0, search, gamma, periods)
+}
+
+/// The same where the least squares of so many periods go first.
+fn left_after(solved: u32, search: Search, gamma: Gamma, periods: u32) -> f64 {
     let mut worst = 0.0f64;
     for (seed, sensor) in sensors().iter().enumerate() {
         let window = Window {
@@ -58,6 +63,7 @@ fn left(search: Search, gamma: Gamma, periods: u32) -> f64 {
             search,
             gamma,
             gate: Gate::Travelled(window),
+            solved,
             start: Start::Arctangent { samples: 16 },
             ..Config::paper(SET, type_2(1.0), 0.0)
         })
@@ -158,4 +164,21 @@ fn least_squares_take_two_periods() {
             .is_err()
         );
     }
+}
+
+/// Least squares of whole periods, as a design asks for them: one leaves the second order of the errors, two leave noise.
+#[test]
+fn two_solved_periods_are_enough() {
+    let gamma = Gamma {
+        first: equalised(0.01),
+        halvings: 0,
+        periods: f64::INFINITY,
+    };
+    // A few samples later: lock is counted from a sample on, travel from the next.
+    let [one, two, three] = [1, 2, 3].map(|n| 100.0 * left_after(n.min(2), FINAL, gamma, n + 1));
+    println!("solved: {one:.2}, {two:.2}, {three:.2} % left a period after the last of 1, 2, 2");
+    assert!(
+        one < 20.0 && two < 1.0 && three < 1.0,
+        "{one} {two} {three}"
+    );
 }

@@ -357,3 +357,39 @@ fn a_hold_that_noise_would_never_leave_is_widened_and_one_out_of_range_refused()
     let message = Design::new(&spec).expect_err("no residual").to_string();
     assert!(message.contains("calibration.hold_residual"), "{message}");
 }
+
+/// Without calibration its keys are refused, each with its own name; as they stand by themselves they may be written.
+#[test]
+fn keys_of_no_calibration_are_refused() {
+    let fixed = text().replace("parameters = 5", "parameters = 0");
+    let with = |line: &str| {
+        let text = fixed.replace("parameters = 0", &format!("parameters = 0\n{line}"));
+        let spec = Spec::from_toml(&text, "d.toml").expect("well formed");
+        (Design::new(&spec), text)
+    };
+    for (key, other, same) in [
+        ("method", "\"exact\"", "\"final\""),
+        ("start", "\"least_squares\"", "\"gears\""),
+        ("forgetting", "2", "3"),
+        ("completion", "false", "true"),
+        ("completion_gamma", "9", "10"),
+        ("gamma_first", "5", "4"),
+        ("gamma_last", "12", "10"),
+        ("gear_periods", "4", "3"),
+        ("restart_residual", "0.3", "0.25"),
+        ("hold_residual", "0.125", "0.0625"),
+        ("recall", "true", "false"),
+    ] {
+        assert!(with(&format!("{key} = {same}")).0.is_ok(), "{key}");
+        let (refused, text) = with(&format!("{key} = {other}"));
+        let refused = refused.expect_err("no effect");
+        assert_eq!(refused.field(), format!("calibration.{key}"));
+        let place = Place::of_field(&text, refused.field()).map(|place| place.to_string());
+        assert_eq!(place.as_deref(), Some("26:1"));
+        let message = refused.to_string();
+        assert!(message.contains(&format!(" = {other}: ")), "{message}");
+        assert!(message.contains("leave it out"), "{message}");
+    }
+    let keys = keys().filter(|(section, key)| *section == "calibration" && *key != "parameters");
+    assert_eq!(keys.count(), 11);
+}

@@ -2,10 +2,10 @@
 
 use super::DesignError;
 use super::keywords::{KEYWORDS, SYSTEM_KEYWORDS};
-use super::refuse::{between, refuse};
+use super::refuse::{between, number, refuse};
 use crate::graph::Graph;
 use crate::kernel::gears::SETTLED;
-use crate::spec::{CalibrationMethod, CalibrationStart, Multipliers, Spec};
+use crate::spec::{Calibration, CalibrationMethod, CalibrationStart, Multipliers, Spec};
 
 /// Checks every field for sense.
 pub(super) fn check(spec: &Spec) -> Result<(), DesignError> {
@@ -224,6 +224,9 @@ fn calibration(spec: &Spec) -> Result<(), DesignError> {
             "offsets and gains are 4, with the phase 5, with the bends of both channels 8 and 9",
         );
     }
+    if c.parameters == 0 {
+        return without(c);
+    }
     let bends = c.parameters >= 8;
     if bends && c.method == CalibrationMethod::Exact {
         return refuse(
@@ -279,6 +282,67 @@ fn calibration(spec: &Spec) -> Result<(), DesignError> {
         18.0,
         "a gamma of 2^-0 does not converge, and 2^-18 takes a million samples",
     )
+}
+
+/// Without calibration no key of its says anything: one that does was meant for a chip with it.
+fn without(c: &Calibration) -> Result<(), DesignError> {
+    let none = Calibration {
+        parameters: 0,
+        ..Calibration::default()
+    };
+    let said = |key: &str, value: String, differs: bool| {
+        if !differs {
+            return Ok(());
+        }
+        refuse(
+            format!("calibration.{key}"),
+            value,
+            "leave it out, or take 4, 5, 8 or 9 parameters",
+            "calibration.parameters = 0 calibrates nothing: this key has no effect",
+        )
+    };
+    let method = match c.method {
+        CalibrationMethod::Final => "final",
+        CalibrationMethod::Exact => "exact",
+        CalibrationMethod::SumOfSquares => "sum_of_squares",
+        CalibrationMethod::Batch => "batch",
+    };
+    let start = match c.start {
+        CalibrationStart::Gears => "gears",
+        CalibrationStart::LeastSquares => "least_squares",
+    };
+    said("method", format!("{method:?}"), c.method != none.method)?;
+    said("start", format!("{start:?}"), c.start != none.start)?;
+    for (key, is, was) in [
+        ("forgetting", c.forgetting, none.forgetting),
+        (
+            "completion_gamma",
+            c.completion_gamma,
+            none.completion_gamma,
+        ),
+        ("gamma_first", c.gamma_first, none.gamma_first),
+        ("gamma_last", c.gamma_last, none.gamma_last),
+        ("gear_periods", c.gear_periods, none.gear_periods),
+    ] {
+        said(key, is.to_string(), is != was)?;
+    }
+    for (key, is, was) in [
+        (
+            "restart_residual",
+            c.restart_residual,
+            none.restart_residual,
+        ),
+        ("hold_residual", c.hold_residual, none.hold_residual),
+    ] {
+        said(key, number(is), is != was)?;
+    }
+    for (key, is, was) in [
+        ("completion", c.completion, none.completion),
+        ("recall", c.recall, none.recall),
+    ] {
+        said(key, is.to_string(), is != was)?;
+    }
+    Ok(())
 }
 
 /// Signals of the module that are no nodes of the graph.

@@ -13,7 +13,7 @@ use super::poles::Poles;
 use super::start::Start;
 use super::sum_of_squares::Smoothing;
 use super::{Config, Parameters, ReferenceError, Steps, Theta};
-use crate::spec::{CalibrationMethod, Spec};
+use crate::spec::{CalibrationMethod, CalibrationStart, Spec};
 
 /// From the unit of the ADC's range to y: the middle becomes 0, the nominal amplitude 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -179,6 +179,10 @@ pub fn config(spec: &Spec) -> Result<Config, ReferenceError> {
             Gate::Locked(window)
         } else {
             Gate::Travelled(window)
+        },
+        solved: match k.start {
+            CalibrationStart::LeastSquares if k.parameters > 0 => 2,
+            _ => 0,
         },
         hold: Some(HoldConfig {
             residual: spec.hold_residual(),

@@ -5,111 +5,17 @@
 
 use std::f64::consts::TAU;
 
-use nalgebra::SMatrix;
-
-use super::completed::{CompletedConfig, Completion};
+use super::completed::Completion;
+pub use super::config::{Config, Gamma, Search, Steps};
 use super::gate::{Gate, GateState, Window};
-use super::gradient::{Form, Observation, ResidualGradient};
-use super::harmonics::Harmonics;
-use super::hold::{Hold, HoldConfig, Recall, Verdict};
-use super::loops::{Loop, LoopConfig};
-use super::recursive::{LeastSquaresStart, StartConfig};
+use super::gradient::{Observation, ResidualGradient};
+use super::hold::{Hold, Recall, Verdict};
+use super::loops::Loop;
+use super::recursive::LeastSquaresStart;
+use super::solved::Solved;
 use super::start::{Acquisition, Start};
 use super::sum_of_squares::{Smoothing, SumOfSquares};
-use super::{Parameters, ReferenceError, Theta, require};
-
-/// Which gradient moves Θ.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Search {
-    /// None: Θ stays as it is.
-    None,
-    /// Section 5.5: δΘ = −γ (∇r)ᵀ r.
-    Residual(Form),
-    /// Sections 5.2 to 5.4: δΘ = −γ ∇J.
-    SumOfSquares(Smoothing),
-    /// Final form, and one scalar sensitivity for what it cannot see.
-    Completed(CompletedConfig),
-    /// Final form, after a start by recursive least squares.
-    Started(StartConfig),
-}
-
-/// The step δΘ = −Γ ∇: γ times the unit matrix in the paper; a diagonal gives each parameter its own γ, a full matrix
-/// equalises the speeds of the gradient's modes.
-pub type Steps = SMatrix<f64, 9, 9>;
-
-/// γ and how it shrinks. The paper has one γ that stays.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Gamma {
-    /// The first.
-    pub first: Steps,
-    /// How often it is halved.
-    pub halvings: u32,
-    /// After so many periods of net travel in one direction, each time.
-    pub periods: f64,
-}
-
-impl Gamma {
-    /// The paper's: one for all parameters, for ever.
-    #[must_use]
-    pub fn constant(gamma: f64) -> Self {
-        Self {
-            first: Steps::identity() * gamma,
-            halvings: 0,
-            periods: f64::INFINITY,
-        }
-    }
-}
-
-/// What the reference is made of.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Config {
-    /// Parameter set.
-    pub parameters: Parameters,
-    /// Θ at the start.
-    pub theta: Theta,
-    /// The loop.
-    pub tracking: LoopConfig,
-    /// The sine is sampled so much later than the cosine, seconds; 0 in the paper.
-    pub skew: f64,
-    /// What stands in the channels beside the paper's signals; none there.
-    pub harmonics: Harmonics,
-    /// The search.
-    pub search: Search,
-    /// γ.
-    pub gamma: Gamma,
-    /// When Θ may move.
-    pub gate: Gate,
-    /// When Θ is held; never in the paper.
-    pub hold: Option<HoldConfig>,
-    /// How far each parameter may go from its start; infinite in the paper.
-    pub bound: Theta,
-    /// How α̂ starts.
-    pub start: Start,
-}
-
-impl Config {
-    /// The paper as printed: final form, one γ for ever, an update each sample, no bounds, α̂ = 0 at the start.
-    #[must_use]
-    pub fn paper(parameters: Parameters, tracking: LoopConfig, gamma: f64) -> Self {
-        Self {
-            parameters,
-            theta: parameters.nominal(1.0),
-            tracking,
-            skew: 0.0,
-            harmonics: Harmonics::NONE,
-            search: Search::Residual(Form::Final),
-            gamma: Gamma::constant(gamma),
-            gate: Gate::EverySample,
-            hold: None,
-            bound: Theta::repeat(f64::INFINITY),
-            start: Start::At {
-                alpha_hat: 0.0,
-                speed: 0.0,
-                e_1: 0.0,
-            },
-        }
-    }
-}
+use super::{ReferenceError, Theta, require};
 
 /// What is known at a sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -160,6 +66,7 @@ pub struct Reference {
     tracking: Loop,
     searching: Searching,
     gate: GateState,
+    solved: Solved,
     hold: Hold,
     recall: Recall,
     acquisition: Option<Acquisition>,
@@ -205,6 +112,7 @@ impl Reference {
             tracking,
             searching,
             gate: GateState::new(config.gate),
+            solved: Solved::new(config.solved),
             hold: Hold::default(),
             recall: Recall::new(config.theta, tracking.alpha_hat()),
             acquisition,
@@ -233,7 +141,14 @@ impl Reference {
         let locked = self.gate.locked();
         let open = open && self.free(seen.rho, locked);
         let gamma = self.gamma();
-        let estimate = self.go_on(&seen, open.then_some(&gamma), locked);
+        let starting = self.solved.running();
+        let solved = if starting {
+            self.solve(&seen, locked)
+        } else {
+            Theta::zeros()
+        };
+        let gamma = (open && !starting).then_some(&gamma);
+        let estimate = self.go_on(&seen, gamma, locked, solved);
         self.watch(&seen);
         Estimate { locked, ..estimate }
     }
@@ -248,7 +163,7 @@ impl Reference {
         complete: bool,
     ) -> Estimate {
         let seen = self.observe([y_c, y_s]);
-        self.go_on(&seen, gamma, complete)
+        self.go_on(&seen, gamma, complete, Theta::zeros())
     }
 
     /// What is known of the next sample before it comes: e and ρ are not, and are 0.
@@ -301,7 +216,29 @@ impl Reference {
         Observation::known(parameters, &self.theta, y, phase, known)
     }
 
-    fn go_on(&mut self, seen: &Observation, gamma: Option<&Steps>, complete: bool) -> Estimate {
+    /// Gathers a sample of the start; what it moves Θ by. A period that was solved is worth a halving of γ.
+    fn solve(&mut self, seen: &Observation, locked: bool) -> Theta {
+        let alpha_hat = self.tracking.alpha_hat();
+        self.geared.1 = alpha_hat;
+        if !locked {
+            self.solved.drop_period();
+            return Theta::zeros();
+        }
+        let solved = self.solved.step(self.config.parameters, seen, alpha_hat);
+        if solved.is_some() {
+            self.geared.0 = (self.geared.0 + 1).min(self.config.gamma.halvings);
+        }
+        solved.unwrap_or_else(Theta::zeros)
+    }
+
+    /// The loop and Θ one sample on; `solved`: what moves Θ besides the search.
+    fn go_on(
+        &mut self,
+        seen: &Observation,
+        gamma: Option<&Steps>,
+        complete: bool,
+        solved: Theta,
+    ) -> Estimate {
         let theta = self.theta;
         let estimate = Estimate {
             e: seen.e,
@@ -333,7 +270,8 @@ impl Reference {
             ..
         } = &self.config;
         self.theta = Theta::from_fn(|i, _| {
-            start[i] + (theta[i] + change[i] - start[i]).clamp(-bound[i], bound[i])
+            let moved = theta[i] + change[i] + solved[i];
+            start[i] + (moved - start[i]).clamp(-bound[i], bound[i])
         });
         self.tracking.advance(seen.e);
         estimate
@@ -362,6 +300,7 @@ impl Reference {
         }
         if verdict == Verdict::Changed {
             self.geared = (0, alpha_hat);
+            self.solved.again();
         }
         verdict != Verdict::Held
     }

@@ -14,7 +14,7 @@
 //! | 5.2 and 5.3, sum of squares | [`sum_of_squares`] |
 //! | 5.5, (8) to (11) and the final form | [`gradient`] |
 //! | what the paper lacks: the direction that no radius shows | [`completed`] |
-//! | a start within two periods | [`recursive`] |
+//! | a start within two periods: sample by sample, period by period | [`recursive`], [`solved`] |
 //! | harmonics of the scale period | [`harmonics`] |
 //! | the sine sampled later than the cosine | [`skew`] |
 //! | when to calibrate, how to start | [`gate`], [`hold`], [`start`] |
@@ -25,6 +25,7 @@
 pub mod arctangent;
 pub mod baseline;
 pub mod completed;
+pub mod config;
 pub mod correction;
 pub mod extremes;
 pub mod from_spec;
@@ -39,6 +40,7 @@ pub mod poles;
 pub mod recursive;
 pub mod sensor;
 pub mod skew;
+pub mod solved;
 pub mod start;
 pub mod sum_of_squares;
 
