@@ -6,8 +6,9 @@ use nonius_recording::Ellipse;
 use crate::cramer_rao::{self, Bound};
 use crate::curve::{Curve, Parameters, theta_covariance};
 use crate::method::{Error, Method, Options};
-use crate::result::{Calibration, Parameter};
+use crate::result::{Calibration, Correlations, Parameter};
 use crate::samples::{self, Samples};
+use crate::set::Set;
 use crate::unbiased::Fit;
 use crate::{conic, extremes, gradient, unbiased, words};
 
@@ -18,7 +19,8 @@ struct Estimate {
     theta: Vec<f64>,
     theta_covariance: Option<DMatrix<f64>>,
     cannot_tell: Vec<String>,
-    remarks: Vec<String>,
+    /// Of the amplitudes by the noise, in amplitudes.
+    bias: Option<[f64; 2]>,
 }
 
 impl Estimate {
@@ -32,7 +34,34 @@ impl Estimate {
             ellipse,
             covariance: sound.map(dynamic),
             cannot_tell: vec![],
-            remarks: vec![],
+            bias: None,
+        }
+    }
+}
+
+/// Which error bars the samples tell.
+struct Told {
+    /// Of a_c, b_c, a_s, b_s, β.
+    physical: Vec<bool>,
+    /// Of Θ.
+    theta: Vec<bool>,
+}
+
+impl Told {
+    /// Θ is made of the physical parameters, a cubic of all of them: what one cannot be told of, it cannot either.
+    fn of(method: Method, untold: [bool; 5]) -> Self {
+        let [a_c, b_c, a_s, b_s, beta] = untold;
+        let cross = a_c || beta;
+        let sine = a_s || beta;
+        let theta = match method.set() {
+            Set::Four => vec![a_c, a_c || b_c, a_s, a_s || b_s],
+            Set::Five => vec![a_c, a_c || b_c, sine, sine || b_s || cross || b_c, cross],
+            set => vec![untold.contains(&true); set.len()],
+        };
+        let told = |untold: &[bool]| untold.iter().map(|u| !u).collect();
+        Self {
+            physical: told(&untold),
+            theta: told(&theta),
         }
     }
 }
@@ -79,14 +108,35 @@ pub fn calibrate(
                 .into(),
         );
     }
+    let mut untold = [false; 5];
     if fit.converged {
-        cannot_tell.extend(words::of_arc(gap, &fit, whole(&fit, c.len())));
+        cannot_tell.extend(words::of_arc(method, gap, &fit, whole(&fit, c.len())));
+        untold = words::vague(&fit);
     }
+    if method == Method::Extremes && gap > words::GAP {
+        let unseen = extremes::unseen(&fit.ellipse, &radians, fit.noise);
+        cannot_tell.extend(words::of_extremes(unseen));
+        for (i, untold) in untold[..4].iter_mut().enumerate() {
+            *untold |= unseen[i / 2];
+        }
+    }
+    // The geometric fit says itself how little it knows.
+    let told = Told::of(
+        method,
+        if method == Method::Unbiased {
+            [false; 5]
+        } else {
+            untold
+        },
+    );
     if method == Method::Unbiased && own_residual > words::ROUNDING {
         cannot_tell.extend(words::of_ratio(&fit));
     }
     cannot_tell.extend(words::of_residuals(method, &fit, own_residual));
-    let mut remarks = estimate.remarks;
+    let mut remarks = vec![];
+    if let Some(bias) = estimate.bias {
+        remarks.push(words::of_bias(bias, !untold.contains(&true)));
+    }
     if samples.outliers > 0 {
         let (n, s) = (
             samples.outliers,
@@ -99,7 +149,7 @@ pub fn calibrate(
         remarks.push(format!("{n} sample{s} far off the ellipse and left out"));
     }
     if method != Method::Unbiased && fit.converged && own_residual > words::ROUNDING {
-        let beside = words::beside_unbiased(method, &estimate.ellipse.parameters(), &fit);
+        let beside = words::beside_unbiased(method, &estimate.ellipse.parameters(), &fit, untold);
         remarks.extend(beside);
     }
     if method.set().cubic() {
@@ -122,10 +172,18 @@ pub fn calibrate(
             &estimate.theta,
             errors,
             bound.as_ref(),
+            &told,
         ),
+        correlations: estimate
+            .covariance
+            .as_ref()
+            .map(|c| correlations(c, &told.physical)),
+        theta_correlations: estimate
+            .theta_covariance
+            .as_ref()
+            .map(|c| correlations(c, &told.theta)),
         ellipse: estimate.ellipse,
         theta: estimate.theta,
-        correlations: estimate.covariance.as_ref().map(correlations),
         noise: Some(fit.noise),
         noise_ratio_error: (options.noise_ratio.is_none() && !fit.ratio_assumed)
             .then(|| fit.log_ratio_error * fit.noise[1] / fit.noise[0])
@@ -159,10 +217,18 @@ pub fn undetermined(method: Method, cos: &[f64], sin: &[f64], why: &Error) -> Ca
         } else {
             0.0
         },
-        parameters: parameters(method, &ellipse, &[], None, None),
+        parameters: parameters(
+            method,
+            &ellipse,
+            &[],
+            None,
+            None,
+            &Told::of(method, [true; 5]),
+        ),
         ellipse,
         theta: vec![],
         correlations: None,
+        theta_correlations: None,
         noise: None,
         noise_ratio_error: None,
         shape: None,
@@ -218,11 +284,7 @@ fn estimate(method: Method, cos: &[f64], sin: &[f64], fit: &Fit) -> Option<Estim
                     repeats.bias[0] / fit.ellipse.a_c,
                     repeats.bias[2] / fit.ellipse.a_s,
                 ];
-                let [c, s] = bias.map(|b| b * 100.0);
-                estimate.remarks.push(format!(
-                    "with this noise the extremes are off by {c:+.2} % in a_c and {s:+.2} % in a_s on average; the error \
-                     bars, from a hundred repetitions, hold the scatter about that"
-                ));
+                estimate.bias = Some(bias);
             }
             Some(estimate)
         }
@@ -234,7 +296,7 @@ fn estimate(method: Method, cos: &[f64], sin: &[f64], fit: &Fit) -> Option<Estim
                 covariance: minimum.ellipse_covariance,
                 theta: minimum.theta,
                 theta_covariance: minimum.covariance,
-                remarks: vec![],
+                bias: None,
             })
         }
     }
@@ -247,6 +309,7 @@ fn parameters(
     theta: &[f64],
     errors: Option<(&DMatrix<f64>, &DMatrix<f64>)>,
     bound: Option<&Bound>,
+    told: &Told,
 ) -> Vec<Parameter> {
     let root = |v: f64| v.sqrt();
     let own =
@@ -254,7 +317,9 @@ fn parameters(
     let physical = words::NAMES.iter().enumerate().map(|(i, name)| Parameter {
         name: (*name).into(),
         value: ellipse.parameters()[i],
-        std_error: errors.and_then(|(c, _)| own(c, i)),
+        std_error: errors
+            .filter(|_| told.physical[i])
+            .and_then(|(c, _)| own(c, i)),
         unit: if i == 4 { "rad" } else { "column" }.into(),
         bound: bound.map(|b| root(b.covariance[(i, i)])),
     });
@@ -266,7 +331,9 @@ fn parameters(
         .map(|(i, (value, power))| Parameter {
             name: format!("theta_{}", i + 1),
             value: *value,
-            std_error: errors.and_then(|(_, c)| own(c, i)),
+            std_error: errors
+                .filter(|_| told.theta[i])
+                .and_then(|(_, c)| own(c, i)),
             unit: match power {
                 0 => "1".into(),
                 1 => "1/column".into(),
@@ -280,13 +347,19 @@ fn parameters(
     physical.chain(thetas).collect()
 }
 
-fn correlations(c: &DMatrix<f64>) -> [[f64; 5]; 5] {
-    std::array::from_fn(|i| {
-        std::array::from_fn(|j| {
-            let size = (c[(i, i)] * c[(j, j)]).sqrt();
-            if size > 0.0 { c[(i, j)] / size } else { 0.0 }
-        })
-    })
+fn correlations(c: &DMatrix<f64>, told: &[bool]) -> Correlations {
+    let known = |i: usize| told[i] && c[(i, i)] > 0.0;
+    let one = |i: usize, j: usize| {
+        let size = (c[(i, i)] * c[(j, j)]).sqrt();
+        // Of a sandwich both halves differ in their last digits.
+        let both = (c[(i, j)] + c[(j, i)]) / 2.0;
+        let value = if i == j { 1.0 } else { both / size };
+        (known(i) && known(j) && value.is_finite()).then_some(value)
+    };
+    let n = c.nrows();
+    (0..n)
+        .map(|i| (0..n).map(|j| one(i, j)).collect())
+        .collect()
 }
 
 fn residual(method: Method, theta: &[f64], cos: &[f64], sin: &[f64]) -> f64 {

@@ -35,6 +35,30 @@ pub struct Repeats {
     pub bias: Parameters,
 }
 
+/// Whether an end of the cosine, and of the sine, lies further beyond the samples at the angles `alpha` (radians) than their
+/// noise reaches: then the extremes are those of an arc.
+#[must_use]
+pub fn unseen(curve: &Ellipse, alpha: &[f64], noise: [f64; 2]) -> [bool; 2] {
+    use std::f64::consts::{FRAC_PI_2, PI};
+    // Nearest sample to an angle, as 1 − cos of the way to it.
+    let missed = |end: f64| {
+        let near = alpha.iter().map(|a| (a - end).cos());
+        1.0 - near.fold(-1.0, f64::max)
+    };
+    let channel = |size: f64, first: f64, noise: f64| {
+        [first, first + PI]
+            .map(missed)
+            .into_iter()
+            .fold(0.0, f64::max)
+            * size
+            > noise
+    };
+    [
+        channel(curve.a_c, 0.0, noise[0]),
+        channel(curve.a_s, curve.beta + FRAC_PI_2, noise[1]),
+    ]
+}
+
 /// Repetitions of the recording.
 const REPEATS: usize = 100;
 

@@ -25,4 +25,4 @@ pub use method::{Error, Method, Options};
 pub use noise::Shape;
 pub use nonius_recording::Ellipse;
 pub use report::report;
-pub use result::{Calibration, Parameter};
+pub use result::{Calibration, Correlations, Parameter};

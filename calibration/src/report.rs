@@ -116,16 +116,19 @@ fn correlations(out: &mut String, found: &Calibration) {
     let Some(all) = &found.correlations else {
         return;
     };
+    if all.iter().flatten().all(Option::is_none) {
+        return;
+    }
     let mut pairs = vec![];
     for (i, row) in all.iter().enumerate() {
         pairs.extend(
             row.iter()
                 .take(i)
                 .enumerate()
-                .map(|(j, value)| (*value, j, i)),
+                .filter_map(|(j, value)| Some(((*value)?, j, i))),
         );
     }
-    pairs.retain(|(value, ..)| value.is_finite() && value.abs() > CORRELATED);
+    pairs.retain(|(value, ..)| value.abs() > CORRELATED);
     pairs.sort_by(|a, b| b.0.abs().total_cmp(&a.0.abs()));
     let _ = writeln!(out, "[[Correlations]] (beyond {CORRELATED})");
     for (value, j, i) in pairs {

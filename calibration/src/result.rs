@@ -19,9 +19,11 @@ pub struct Parameter {
     /// "column" is the unit of the columns.
     pub unit: String,
     /// Standard error that no unbiased estimator can beat, where it is known.
-    #[serde(skip)]
     pub bound: Option<f64>,
 }
+
+/// Row by row; `None` with a parameter whose error cannot be told, or which the method holds fixed.
+pub type Correlations = Vec<Vec<Option<f64>>>;
 
 /// A calibration.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,7 +43,9 @@ pub struct Calibration {
     /// Physical parameters, then Θ.
     pub parameters: Vec<Parameter>,
     /// Correlations of the physical parameters, where they are known.
-    pub correlations: Option<[[f64; 5]; 5]>,
+    pub correlations: Option<Correlations>,
+    /// And those of Θ.
+    pub theta_correlations: Option<Correlations>,
     /// White noise of the channels, rms, in the unit of the columns; `None` where it cannot be told.
     pub noise: Option<[f64; 2]>,
     /// Standard error of σ_s/σ_c; `None` where it was given or assumed.

@@ -17,8 +17,52 @@ const SCATTER: f64 = 1.8;
 /// Residual below which it is rounding, in fractions of the amplitude.
 pub(crate) const ROUNDING: f64 = 1e-8;
 
+/// Of extremes that noise pushes outwards; `bars`: their error bars are shown.
+pub(crate) fn of_bias(bias: [f64; 2], bars: bool) -> String {
+    let [c, s] = bias.map(|b| b * 100.0);
+    let bars = if bars {
+        "; the error bars, from a hundred repetitions, hold the scatter about that"
+    } else {
+        ""
+    };
+    format!(
+        "with this noise the extremes are off by {c:+.2} % in a_c and {s:+.2} % in a_s on average{bars}"
+    )
+}
+
+/// Which parameters the samples tell no better than [`VAGUE`], by the geometric fit.
+pub(crate) fn vague(fit: &Fit) -> [bool; 5] {
+    let units = fit.ellipse.units();
+    std::array::from_fn(|i| {
+        let error = fit.covariance[(i, i)].sqrt() / units[i];
+        error.is_nan() || error > VAGUE
+    })
+}
+
+/// Of extremes that no sample reached, of cosine and sine.
+pub(crate) fn of_extremes(unseen: [bool; 2]) -> Vec<String> {
+    let channels = [("cos", "a_c and b_c"), ("sin", "a_s and b_s")];
+    let without = channels
+        .into_iter()
+        .zip(unseen)
+        .filter(|(_, unseen)| *unseen);
+    without
+        .map(|((channel, both), _)| {
+            format!(
+                "{both} cannot be told by extremes: the arc does not reach both ends of {channel}; unbiased takes the whole \
+                 curve"
+            )
+        })
+        .collect()
+}
+
 /// Of the arc that is there: `whole` are the standard errors that samples spread over whole periods would have.
-pub(crate) fn of_arc(gap: f64, fit: &Fit, whole: Option<Parameters>) -> Vec<String> {
+pub(crate) fn of_arc(
+    method: Method,
+    gap: f64,
+    fit: &Fit,
+    whole: Option<Parameters>,
+) -> Vec<String> {
     let mut out = vec![];
     let errors: Vec<f64> = (0..5).map(|i| fit.covariance[(i, i)].sqrt()).collect();
     if gap > GAP {
@@ -43,15 +87,21 @@ pub(crate) fn of_arc(gap: f64, fit: &Fit, whole: Option<Parameters>) -> Vec<Stri
         ));
     }
     let units = fit.ellipse.units();
+    let vague = vague(fit);
+    let whose = if method == Method::Unbiased {
+        "its"
+    } else {
+        "even with unbiased its"
+    };
     for (i, name) in NAMES.iter().enumerate() {
         let error = errors[i] / units[i];
-        if error.is_nan() || error > VAGUE {
+        if vague[i] {
             out.push(if i == 4 {
-                format!("{name} cannot be told from these samples: its standard error is {error:.2} rad")
+                format!("{name} cannot be told from these samples: {whose} standard error is {error:.2} rad")
             } else {
                 let percent = error * 100.0;
                 format!(
-                    "{name} cannot be told from these samples: its standard error is {percent:.0} % of the amplitude"
+                    "{name} cannot be told from these samples: {whose} standard error is {percent:.0} % of the amplitude"
                 )
             });
         }
@@ -138,8 +188,14 @@ pub(crate) fn of_minimum(method: Method, minimum: &Minimum) -> Vec<String> {
 }
 
 /// How an estimate lies beside the unbiased one, in standard errors of the latter.
-pub(crate) fn beside_unbiased(method: Method, found: &Parameters, fit: &Fit) -> Option<String> {
-    let against = (0..5).filter(|i| *i < 4 || method.finds_phase()).map(|i| {
+pub(crate) fn beside_unbiased(
+    method: Method,
+    found: &Parameters,
+    fit: &Fit,
+    untold: [bool; 5],
+) -> Option<String> {
+    let told = (0..5).filter(|i| !untold[*i] && (*i < 4 || method.finds_phase()));
+    let against = told.map(|i| {
         let miss = (found[i] - fit.ellipse.parameters()[i]) / fit.covariance[(i, i)].sqrt();
         (miss.abs(), NAMES[i])
     });

@@ -56,6 +56,17 @@ fn a_short_arc() {
     insta::assert_snapshot!(text(Method::Unbiased, &signals(0.3, 0.004, 0.0)));
 }
 
+/// Extremes and the algebraic fit of an arc: the word in place of an error bar.
+#[test]
+fn a_short_arc_by_its_extremes() {
+    insta::assert_snapshot!(text(Method::Extremes, &signals(0.3, 0.02, 0.0)));
+}
+
+#[test]
+fn a_short_arc_by_heydemann() {
+    insta::assert_snapshot!(text(Method::Heydemann, &signals(0.25, 0.03, 0.0)));
+}
+
 /// Exactly three and four samples a period: the places are counted, and nothing is said of a scale that stands still.
 #[test]
 fn few_places_of_the_period() {

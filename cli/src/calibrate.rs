@@ -4,7 +4,9 @@ use std::path::PathBuf;
 
 use anyhow::{Result, bail};
 use clap::{Args, ValueEnum};
-use nonius_calibration::{Method, Options, Parameter, calibrate, report, undetermined};
+use nonius_calibration::{
+    Calibration, Correlations, Method, Options, Parameter, calibrate, report, undetermined,
+};
 use nonius_recording::Recording;
 use serde::Serialize;
 
@@ -67,8 +69,75 @@ struct Json<'a> {
     method: Method,
     samples: usize,
     residual_rms: f64,
+    /// Of the channels, white, in the unit of the columns; null where it cannot be told.
+    noise: Option<Noise>,
     parameters: &'a [Parameter],
+    /// Of the physical parameters and of Θ.
+    correlations: Vec<Correlated<'a>>,
+    /// What no unbiased estimator can beat; that of each parameter stands beside it.
+    bound: Option<OfAngle>,
     cannot_tell: &'a [String],
+}
+
+#[derive(Serialize)]
+struct Noise {
+    cos_rms: f64,
+    sin_rms: f64,
+    /// Of the sine over that of the cosine.
+    ratio: f64,
+    /// Null where the ratio was given or assumed.
+    ratio_std_error: Option<f64>,
+}
+
+/// Rows and columns are the parameters of these names; null with one whose error cannot be told, or which is held.
+#[derive(Serialize)]
+struct Correlated<'a> {
+    names: Vec<&'a str>,
+    matrix: &'a Correlations,
+}
+
+/// Rms over the period, radians.
+#[derive(Serialize)]
+struct OfAngle {
+    by_parameters_rad: f64,
+    by_noise_of_a_sample_rad: f64,
+}
+
+impl<'a> Json<'a> {
+    fn of(found: &'a Calibration) -> Self {
+        let (physical, theta) = found.parameters.split_at(5.min(found.parameters.len()));
+        let correlated = |of: &'a [Parameter], matrix: &'a Option<Correlations>| {
+            Some(Correlated {
+                names: of.iter().map(|p| p.name.as_str()).collect(),
+                matrix: matrix.as_ref()?,
+            })
+        };
+        Self {
+            schema: "nonius.calibration/1",
+            method: found.method,
+            samples: found.samples,
+            residual_rms: found.residual_rms,
+            noise: found.noise.map(|[cos_rms, sin_rms]| Noise {
+                cos_rms,
+                sin_rms,
+                ratio: sin_rms / cos_rms,
+                ratio_std_error: found.noise_ratio_error,
+            }),
+            parameters: &found.parameters,
+            correlations: [
+                correlated(physical, &found.correlations),
+                correlated(theta, &found.theta_correlations),
+            ]
+            .into_iter()
+            .flatten()
+            .collect(),
+            bound: found.bound.as_ref().map(|bound| OfAngle {
+                by_parameters_rad: bound.angle_by_parameters,
+                by_noise_of_a_sample_rad: bound.angle_by_noise,
+            }),
+            cannot_tell: &found.cannot_tell,
+        }
+    }
 }
 
 pub(crate) fn run(args: &Calibrate) -> Result<()> {
@@ -97,15 +166,7 @@ pub(crate) fn run(args: &Calibrate) -> Result<()> {
         for remark in &found.remarks {
             eprintln!("note: {remark}");
         }
-        let json = Json {
-            schema: "nonius.calibration/1",
-            method: found.method,
-            samples: found.samples,
-            residual_rms: found.residual_rms,
-            parameters: &found.parameters,
-            cannot_tell: &found.cannot_tell,
-        };
-        say!("{}", serde_json::to_string_pretty(&json)?);
+        say!("{}", serde_json::to_string_pretty(&Json::of(&found))?);
     } else {
         let adc = recording.metadata.adc;
         say_as_it_is!("{}", report(&found, Some([adc.cos.lsb, adc.sin.lsb])));
