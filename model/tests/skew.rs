@@ -23,8 +23,10 @@ fn spec(parameters: u32, corrected: f64) -> Spec {
     let mut spec = optical();
     spec.calibration.parameters = parameters;
     spec.correction.channel_skew_s = corrected;
-    // A phase that is calibrated follows part of what skew does; here it is to follow little.
-    spec.calibration.gamma_last = 11;
+    if parameters > 0 {
+        // A phase that is calibrated follows part of what skew does; here it is to follow little.
+        spec.calibration.gamma_last = 11;
+    }
     spec
 }
 
