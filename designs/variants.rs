@@ -329,7 +329,7 @@ pub(crate) fn recalls() -> Vec<Variant> {
     let of = |(parameters, method, multipliers): (u32, CalibrationMethod, Multipliers)| {
         let mut variant = recalling(&optical(), parameters);
         variant.what = "recall".into();
-        variant.spec.calibration.gear_periods = 1;
+        variant.spec.calibration.gear_periods = Some(1);
         variant.spec.calibration.method = method;
         variant.spec.chip.multipliers = multipliers;
         variant

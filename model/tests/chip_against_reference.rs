@@ -153,7 +153,7 @@ fn the_equations_agree() {
             &design,
             &mut Chip::unrounded(&design),
             sweep(&spec),
-            equaliser(&spec),
+            &equaliser(&spec),
         );
         check(&name, &found, &WorstCase::of(&design, false));
         calibrated(&spec, &found);
@@ -174,7 +174,7 @@ fn the_bits_agree_to_the_rounding() {
             &design,
             &mut Chip::bit_true(&design),
             sweep(&spec),
-            equaliser(&spec),
+            &equaliser(&spec),
         );
         check(&name, &found, &WorstCase::of(&design, true));
         calibrated(&spec, &found);
@@ -204,12 +204,17 @@ fn a_small_difference_in_the_design_is_seen() {
         &wider,
         &mut Chip::unrounded(&design),
         sweep(&spec),
-        equaliser(&spec),
+        &equaliser(&spec),
     );
     assert!(found.alpha_hat > 100.0 * worst.alpha_hat, "{found:?}");
     assert!(found.e > 100.0 * worst.e, "{found:?}");
-    let larger = equaliser(&spec).map(|x| 1.01 * x);
-    let found = compare(&design, &mut Chip::unrounded(&design), sweep(&spec), larger);
+    let larger = equaliser(&spec) * 1.01;
+    let found = compare(
+        &design,
+        &mut Chip::unrounded(&design),
+        sweep(&spec),
+        &larger,
+    );
     assert!(found.theta > 100.0 * worst.theta, "{found:?}");
     assert!(found.rho > 100.0 * worst.rho, "{found:?}");
 }

@@ -7,36 +7,37 @@ use std::f64::consts::TAU;
 use chip_support::shipped::variants::searches_of;
 use chip_support::{Bench, course, course_at, fast, figure, largest, optical, sensor};
 use nonius_model::spec::{CalibrationMethod, Spec};
+use rayon::prelude::*;
 
 const TEST: &str = "model/tests/on_line_figures.rs";
 
 /// What is measured of a sensor that is new.
-const NEW: &str = "on line, from lock, 64 samples a period, 12 bits, 0.1 % noise, offsets 10 %, gain ratio 1.2, β 5°, worst of all signs and amplitudes: what is left of the first miscalibration";
+const NEW: &str = "on line, from lock, 64 samples a period, 12 bits, 0.1 % noise, offsets 10 %, gain ratio 1.2, β 5° (five parameters), worst of all signs and amplitudes: what is left of the first miscalibration after five periods of travel";
 
-/// Below 1 % within six periods, whatever the amplitude is of the ADC's range and however wide the loop; within five at most
-/// amplitudes: the square of the amplitude is taken out of the gradient to the nearest power of two, and between two of them
-/// (0.30, 0.42, 0.60) the gains go a third more slowly than they might.
+/// Below 1 % within five periods, whatever the amplitude is of the ADC's range and however wide the loop: the square of the
+/// amplitude is taken out of the gradient to a power of two, so the amplitudes go round an octave and more.
 #[test]
-fn the_chip_converges_in_six_periods() {
-    let mut worst = [0.0f64; 2];
-    for amplitude in [0.30, 0.42, 0.55, 0.59, 0.60, 0.65, 0.70, 0.8] {
-        for (bandwidth, per_period) in [(20e3, 64.0), (20e3, 64.37), (60e3, 64.0), (60e3, 64.37)] {
-            let mut spec = fast();
-            spec.sensor.amplitude = amplitude;
-            spec.tracking.bandwidth_hz = bandwidth;
-            let left = course_at(&spec, 8, per_period);
-            println!(
-                "amplitude {amplitude}, loop {bandwidth} Hz, {per_period} samples a period: {left:.2?} % left"
-            );
-            assert!(left[4] < 1.6 && left[5] < 1.0, "{left:?}");
-            worst = [worst[0].max(left[4]), worst[1].max(left[5])];
-        }
+fn the_chip_converges_in_five_periods() {
+    let mut reached = vec![];
+    for parameters in [4, 5] {
+        let amplitudes = (0..30).into_par_iter().map(|n| 0.25 + 0.02 * f64::from(n));
+        let left = amplitudes.map(|amplitude| {
+            let loops = [(20e3, 64.0), (20e3, 64.37), (60e3, 64.0), (60e3, 64.37)];
+            let left = loops.map(|(bandwidth, per_period)| {
+                let mut spec = fast();
+                spec.sensor.amplitude = amplitude;
+                spec.tracking.bandwidth_hz = bandwidth;
+                spec.calibration.parameters = parameters;
+                course_at(&spec, 5, per_period)[4]
+            });
+            println!("{parameters} parameters, amplitude {amplitude:.2}: {left:.2?} % left");
+            largest(&left)
+        });
+        let worst = left.reduce(|| 0.0, f64::max);
+        assert!(worst < 1.0, "{parameters} parameters: {worst}");
+        reached.push(format!("{parameters} parameters {worst:.2}"));
     }
-    figure(
-        &format!("{NEW}, after five and after six periods of travel, %"),
-        &format!("{:.2}, {:.2}", worst[0], worst[1]),
-        TEST,
-    );
+    figure(&format!("{NEW}, %"), &reached.join("; "), TEST);
 }
 
 /// The other searches of the paper get there as fast, the batch and the larger sets later.

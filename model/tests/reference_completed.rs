@@ -42,6 +42,7 @@ fn config(set: Parameters, search: Search, bandwidth: f64) -> Config {
             first: Steps::identity() * 0.02,
             halvings: 3,
             periods: 100.0,
+            settled: None,
         },
         start: Start::At {
             alpha_hat: 0.0,

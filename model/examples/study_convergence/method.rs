@@ -130,6 +130,7 @@ impl Method {
                 first: equalised(gamma),
                 halvings: 3,
                 periods: 20.0,
+                settled: None,
             };
             if let Ok(reference) = Reference::new(config) {
                 list.push((name.into(), Self::Paper(five, Box::new(reference))));
@@ -220,6 +221,7 @@ pub(crate) fn config(set: Parameters, search: Search, gate: Gate) -> Config {
             first: Steps::identity() * (0.04 * scale),
             halvings: 3,
             periods: 20.0,
+            settled: None,
         },
         start: Start::Arctangent { samples: 32 },
         ..Config::paper(set, tracking, 0.0)

@@ -152,7 +152,7 @@ pub(super) fn check(spec: &Spec) -> Result<(), DesignError> {
     )?;
     between(
         "calibration.gear_periods",
-        spec.calibration.gear_periods.into(),
+        spec.calibration.gear_periods().into(),
         1.0,
         255.0,
         "periods between gears",
@@ -322,7 +322,7 @@ fn without(c: &Calibration) -> Result<(), DesignError> {
         ),
         ("gamma_first", c.gamma_first, none.gamma_first),
         ("gamma_last", c.gamma_last, none.gamma_last),
-        ("gear_periods", c.gear_periods, none.gear_periods),
+        ("gear_periods", c.gear_periods(), none.gear_periods()),
     ] {
         said(key, is.to_string(), is != was)?;
     }

@@ -21,6 +21,18 @@ pub(super) fn level_bits(tracking: &Loop) -> u32 {
     (power_of(4.0 / tracking.omega).clamp(5, 12)) as u32
 }
 
+/// −2 log2 of the amplitude at the multipliers, to a whole number: to the nearest one; where the final form has four or five
+/// parameters three tenths lower, the middle of what converges within five periods.
+fn amplitude_shift(spec: &Spec) -> u32 {
+    let octaves = -2.0 * normalisation(spec).0.log2();
+    let lower = if spec.calibration.is_linear_final() {
+        0.3
+    } else {
+        0.0
+    };
+    (octaves - lower).round() as u32
+}
+
 /// Samples of a period of travel at a fifth of the loop's bandwidth: below that the loop follows what the completion
 /// should see.
 fn travel_samples(spec: &Spec) -> u32 {
@@ -164,7 +176,7 @@ pub(super) fn structure(
         // Two bits even where one would do.
         loop_gear: counting_to(acquisition.gears.max(3)),
         gamma_gear: counting_to(spec.calibration.gamma_last - spec.calibration.gamma_first),
-        gear_periods: counting_to(spec.calibration.gear_periods.saturating_sub(1).max(HELD)),
+        gear_periods: counting_to(spec.calibration.gear_periods().saturating_sub(1).max(HELD)),
     };
     Ok(Structure {
         method: match spec.tracking.method {
@@ -187,8 +199,7 @@ pub(super) fn structure(
         sine: sine_table(words, follow)?,
         loop_gears: acquisition.gears,
         gamma_first: spec.calibration.gamma_first,
-        // To the nearest power of two.
-        amplitude_shift: (-2.0 * normalisation(spec).0.log2()).round() as u32,
+        amplitude_shift: amplitude_shift(spec),
         gamma_gears: spec.calibration.gamma_last - spec.calibration.gamma_first,
     })
 }
@@ -310,7 +321,7 @@ pub(super) fn constants(
         travel_samples_last: whole(travel_samples(spec).into()),
         gamma_gear_settled: whole(SETTLED.into()),
         gamma_gear_last: whole(structure.gamma_gears.into()),
-        gear_periods_last: whole(i64::from(spec.calibration.gear_periods) - 1),
+        gear_periods_last: whole(i64::from(spec.calibration.gear_periods()) - 1),
         held_periods_last: whole(HELD.into()),
         start_periods_last: whole(START_PERIODS.into()),
         start_period: Constant::rounded(62.0 / 64.0, 6),

@@ -6,14 +6,20 @@
 use super::gradient::{self, Bent, Seen};
 use super::sensitivity::Sensitivity;
 use super::{Coefficients, State, Structure, gather, gears, start};
+use crate::format::Quantiser;
 use crate::signal::{Formula, Logic, Signal, Wide};
 use crate::spec::CalibrationMethod;
 
 /// log2 of what each component of the gradient is multiplied with beside γ.
 ///
 /// Over a whole period the modes of Mᵀ n nᵀ M are 1/2 for the offsets, 1/2 and 1/4 (sum and difference) for the gains and
-/// 1/8 for the phase, the last three times the square of the amplitude at the ADC; that square is taken out to the nearest
-/// power of two. These powers make them 1/2, 1 and 1/2, and 1.
+/// 1/8 for the phase, the last three times the square of the amplitude at the ADC; that square is taken out to a power of
+/// two, which leaves a factor q. These powers make them 1/2, q and q/2, and 2q in the final form.
+///
+/// The gains' difference is what is slowest. A phase twice as fast, 2q, brings it along: with q from 0.5 to 1.2 five periods are
+/// enough. Of all parameters the phase is what bends that are not calibrated move most, so once γ has settled its step is
+/// halved. Without phase the difference needs its own help: from each gain's gradient half the other's is taken, which makes
+/// sum and difference q/2 and 3q/4.
 struct Equaliser {
     offset: i32,
     gain: i32,
@@ -49,7 +55,7 @@ impl Equaliser {
             };
         }
         let (offset, gain, phase) = match structure.gradient {
-            CalibrationMethod::Final => (0, 1, 3),
+            CalibrationMethod::Final => (0, 1, 4),
             // What is remembered lags and swings: gains and phase half as fast.
             CalibrationMethod::SumOfSquares => (0, 0, 2),
             // Behind a loop that does not follow, what turns the pair counts too: 1 for the offsets, 1/2 for the gains
@@ -186,6 +192,13 @@ pub fn update<S: Signal, const PLAIN: bool>(
         this.w_null = bent.w;
     }
     match method {
+        CalibrationMethod::Final if structure.parameters == 4 => {
+            let apart = |own: S::Wide, other: S::Wide| own - other.scale(-1);
+            (gradient[0], gradient[2]) = (
+                apart(gradient[0], gradient[2]),
+                apart(gradient[2], gradient[0]),
+            );
+        }
         CalibrationMethod::Final => {}
         CalibrationMethod::Exact => {
             this.sensitivities = gradient::sensitivities(seen, state, k, structure);
@@ -228,6 +241,9 @@ pub fn update<S: Signal, const PLAIN: bool>(
     };
     let old = this.theta;
     let nominal = gears::nominal(state, k);
+    let settled = structure
+        .phase_settles()
+        .then(|| gears::settled(state, k, structure));
     let step = |gradient: S::Wide, i: usize, equaliser: i32| {
         let geared = gradient
             .scale(equaliser - structure.gamma_first as i32)
@@ -238,6 +254,15 @@ pub fn update<S: Signal, const PLAIN: bool>(
                 structure.gamma_gears,
                 &structure.formats.step,
             );
+        let geared = match settled.filter(|_| i == 4) {
+            // What is cut off is less than the last bit of the steps.
+            Some(settled) => {
+                let half = geared.scale(-1);
+                let cut = Quantiser::truncating(structure.formats.step.format);
+                S::select(settled, half.quantise(&cut), geared)
+            }
+            None => geared,
+        };
         let geared = match (starting, &solved) {
             (Some(starting), Some(solved)) => {
                 let first = solved.get(i).copied().unwrap_or(k.zero);

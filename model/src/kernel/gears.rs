@@ -106,7 +106,7 @@ fn last_gear<S: Signal>(state: &State<S>, k: &Coefficients<S>) -> S::Bool {
 }
 
 /// γ has settled. With fewer gears it never has.
-fn settled<S: Signal>(state: &State<S>, k: &Coefficients<S>, structure: &Structure) -> S::Bool {
+pub fn settled<S: Signal>(state: &State<S>, k: &Coefficients<S>, structure: &Structure) -> S::Bool {
     if structure.gamma_gears < SETTLED {
         return k.never();
     }

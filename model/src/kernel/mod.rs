@@ -91,6 +91,14 @@ impl Structure {
         matches!(self.parameters, 5 | 9)
     }
 
+    /// The step of θ5 is halved once γ has settled.
+    #[must_use]
+    pub fn phase_settles(&self) -> bool {
+        let final_form = self.gradient == CalibrationMethod::Final;
+        let settles = self.gamma_gears >= gears::SETTLED;
+        final_form && self.parameters == 5 && settles
+    }
+
     /// Neither bends, nor skew, nor harmonics, nor another gradient than the final form, nor another start than its gears, nor
     /// recall.
     #[must_use]

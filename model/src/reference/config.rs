@@ -41,6 +41,8 @@ pub struct Gamma {
     pub halvings: u32,
     /// After so many periods of net travel in one direction, each time.
     pub periods: f64,
+    /// From so many halvings on these take the place of the first.
+    pub settled: Option<(u32, Steps)>,
 }
 
 impl Gamma {
@@ -51,6 +53,7 @@ impl Gamma {
             first: Steps::identity() * gamma,
             halvings: 0,
             periods: f64::INFINITY,
+            settled: None,
         }
     }
 }

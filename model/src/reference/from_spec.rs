@@ -15,6 +15,9 @@ use super::sum_of_squares::Smoothing;
 use super::{Config, Parameters, ReferenceError, Steps, Theta};
 use crate::spec::{CalibrationMethod, CalibrationStart, Spec};
 
+/// Halvings of γ after which it has settled.
+const SETTLED: u32 = 4;
+
 /// From the unit of the ADC's range to y: the middle becomes 0, the nominal amplitude 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Normalise {
@@ -77,15 +80,21 @@ pub fn harmonics(spec: &Spec) -> Harmonics {
 }
 
 /// The gradient's modes are 1/2 for offsets, 1/4 and 1/2 for gains, 1/8 for the phase: brought to about one speed as the
-/// chip does, whose gains and phase carry the square of the amplitude at its input to the nearest power of two.
-fn equaliser(spec: &Spec, parameters: Parameters) -> Theta {
+/// chip does, whose gains and phase carry the square of the amplitude at its input to a power of two. The final form of four
+/// parameters takes half of each gain's gradient from the other's; that of five has its phase twice as fast until γ has settled.
+fn equaliser(spec: &Spec, parameters: Parameters) -> Steps {
     let octaves = 2.0 * (spec.sensor.amplitude / spec.adc.full_scale).log2();
-    let square = (octaves - octaves.round()).exp2();
-    let (gain, phase) = match spec.calibration.method {
-        _ if spec.calibration.parameters >= 8 => (2.0 * square, 4.0),
-        CalibrationMethod::Final | CalibrationMethod::Exact => (2.0 * square, 8.0 * square),
-        CalibrationMethod::SumOfSquares => (2.0 * square, 8.0 * square),
-        CalibrationMethod::Batch => (2.0, 8.0),
+    let nearest = (octaves - octaves.round()).exp2();
+    let (gain, phase) = match (spec.calibration.method, parameters.count()) {
+        (_, 8 | 9) => (2.0 * nearest, 4.0),
+        (CalibrationMethod::Final, _) => {
+            let below = (octaves + (-octaves - 0.3).round()).exp2();
+            (2.0 * below, 16.0 * below)
+        }
+        (CalibrationMethod::Exact | CalibrationMethod::SumOfSquares, _) => {
+            (2.0 * nearest, 8.0 * nearest)
+        }
+        (CalibrationMethod::Batch, _) => (2.0, 8.0),
     };
     let mut equaliser = Theta::repeat(1.0);
     let [gain_c, _, gain_s, _] = parameters.linear();
@@ -93,7 +102,11 @@ fn equaliser(spec: &Spec, parameters: Parameters) -> Theta {
     if parameters.count() % 2 == 1 {
         equaliser[parameters.count() - 1] = phase;
     }
-    equaliser
+    let mut steps = Steps::from_diagonal(&equaliser);
+    if (spec.calibration.method, parameters.count()) == (CalibrationMethod::Final, 4) {
+        (steps[(gain_c, gain_s)], steps[(gain_s, gain_c)]) = (-gain / 2.0, -gain / 2.0);
+    }
+    steps
 }
 
 /// With bends and completion, Θ is searched along the radius whatever the method: sum of squares and radial residual have
@@ -153,7 +166,11 @@ pub fn config(spec: &Spec) -> Result<Config, ReferenceError> {
     let radius = 1.5 * s.offset_max + s.amplitude_tolerance + beta + more;
     // What a loop that follows none of it sees as phase error.
     let turn = s.amplitude_tolerance + SQRT_2 * s.offset_max + 0.75 * beta + more;
-    let equaliser = equaliser(spec, parameters);
+    let first = equaliser(spec, parameters) * (0.5f64.powi(k.gamma_first as i32) * gathered(spec));
+    let mut later = first;
+    if (k.method, k.parameters) == (CalibrationMethod::Final, 5) {
+        later[(4, 4)] /= 2.0;
+    }
     // A loop settles within some multiples of 1/ω0.
     let omega = TAU * spec.tracking.bandwidth_hz / spec.adc.sample_rate_hz;
     let settled = (4.0 / omega).ceil().clamp(8.0, 1e6) as u32;
@@ -170,10 +187,10 @@ pub fn config(spec: &Spec) -> Result<Config, ReferenceError> {
         harmonics: harmonics(spec),
         search: search(spec),
         gamma: Gamma {
-            first: Steps::from_diagonal(&equaliser)
-                * (0.5f64.powi(k.gamma_first as i32) * gathered(spec)),
+            first,
             halvings: k.gamma_last.saturating_sub(k.gamma_first),
-            periods: k.gear_periods.into(),
+            periods: k.gear_periods().into(),
+            settled: Some((SETTLED, later)),
         },
         gate: if k.parameters == 0 {
             Gate::Locked(window)
@@ -187,9 +204,9 @@ pub fn config(spec: &Spec) -> Result<Config, ReferenceError> {
         hold: Some(HoldConfig {
             residual: spec.hold_residual(),
             restart: k.restart_residual,
-            settled: 4,
+            settled: SETTLED,
             periods: 32.0,
-            recall: k.recall.then_some(k.gear_periods.into()),
+            recall: k.recall.then_some(k.gear_periods().into()),
         }),
         bound: Theta::repeat(1.0),
         start: Start::Arctangent {

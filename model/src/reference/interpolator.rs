@@ -311,6 +311,7 @@ impl Reference {
             first,
             halvings,
             periods,
+            settled,
         } = self.config.gamma;
         let alpha_hat = self.tracking.alpha_hat();
         let (done, since) = self.geared;
@@ -319,7 +320,11 @@ impl Reference {
         } else if done < halvings && (alpha_hat - since).abs() >= periods * TAU {
             self.geared = (done + 1, alpha_hat);
         }
-        first * 0.5f64.powi(self.geared.0 as i32)
+        let steps = match settled {
+            Some((from, steps)) if self.geared.0 >= from => steps,
+            _ => first,
+        };
+        steps * 0.5f64.powi(self.geared.0 as i32)
     }
 
     /// Starts again from the arctangent where the loop has been astray for as long as lock takes.

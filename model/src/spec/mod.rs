@@ -160,9 +160,9 @@ pub struct Calibration {
     /// Last γ is 2^-`gamma_last`.
     #[serde(default = "gamma_last")]
     pub gamma_last: u32,
-    /// Periods of travel between gears.
-    #[serde(default = "gear_periods")]
-    pub gear_periods: u32,
+    /// Periods of travel between gears. Default: see [`gear_periods`](Self::gear_periods).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gear_periods: Option<u32>,
     /// |ρ| above this returns to the first γ.
     #[serde(default = "restart")]
     pub restart_residual: f64,
@@ -193,9 +193,6 @@ fn gamma_first() -> u32 {
 fn gamma_last() -> u32 {
     10
 }
-fn gear_periods() -> u32 {
-    3
-}
 fn restart() -> f64 {
     0.25
 }
@@ -219,6 +216,20 @@ impl Spec {
 }
 
 impl Calibration {
+    /// Whether the search is the final form with four or five parameters.
+    #[must_use]
+    pub fn is_linear_final(&self) -> bool {
+        self.method == CalibrationMethod::Final && self.parameters < 8
+    }
+
+    /// Periods of travel between gears: as the design says, or what is soonest below 1 % of the first miscalibration. The final
+    /// form with four and five parameters is still quick in the fourth period; the others swing or are noisy there.
+    #[must_use]
+    pub fn gear_periods(&self) -> u32 {
+        self.gear_periods
+            .unwrap_or(if self.is_linear_final() { 4 } else { 3 })
+    }
+
     /// Which of θ1 … θ9 are calibrated.
     #[must_use]
     pub fn thetas(&self) -> &'static [usize] {
@@ -269,7 +280,7 @@ impl Default for Calibration {
             completion_gamma: completion_gamma(),
             gamma_first: gamma_first(),
             gamma_last: gamma_last(),
-            gear_periods: gear_periods(),
+            gear_periods: None,
             restart_residual: restart(),
             hold_residual: hold(),
             recall: false,

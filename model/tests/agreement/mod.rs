@@ -124,15 +124,23 @@ pub(crate) struct Difference {
 /// Samples of a comparison.
 pub(crate) const SAMPLES: u32 = 60_000;
 
-/// Gains by 2, offsets by 1, phase by 8, gains and phase by the power of two nearest to the inverse square of the
-/// amplitude: what the chip equalises the modes with.
-pub(crate) fn equaliser(spec: &nonius_model::spec::Spec) -> [f64; 5] {
+/// What the chip equalises the modes with: gains by 2, offsets by 1, phase by 16, gains and phase by a power of two near the inverse
+/// square of the amplitude; without phase, half of each gain's gradient off the other's; the phase by 8 from the fifth gear on.
+pub(crate) fn equaliser(spec: &nonius_model::spec::Spec) -> Steps {
     let mut amplitude: f64 = spec.sensor.amplitude / spec.adc.full_scale;
     while amplitude < 0.5 {
         amplitude *= 2.0;
     }
-    let inverse = (-2.0 * amplitude.log2()).round().exp2();
-    [2.0 * inverse, 1.0, 2.0 * inverse, 1.0, 8.0 * inverse]
+    let inverse = (-2.0 * amplitude.log2() - 0.3).round().exp2();
+    let mut steps = Steps::zeros();
+    let diagonal = [2.0 * inverse, 1.0, 2.0 * inverse, 1.0, 16.0 * inverse];
+    for (i, step) in diagonal.into_iter().enumerate() {
+        steps[(i, i)] = step;
+    }
+    if spec.calibration.parameters == 4 {
+        (steps[(0, 2)], steps[(2, 0)]) = (-inverse, -inverse);
+    }
+    steps
 }
 
 /// Runs both over `motion` (turns at sample k). The comparison begins where the chip has locked in its
@@ -141,7 +149,7 @@ pub(crate) fn compare(
     design: &Design,
     chip: &mut impl Reading,
     motion: impl Fn(f64) -> f64,
-    equaliser: [f64; 5],
+    equaliser: &Steps,
 ) -> Difference {
     let spec = &design.spec;
     let encoder = Encoder::miscalibrated(spec);
@@ -177,9 +185,9 @@ pub(crate) fn compare(
         };
         assert!(after.locked, "lock lost at sample {k}");
         let first = -f64::from(spec.calibration.gamma_first as i32) - before.gamma_gear;
-        let mut gamma = Steps::zeros();
-        for (i, equaliser) in equaliser.into_iter().enumerate() {
-            gamma[(i, i)] = equaliser * first.exp2();
+        let mut gamma = equaliser * first.exp2();
+        if before.gamma_gear >= 4.0 {
+            gamma[(4, 4)] /= 2.0;
         }
         let y = codes.map(|code| code as f64 / half * unit);
         let fresh = fresh && spec.calibration.parameters > 0;

@@ -58,6 +58,14 @@ impl Bench {
         }
     }
 
+    /// The same bench, other noise.
+    pub(crate) fn with_noise(&self, seed: u64) -> Self {
+        Self {
+            noise: Noise::new(seed),
+            ..self.clone()
+        }
+    }
+
     /// One sample of a pair in units of the nominal amplitude, with noise as the design promises it.
     pub(crate) fn step(&mut self, y: (f64, f64)) {
         let Spec { sensor, adc, .. } = &self.design.spec;
@@ -171,7 +179,7 @@ pub(crate) fn sensor_of(signs: u32, beta: f64) -> impl Fn(f64) -> (f64, f64) + C
 }
 
 /// Largest share of the first miscalibration that is left after 1, 2, … `periods` periods of travel in lock, over all
-/// signs, at 64 samples a period; percent.
+/// signs, at 64 samples a period; percent. β, which four and eight parameters do not calibrate, is 0 for them.
 pub(crate) fn course(spec: &Spec, periods: usize) -> Vec<f64> {
     // A little off 64 a period, so that the sectors are not always met at the same places.
     course_at(spec, periods, 64.37)
@@ -180,9 +188,14 @@ pub(crate) fn course(spec: &Spec, periods: usize) -> Vec<f64> {
 /// The same at so many samples a period, 64 or a little more.
 pub(crate) fn course_at(spec: &Spec, periods: usize, per_period: f64) -> Vec<f64> {
     let mut worst = vec![0.0f64; periods];
+    let beta = match spec.calibration.parameters {
+        4 | 8 => 0.0,
+        _ => 5.0,
+    };
+    let at_rest = Bench::new(spec, 0);
     for signs in 0..16 {
-        let signals = sensor(signs);
-        let mut bench = Bench::new(spec, u64::from(signs));
+        let signals = sensor_of(signs, beta);
+        let mut bench = at_rest.with_noise(u64::from(signs));
         let before = rms(&bench.miscalibration(&signals));
         let (mut locked, mut k) = (0, 0);
         while locked < periods * 64 {
