@@ -75,7 +75,7 @@ fn figure_7_converges_to_heydemann() {
         let found = converged(config(set, search, gamma), &record);
         let difference = (found - expected).amax();
         println!("{name}: {:.1e} from Heydemann's values", difference);
-        assert!(difference < 5e-4, "{name}: {found} {expected}");
+        assert!(difference < 5e-5, "{name}: {found} {expected}");
     }
 }
 

@@ -5,7 +5,7 @@
 // radial residual rho shows what the correction still misses and moves its parameters theta.
 // After S. Balemi, "Automatic calibration of sinusoidal encoder signals", IFAC 2005; equation numbers are the paper's.
 //
-// Design 2bd6d2d78961: 16 products on 1 multiplier, 19 clocks per sample.
+// Design 40300cbff845: 16 products on 1 multiplier, 19 clocks per sample.
 //
 // Formats: sW.F is a two's complement number of W bits, F of them behind the point; uW.F has no sign and is kept here
 // with a zero in front, so that every number is signed. Angles are in turns of a scale period. A signal that saturates
@@ -34,15 +34,15 @@
 //    8 | s * sin_hat              | s_weak
 //    9 | s * cos_hat              | rho_exact rho flip rho_limited
 //   10 | c * sin_hat              | alpha_hat_turned
-//   11 | cos_hat * rho_limited    | e_exact e_seen e
-//   12 | sin_hat * rho_limited    | in_window e_change counted residual_large radius_large rho_c period_tick
+//   11 | sin_hat * rho_limited    | e_exact e_seen e
+//   12 | cos_hat * rho_limited    | in_window e_change counted residual_large radius_large rho_s period_tick
 //      |                          | gamma_restart gamma_shift
-//   13 | loop_a * e_change        | level_moved level_full level_empty narrower hold fresh rho_s gradient_2 step_2
+//   13 | loop_a * e_change        | level_moved level_full level_empty narrower hold fresh rho_c gradient_4 step_4
 //      |                          | gear_periods_again
-//   14 | y_c * rho_c              | kick gradient_4 step_4
-//   15 | y_s * rho_s              | speed gradient_1 step_1
-//   16 | y_c * rho_s              | alpha_hat_sum carry gradient_3 step_3
-//   17 | -                        | gradient_5 step_5
+//   14 | y_c * rho_s              | kick gradient_2 step_2
+//   15 | y_c * rho_c              | speed gradient_5 step_5
+//   16 | y_s * rho_s              | alpha_hat_sum carry gradient_1 step_1
+//   17 | -                        | gradient_3 step_3
 //   18 | -                        |
 //
 // Coefficients, by name in the comments below:
@@ -64,7 +64,7 @@
 //     loop_gear_last     3                       Last loop gear.
 //     gamma_gear_settled 4                       From this γ gear on γ has settled.
 //     gamma_gear_last    6                       Last γ gear.
-//     gear_periods_last  2                       Periods of travel per γ gear, less one.
+//     gear_periods_last  3                       Periods of travel per γ gear, less one.
 //     held_periods_last  31                      Periods of travel that the parameters are held before the search begins
 //                                                again, less one.
 //     unit_radius        0.9999923706054688      The radius 1, less half a bit of the residual.
@@ -212,12 +212,12 @@ module optical (
     reg signed [17:0] rho_s;
     reg nominal;
     reg signed [25:0] step_5;
-    reg signed [23:0] step_1;
+    reg signed [24:0] theta_5_deviation_next;
+    reg signed [22:0] step_1;
     reg signed [25:0] theta_1_deviation_next;
     reg signed [21:0] step_2;
     reg signed [24:0] theta_2_deviation_next;
-    reg signed [23:0] step_3;
-    reg signed [25:0] theta_3_deviation_next;
+    reg signed [22:0] step_3;
     reg signed [21:0] step_4;
     reg signed [24:0] theta_4_deviation_next;
     reg gamma_restart_condition_4;
@@ -495,50 +495,53 @@ module optical (
     //   rho_c = cos(alpha_hat) rho,  rho_s = sin(alpha_hat) rho
     //   (paper section 5.5.1: r + (sin, -cos) e = n (n^T r))
     wire signed [14:0] rho_limited_now = ((&rho_now[17:14]) | ~(|rho_now[17:14])) ? rho_now[14:0] : {rho_now[17], {14{~rho_now[17]}}}; // s15.16, step 9
-    wire signed [31:0] cos_hat_times_rho_limited = product_0[31:0]; // s32.32, step 12
+    wire signed [31:0] cos_hat_times_rho_limited = product_0[31:0]; // s32.32, step 13
     wire signed [15:0] rho_c_rounded = cos_hat_times_rho_limited[31:16] + {15'b0, cos_hat_times_rho_limited[15]};
-    wire signed [17:0] rho_c_now = {{2{rho_c_rounded[15]}}, rho_c_rounded}; // s18.16, step 12
-    wire signed [31:0] sin_hat_times_rho_limited = product_0[31:0]; // s32.32, step 13
+    wire signed [17:0] rho_c_now = {{2{rho_c_rounded[15]}}, rho_c_rounded}; // s18.16, step 13
+    wire signed [31:0] sin_hat_times_rho_limited = product_0[31:0]; // s32.32, step 12
     wire signed [15:0] rho_s_rounded = sin_hat_times_rho_limited[31:16] + {15'b0, sin_hat_times_rho_limited[15]};
-    wire signed [17:0] rho_s_now = {{2{rho_s_rounded[15]}}, rho_s_rounded}; // s18.16, step 13
+    wire signed [17:0] rho_s_now = {{2{rho_s_rounded[15]}}, rho_s_rounded}; // s18.16, step 12
     wire period_tick = counted_now & whole_period; // step 12
 
     // Parameter update
     //   theta -= gamma gradient, each component times a power of two that lets all parameters converge alike
     //   (paper section 5.5.1, M of equation (7))
-    wire signed [26:0] gradient_5 = product_0[26:0]; // s27.27, step 17
-    wire signed [26:0] y_c_times_rho_c = product_0[26:0]; // s27.27, step 15
-    wire signed [26:0] y_s_times_rho_s = product_0[26:0]; // s27.27, step 16
+    wire signed [26:0] gradient_5 = product_0[26:0]; // s27.27, step 15
+    wire signed [26:0] y_c_times_rho_c = product_0[26:0]; // s27.27, step 16
+    wire signed [26:0] y_s_times_rho_s = product_0[26:0]; // s27.27, step 17
     wire nominal_now = (gamma_gear < 4'sd1) & (signal_lost & ~locked); // step 0
-    wire signed [25:0] step_5_geared = shifted_1; // s26.26, step 17
-    wire signed [25:0] step_5_now = fresh ? step_5_geared : 26'sd0; // s26.26, step 17
-    wire signed [26:0] theta_5_deviation_next_difference = {{2{theta_5_deviation[24]}}, theta_5_deviation} - {step_5[25], step_5}; // s27.26, step 18
-    wire signed [24:0] theta_5_deviation_next_bits = ((&theta_5_deviation_next_difference[26:24]) | ~(|theta_5_deviation_next_difference[26:24])) ? theta_5_deviation_next_difference[24:0] : {theta_5_deviation_next_difference[26], {24{~theta_5_deviation_next_difference[26]}}}; // s25.26, step 18
-    wire signed [24:0] theta_5_deviation_next = nominal ? 25'sd0 : theta_5_deviation_next_bits; // s25.26, step 18
-    wire signed [26:0] gradient_1 = y_c_times_rho_c; // s27.29, step 15
-    wire signed [25:0] step_1_geared = shifted_1; // s26.26, step 15
-    wire signed [23:0] step_1_now = fresh ? step_1_geared[23:0] : 24'sd0; // s24.26, step 15
-    wire signed [26:0] theta_1_deviation_next_difference = {theta_1_deviation[25], theta_1_deviation} - {{3{step_1[23]}}, step_1}; // s27.26, step 16
-    wire signed [25:0] theta_1_deviation_next_bits = ((&theta_1_deviation_next_difference[26:25]) | ~(|theta_1_deviation_next_difference[26:25])) ? theta_1_deviation_next_difference[25:0] : {theta_1_deviation_next_difference[26], {25{~theta_1_deviation_next_difference[26]}}}; // s26.26, step 16
-    wire signed [25:0] theta_1_deviation_next_now = nominal ? 26'sd0 : theta_1_deviation_next_bits; // s26.26, step 16
-    wire signed [15:0] gradient_2 = rho_c[15:0]; // s16.20, step 13
-    wire signed [25:0] step_2_geared = shifted_1; // s26.26, step 13
-    wire signed [21:0] step_2_now = fresh_now ? step_2_geared[21:0] : 22'sd0; // s22.26, step 13
-    wire signed [25:0] theta_2_deviation_next_difference = {theta_2_deviation[24], theta_2_deviation} - {{4{step_2[21]}}, step_2}; // s26.26, step 14
-    wire signed [24:0] theta_2_deviation_next_bits = ((&theta_2_deviation_next_difference[25:24]) | ~(|theta_2_deviation_next_difference[25:24])) ? theta_2_deviation_next_difference[24:0] : {theta_2_deviation_next_difference[25], {24{~theta_2_deviation_next_difference[25]}}}; // s25.26, step 14
-    wire signed [24:0] theta_2_deviation_next_now = nominal ? 25'sd0 : theta_2_deviation_next_bits; // s25.26, step 14
-    wire signed [26:0] gradient_3 = y_s_times_rho_s; // s27.29, step 16
-    wire signed [25:0] step_3_geared = shifted_1; // s26.26, step 16
-    wire signed [23:0] step_3_now = fresh ? step_3_geared[23:0] : 24'sd0; // s24.26, step 16
-    wire signed [26:0] theta_3_deviation_next_difference = {theta_3_deviation[25], theta_3_deviation} - {{3{step_3[23]}}, step_3}; // s27.26, step 17
-    wire signed [25:0] theta_3_deviation_next_bits = ((&theta_3_deviation_next_difference[26:25]) | ~(|theta_3_deviation_next_difference[26:25])) ? theta_3_deviation_next_difference[25:0] : {theta_3_deviation_next_difference[26], {25{~theta_3_deviation_next_difference[26]}}}; // s26.26, step 17
-    wire signed [25:0] theta_3_deviation_next_now = nominal ? 26'sd0 : theta_3_deviation_next_bits; // s26.26, step 17
-    wire signed [15:0] gradient_4 = rho_s[15:0]; // s16.20, step 14
-    wire signed [25:0] step_4_geared = shifted_1; // s26.26, step 14
-    wire signed [21:0] step_4_now = fresh ? step_4_geared[21:0] : 22'sd0; // s22.26, step 14
-    wire signed [25:0] theta_4_deviation_next_difference = {theta_4_deviation[24], theta_4_deviation} - {{4{step_4[21]}}, step_4}; // s26.26, step 15
-    wire signed [24:0] theta_4_deviation_next_bits = ((&theta_4_deviation_next_difference[25:24]) | ~(|theta_4_deviation_next_difference[25:24])) ? theta_4_deviation_next_difference[24:0] : {theta_4_deviation_next_difference[25], {24{~theta_4_deviation_next_difference[25]}}}; // s25.26, step 15
-    wire signed [24:0] theta_4_deviation_next_now = nominal ? 25'sd0 : theta_4_deviation_next_bits; // s25.26, step 15
+    wire signed [25:0] step_5_geared = shifted_1; // s26.26, step 15
+    wire signed [25:0] step_5_scaled = step_5_geared; // s26.27, step 15
+    wire signed [25:0] step_5_bits = {step_5_scaled[25], step_5_scaled[25:1]}; // s26.26, step 15
+    wire signed [25:0] step_5_chosen = gamma_settled ? step_5_bits : step_5_geared; // s26.26, step 15
+    wire signed [25:0] step_5_now = fresh ? step_5_chosen : 26'sd0; // s26.26, step 15
+    wire signed [26:0] theta_5_deviation_next_difference = {{2{theta_5_deviation[24]}}, theta_5_deviation} - {step_5[25], step_5}; // s27.26, step 16
+    wire signed [24:0] theta_5_deviation_next_bits = ((&theta_5_deviation_next_difference[26:24]) | ~(|theta_5_deviation_next_difference[26:24])) ? theta_5_deviation_next_difference[24:0] : {theta_5_deviation_next_difference[26], {24{~theta_5_deviation_next_difference[26]}}}; // s25.26, step 16
+    wire signed [24:0] theta_5_deviation_next_now = nominal ? 25'sd0 : theta_5_deviation_next_bits; // s25.26, step 16
+    wire signed [26:0] gradient_1 = y_c_times_rho_c; // s27.30, step 16
+    wire signed [25:0] step_1_geared = shifted_1; // s26.26, step 16
+    wire signed [22:0] step_1_now = fresh ? step_1_geared[22:0] : 23'sd0; // s23.26, step 16
+    wire signed [26:0] theta_1_deviation_next_difference = {theta_1_deviation[25], theta_1_deviation} - {{4{step_1[22]}}, step_1}; // s27.26, step 17
+    wire signed [25:0] theta_1_deviation_next_bits = ((&theta_1_deviation_next_difference[26:25]) | ~(|theta_1_deviation_next_difference[26:25])) ? theta_1_deviation_next_difference[25:0] : {theta_1_deviation_next_difference[26], {25{~theta_1_deviation_next_difference[26]}}}; // s26.26, step 17
+    wire signed [25:0] theta_1_deviation_next_now = nominal ? 26'sd0 : theta_1_deviation_next_bits; // s26.26, step 17
+    wire signed [15:0] gradient_2 = rho_c[15:0]; // s16.20, step 14
+    wire signed [25:0] step_2_geared = shifted_1; // s26.26, step 14
+    wire signed [21:0] step_2_now = fresh ? step_2_geared[21:0] : 22'sd0; // s22.26, step 14
+    wire signed [25:0] theta_2_deviation_next_difference = {theta_2_deviation[24], theta_2_deviation} - {{4{step_2[21]}}, step_2}; // s26.26, step 15
+    wire signed [24:0] theta_2_deviation_next_bits = ((&theta_2_deviation_next_difference[25:24]) | ~(|theta_2_deviation_next_difference[25:24])) ? theta_2_deviation_next_difference[24:0] : {theta_2_deviation_next_difference[25], {24{~theta_2_deviation_next_difference[25]}}}; // s25.26, step 15
+    wire signed [24:0] theta_2_deviation_next_now = nominal ? 25'sd0 : theta_2_deviation_next_bits; // s25.26, step 15
+    wire signed [26:0] gradient_3 = y_s_times_rho_s; // s27.30, step 17
+    wire signed [25:0] step_3_geared = shifted_1; // s26.26, step 17
+    wire signed [22:0] step_3_now = fresh ? step_3_geared[22:0] : 23'sd0; // s23.26, step 17
+    wire signed [26:0] theta_3_deviation_next_difference = {theta_3_deviation[25], theta_3_deviation} - {{4{step_3[22]}}, step_3}; // s27.26, step 18
+    wire signed [25:0] theta_3_deviation_next_bits = ((&theta_3_deviation_next_difference[26:25]) | ~(|theta_3_deviation_next_difference[26:25])) ? theta_3_deviation_next_difference[25:0] : {theta_3_deviation_next_difference[26], {25{~theta_3_deviation_next_difference[26]}}}; // s26.26, step 18
+    wire signed [25:0] theta_3_deviation_next = nominal ? 26'sd0 : theta_3_deviation_next_bits; // s26.26, step 18
+    wire signed [15:0] gradient_4 = rho_s[15:0]; // s16.20, step 13
+    wire signed [25:0] step_4_geared = shifted_1; // s26.26, step 13
+    wire signed [21:0] step_4_now = fresh_now ? step_4_geared[21:0] : 22'sd0; // s22.26, step 13
+    wire signed [25:0] theta_4_deviation_next_difference = {theta_4_deviation[24], theta_4_deviation} - {{4{step_4[21]}}, step_4}; // s26.26, step 14
+    wire signed [24:0] theta_4_deviation_next_bits = ((&theta_4_deviation_next_difference[25:24]) | ~(|theta_4_deviation_next_difference[25:24])) ? theta_4_deviation_next_difference[24:0] : {theta_4_deviation_next_difference[25], {24{~theta_4_deviation_next_difference[25]}}}; // s25.26, step 14
+    wire signed [24:0] theta_4_deviation_next_now = nominal ? 25'sd0 : theta_4_deviation_next_bits; // s25.26, step 14
 
     // Gears of gamma
     //   gamma halves after some periods of travel, starts again when the residual stays large
@@ -546,7 +549,7 @@ module optical (
     wire gamma_restart_condition_now = (gamma_gear_below_gamma_gear_settled | risen) | (held & ~(gear_periods < 6'sh1f)); // step 0, with held_periods_last
     wire gamma_restart_now = gamma_restart_condition_4_now & gamma_restart_condition; // step 12
     wire gamma_gear_below_gamma_gear_last_now = $signed(gamma_gear[3:1]) < 3'sd3; // step 0, with gamma_gear_last
-    wire gamma_shift_condition_2_now = ~($signed(gear_periods[5:1]) < 5'sd1) & ~(disturbed | held); // step 0, with gear_periods_last
+    wire gamma_shift_condition_2_now = ~(gear_periods < 6'sd3) & ~(disturbed | held); // step 0, with gear_periods_last
     wire gamma_shift_now = (period_tick & gamma_shift_condition_2) & gamma_gear_below_gamma_gear_last; // step 12
     wire signed [1:0] gamma_gear_next_chosen_2 = gamma_shift ? 2'sd1 : 2'sd0; // s2.0, step 13
     wire signed [4:0] gamma_gear_next_sum = {gamma_gear[3], gamma_gear} + {{3{gamma_gear_next_chosen_2[1]}}, gamma_gear_next_chosen_2}; // s5.0, step 13
@@ -577,11 +580,11 @@ module optical (
     reg signed [26:0] unshifted_1;
     always @*
         case (step)
-            5'd13: unshifted_1 = {{4{gradient_2[15]}}, gradient_2, 7'b0}; // step_2_geared
-            5'd14: unshifted_1 = {{4{gradient_4[15]}}, gradient_4, 7'b0}; // step_4_geared
-            5'd15: unshifted_1 = {{2{gradient_1[26]}}, gradient_1[26:2]}; // step_1_geared
-            5'd16: unshifted_1 = {{2{gradient_3[26]}}, gradient_3[26:2]}; // step_3_geared
-            default: unshifted_1 = gradient_5;
+            5'd13: unshifted_1 = {{4{gradient_4[15]}}, gradient_4, 7'b0}; // step_4_geared
+            5'd14: unshifted_1 = {{4{gradient_2[15]}}, gradient_2, 7'b0}; // step_2_geared
+            5'd15: unshifted_1 = gradient_5; // step_5_geared
+            5'd16: unshifted_1 = {{3{gradient_1[26]}}, gradient_1[26:3]}; // step_1_geared
+            default: unshifted_1 = {{3{gradient_3[26]}}, gradient_3[26:3]};
         endcase
     wire signed [26:0] shift_1 = unshifted_1 >>> gamma_gear[2:0];
     wire signed [25:0] shifted_1_rounded = shift_1[26:1] + {25'b0, shift_1[0]};
@@ -594,9 +597,9 @@ module optical (
     always @(posedge clk)
         case (step)
             5'd0: operand_a_0 <= 18'sh13b1b; // loop_ab
-            5'd1, 5'd5, 5'd13, 5'd15: operand_a_0 <= {{6{y_c[11]}}, y_c};
+            5'd1, 5'd5, 5'd13, 5'd14: operand_a_0 <= {{6{y_c[11]}}, y_c};
             5'd2: operand_a_0 <= {{7{cos_inside[10]}}, cos_inside};
-            5'd3, 5'd14: operand_a_0 <= {{6{y_s[11]}}, y_s};
+            5'd3, 5'd15: operand_a_0 <= {{6{y_s[11]}}, y_s};
             5'd4: operand_a_0 <= {{3{sin_slope[14]}}, sin_slope};
             5'd6, 5'd9: operand_a_0 <= c;
             5'd7: operand_a_0 <= s_now;
@@ -613,11 +616,11 @@ module optical (
             5'd3: operand_b_0 <= theta_3;
             5'd4: operand_b_0 <= {{7{sin_inside[10]}}, sin_inside};
             5'd5: operand_b_0 <= theta_5;
-            5'd6, 5'd8, 5'd10: operand_b_0 <= cos_hat;
-            5'd7, 5'd9, 5'd11: operand_b_0 <= sin_hat;
+            5'd6, 5'd8, 5'd11: operand_b_0 <= cos_hat;
+            5'd7, 5'd9, 5'd10: operand_b_0 <= sin_hat;
             5'd12: operand_b_0 <= e_change;
-            5'd13: operand_b_0 <= rho_c;
-            default: operand_b_0 <= rho_s;
+            5'd13, 5'd15: operand_b_0 <= rho_s;
+            default: operand_b_0 <= rho_c;
         endcase
 
     // Values that later steps or the testbench read, at the end of the step that computes them
@@ -718,7 +721,7 @@ module optical (
             residual_large <= residual_large_now;
             hold_condition_2 <= hold_condition_2_now;
             radius_large <= radius_large_now;
-            rho_c <= rho_c_now;
+            rho_s <= rho_s_now;
             gamma_restart_condition_4 <= gamma_restart_condition_4_now;
             gamma_restart <= gamma_restart_now;
             gamma_shift <= gamma_shift_now;
@@ -733,8 +736,8 @@ module optical (
             locked_next <= locked_next_now;
             lock_level_next <= lock_level_next_now;
             fresh <= fresh_now;
-            rho_s <= rho_s_now;
-            step_2 <= step_2_now;
+            rho_c <= rho_c_now;
+            step_4 <= step_4_now;
             gamma_gear_next <= gamma_gear_next_now;
             gear_periods_next <= gear_periods_next_now;
             disturbed_next <= disturbed_next_now;
@@ -745,27 +748,27 @@ module optical (
         if (step == 5'd14) begin
             loop_gear_next <= loop_gear_next_now;
             kick <= kick_now;
-            theta_2_deviation_next <= theta_2_deviation_next_now;
-            step_4 <= step_4_now;
+            step_2 <= step_2_now;
+            theta_4_deviation_next <= theta_4_deviation_next_now;
             lock_lost_next <= lock_lost_next_now;
         end
         if (step == 5'd15) begin
             speed <= speed_now;
             speed_below_minus_direction_rate <= speed_below_minus_direction_rate_now;
             speed_below_direction_rate <= speed_below_direction_rate_now;
-            step_1 <= step_1_now;
-            theta_4_deviation_next <= theta_4_deviation_next_now;
+            step_5 <= step_5_now;
+            theta_2_deviation_next <= theta_2_deviation_next_now;
         end
         if (step == 5'd16) begin
             alpha_hat_next <= alpha_hat_next_now;
             count_next <= count_next_now;
             direction_next <= direction_next_now;
-            theta_1_deviation_next <= theta_1_deviation_next_now;
-            step_3 <= step_3_now;
+            theta_5_deviation_next <= theta_5_deviation_next_now;
+            step_1 <= step_1_now;
         end
         if (step == 5'd17) begin
-            step_5 <= step_5_now;
-            theta_3_deviation_next <= theta_3_deviation_next_now;
+            theta_1_deviation_next <= theta_1_deviation_next_now;
+            step_3 <= step_3_now;
         end
     end
 
@@ -854,11 +857,12 @@ module optical (
         sector_relative_difference[8],
         cos_hat_times_rho_limited[14:0],
         sin_hat_times_rho_limited[14:0],
-        gradient_1[1:0],
-        step_1_geared[25:24],
+        step_5_scaled[0],
+        gradient_1[2:0],
+        step_1_geared[25:23],
         step_2_geared[25:22],
-        gradient_3[1:0],
-        step_3_geared[25:24],
+        gradient_3[2:0],
+        step_3_geared[25:23],
         step_4_geared[25:22],
         gamma_gear_next_sum[4:3],
         gear_periods_next_sum[6:5],
