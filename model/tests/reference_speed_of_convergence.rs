@@ -171,8 +171,7 @@ fn least_squares_take_two_periods() {
 fn two_solved_periods_are_enough() {
     let gamma = Gamma {
         first: equalised(0.01),
-        halvings: 0,
-        periods: f64::INFINITY,
+        ..Gamma::constant(0.0)
     };
     // A few samples later: lock is counted from a sample on, travel from the next.
     let [one, two, three] = [1, 2, 3].map(|n| 100.0 * left_after(n.min(2), FINAL, gamma, n + 1));

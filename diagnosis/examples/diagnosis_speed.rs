@@ -1,6 +1,6 @@
 //! Measures how long a diagnosis takes, and writes `diagnosis-speed.md`.
 //!
-//! `cargo run --release -p nonius-diagnosis --example speed -- docs`
+//! `cargo run --release -p nonius-diagnosis --example diagnosis_speed -- docs`
 
 use std::f64::consts::TAU;
 use std::fmt::Write;
@@ -76,7 +76,7 @@ fn main() {
     };
     let mut text = String::from(
         "# Speed of the diagnosis\n\n\
-         Written by `cargo run --release -p nonius-diagnosis --example speed -- docs`; do not edit. One core; reversing motion,\n\
+         Written by `cargo run --release -p nonius-diagnosis --example diagnosis_speed -- docs`; do not edit. One core; reversing motion,\n\
          14 bits, noise of 0.1 %, without reference, 32 periods per revolution. Time from the recording in memory to findings\n\
          and positions, by the clock and on the processor: other work on the machine makes the first longer, and the second\n\
          too where it shares the cache. Memory is the most that the process ever held, recording included.\n\n\

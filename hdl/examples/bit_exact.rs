@@ -1,7 +1,7 @@
 //! A long run of mixed stimuli for every variant of the chip, in Verilator and in Icarus.
 //!
-//!     cargo run --release -p nonius-hdl --example campaign -- DOCS
-//!     cargo run -p nonius-hdl --example campaign -- --short
+//!     cargo run --release -p nonius-hdl --example bit_exact -- DOCS
+//!     cargo run -p nonius-hdl --example bit_exact -- --short
 //!
 //! The first writes DOCS/bit-exact.md; chips whose row there is of the same files (rtl, testbench, stimuli) are not run again.
 //! The second runs few samples of few variants and writes nothing: the form for every commit.
@@ -197,7 +197,7 @@ fn page(lines: &[Option<String>]) -> String {
 const HEAD: &str = "\
 # Bit-exactness
 
-Written by `cargo run --release -p nonius-hdl --example campaign -- docs`; do not edit. Samples of mixed stimuli
+Written by `cargo run --release -p nonius-hdl --example bit_exact -- docs`; do not edit. Samples of mixed stimuli
 (standstill, both directions, sweep, creep, loss of signal, step, corners, bounds, ties, random codes) in which every probe and register of the
 Verilog equals the model. A variant that is missing was not run. *Chip* is a fingerprint of its Verilog, tables, testbench and
 stimuli: run again, the command takes only those whose files have changed since.
