@@ -6,6 +6,7 @@ use super::followers::Followers;
 use super::formats::multiplied;
 use super::{DesignError, Loop, harmonics, normalisation, word};
 use crate::format::exp2;
+use crate::kernel::gears::SETTLED;
 use crate::spec::{Overrides, Spec};
 
 /// The word lengths.
@@ -77,20 +78,25 @@ impl Budget {
 }
 
 /// A gradient search of step μ settles with a variance of μ/2 of what disturbs its error, here the radial residual. Step
-/// times mean square of ∂α/∂θ, over all parameters, in units of γ: offsets 1 · 1/2, gains 2 · 1/8, phase 8 · 3/8; with
-/// bends the phase 4 · 3/8, even bends 1 · 1/4, the cubic one 1 · 1/2.
+/// times mean square of ∂α/∂θ, over all parameters, in units of γ: offsets 1 · 1/2, gains 2 · 1/8, phase 8 · 3/8, and 16 · 3/8
+/// in the final form before γ has settled; with bends the phase 4 · 3/8, even bends 1 · 1/4, the cubic one 1 · 1/2. Where
+/// half of each gain's gradient is taken from the other's, their difference is worth half as much again.
 fn calibration(spec: &Spec, adc_radians: f64) -> f64 {
+    let c = &spec.calibration;
     let four = 2.0 * 0.5 + 2.0 * 2.0 / 8.0;
     let bends = 2.0 * 0.25 + 0.5;
-    let steps = match spec.calibration.parameters {
+    let settles = c.gamma_last.saturating_sub(c.gamma_first) >= SETTLED;
+    let steps = match c.parameters {
         0 => 0.0,
+        4 if c.is_linear_final() => four + 2.0 / 8.0,
         4 => four,
+        5 if c.is_linear_final() && !settles => four + 16.0 * 3.0 / 8.0,
         5 => four + 8.0 * 3.0 / 8.0,
         8 => four + bends,
         _ => four + bends + 4.0 * 3.0 / 8.0,
     };
     let disturbs = spec.sensor.noise_rms.powi(2) + adc_radians.powi(2);
-    let gamma = exp2(-i64::from(spec.calibration.gamma_last));
+    let gamma = exp2(-i64::from(c.gamma_last));
     (gamma * steps / 2.0 * disturbs).sqrt() / TAU
 }
 
