@@ -185,6 +185,28 @@ pub(crate) fn narrow() -> Vec<Variant> {
     [(3, 1e3), (1, 300.0)].map(of).into()
 }
 
+/// Every word said by the design, one bit more than the analysis takes and one less, where the others allow that.
+pub(crate) fn words() -> Vec<Variant> {
+    let of = |(what, by): (&str, i64)| {
+        let mut variant = Variant::of(what, |spec| {
+            spec.calibration.parameters = 9;
+            spec.correction.channel_skew_s = 2e-7;
+            spec.correction.harmonics = third_and_fifth();
+        });
+        for word in variant.design().word_lengths() {
+            let key = word.key.trim_start_matches("formats.").to_owned();
+            for value in [word.value + by, word.value] {
+                let said = variant.spec.formats.set(&key, Some(value));
+                if said && Design::new(&variant.spec).is_ok() {
+                    break;
+                }
+            }
+        }
+        variant
+    };
+    [("longer words", 1), ("shorter words", -1)].map(of).into()
+}
+
 /// Other ADCs.
 pub(crate) fn adcs() -> Vec<Variant> {
     let of = |bits: u32| {
@@ -355,6 +377,7 @@ pub(crate) fn everything() -> Vec<Variant> {
         poles(),
         narrow(),
         adcs(),
+        words(),
         multipliers(),
         skewed(),
         harmonics(),

@@ -85,6 +85,15 @@ pub(crate) fn run(args: &New) -> Result<()> {
         design.budget.total(),
         periods_per_second(draft.speed_max.0)
     );
+    for (key, (_, note)) in [
+        ("amplitude_tolerance", &draft.amplitude_tolerance),
+        ("offset_max", &draft.offset_max),
+        ("phase_error_max_deg", &draft.phase_error_max_deg),
+    ] {
+        if let Some(why) = note.strip_prefix(BEYOND) {
+            eprintln!("note: sensor.{key} does not hold what the recording shows{why}");
+        }
+    }
     say!("next: nonius build {} -o out/{}", path.display(), args.name);
     Ok(())
 }
@@ -146,6 +155,28 @@ fn short(value: f64) -> f64 {
     digits(value, 4)
 }
 
+/// Largest errors of a sensor that a draft promises: of the amplitude, and degrees.
+const MOST: f64 = 0.6;
+const MOST_DEGREES: f64 = 45.0;
+const SPARE: &str = "and some to spare";
+/// How a comment begins that takes a promise back.
+const BEYOND: &str = "NOT ENOUGH";
+
+/// A promise that holds what was measured, with something to spare, or says that it does not.
+fn promised(measured: f64, wanted: f64, most: f64, spare: &str) -> (f64, String) {
+    let seen = digits(measured, 4);
+    let note = if measured.abs() > most {
+        format!(
+            "{BEYOND}: measured {seen}, and no chip is promised to hold more than {most}: adjust the sensor"
+        )
+    } else if wanted > most {
+        format!("measured: {seen}; as much to spare as a chip may promise")
+    } else {
+        format!("measured: {seen}; {spare}")
+    };
+    (short(wanted.min(most)), note)
+}
+
 fn plain(name: &str) -> Draft {
     let note = String::from;
     Draft {
@@ -205,8 +236,12 @@ fn fitted(name: &str, file: &Path, recording: &Recording, survey: &Survey) -> Re
             .max((ellipse.b_s - middle).abs());
         far / amplitude
     };
-    let tolerance = short((spread * 1.3 + 0.1).min(0.6));
-    let offset = |middle: f64| short((offset_from(middle) * 1.3 + 0.05).min(0.6));
+    let tolerance = promised(spread, spread * 1.3 + 0.1, MOST, "and a tenth to spare");
+    let offset = |middle: f64| {
+        let measured = offset_from(middle);
+        promised(measured, measured * 1.3 + 0.05, MOST, SPARE)
+    };
+    let beta = ellipse.beta.to_degrees();
     let described = same
         && own.source == AdcSource::Described
         && (8..=18).contains(&own.bits)
@@ -223,7 +258,7 @@ fn fitted(name: &str, file: &Path, recording: &Recording, survey: &Survey) -> Re
         };
         let reach = reach(&recording.cos).max(reach(&recording.sin));
         // And what the design promises of the sensor.
-        let promised = amplitude * (1.0 + tolerance + offset(middle));
+        let promised = amplitude * (1.0 + tolerance.0 + offset(middle).0);
         let seen = reach.clamp(amplitude * 1.2, amplitude * 4.0) * 1.05;
         let full_scale = rounded_up(seen.max(promised));
         // At least as fine as the recording's own steps.
@@ -264,24 +299,9 @@ fn fitted(name: &str, file: &Path, recording: &Recording, survey: &Survey) -> Re
                 digits(ellipse.a_s, 5)
             ),
         ),
-        amplitude_tolerance: (
-            tolerance,
-            format!("measured: {}; and a tenth to spare", digits(spread, 3)),
-        ),
-        offset_max: (
-            offset(middle),
-            format!(
-                "measured: {}; and some to spare",
-                digits(offset_from(middle), 3)
-            ),
-        ),
-        phase_error_max_deg: (
-            short((ellipse.beta.to_degrees().abs() * 1.3 + 2.0).min(45.0)),
-            format!(
-                "measured: {}; and some to spare",
-                digits(ellipse.beta.to_degrees(), 4)
-            ),
-        ),
+        amplitude_tolerance: tolerance,
+        offset_max: offset(middle),
+        phase_error_max_deg: promised(beta, beta.abs() * 1.3 + 2.0, MOST_DEGREES, SPARE),
         noise_rms: (
             short(survey.noise_rms.clamp(0.0, 0.25)),
             "measured, of the amplitude".into(),

@@ -39,7 +39,7 @@ fn main() -> ExitCode {
         [short] if short == "--short" => None,
         [docs] if !docs.starts_with('-') => Some(Path::new(docs)),
         _ => {
-            eprintln!("usage: campaign DOCS | campaign --short");
+            eprintln!("usage: bit_exact DOCS | bit_exact --short");
             return ExitCode::from(2);
         }
     };

@@ -273,10 +273,33 @@ pub fn gtkw(name: &str, design: &Design, columns: &[Column], clocks: usize) -> S
     };
     let flags = ["locked", "lock_lost", "signal_lost", "direction", "speed"];
     let calibrates = |n: &str| {
-        ["theta", "rho_", "travel", "gamma", "gear_"]
-            .iter()
-            .any(|start| n.starts_with(start))
-            || ["fresh", "whole_period", "disturbed", "risen", "held"].contains(&n)
+        [
+            "theta",
+            "rho_",
+            "travel",
+            "gamma",
+            "gear_",
+            "null_",
+            "alpha_gradient",
+            "gathered",
+            "recent_",
+            "proven_",
+            "start_",
+        ]
+        .iter()
+        .any(|start| n.starts_with(start))
+            || [
+                "fresh",
+                "whole_period",
+                "disturbed",
+                "risen",
+                "held",
+                "ahead_used",
+                "behind_used",
+                "moving",
+                "returning",
+            ]
+            .contains(&n)
     };
     out += &group("flags and speed", &|n| flags.contains(&n));
     out += &group("loop", &|n| !flags.contains(&n) && !calibrates(n));
