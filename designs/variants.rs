@@ -27,7 +27,7 @@ impl Variant {
 
     /// The larger of the parameter sets that its search has.
     pub(crate) fn is_largest(&self) -> bool {
-        matches!(self.spec.calibration.parameters, 5 | 9)
+        self.spec.calibration.has_phase()
     }
 
     /// Quantised.

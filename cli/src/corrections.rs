@@ -96,7 +96,7 @@ fn correct_skew(text: &str, found: &Diagnosis) -> Result<(String, Vec<String>)> 
 /// the place of what the design had.
 fn correct_harmonics(text: &str, found: &Diagnosis) -> Result<(String, Vec<String>)> {
     let spec = Spec::from_toml(text, "design.toml")?;
-    let (list, mut notes) = harmonics::table(found, spec.calibration.parameters >= 8);
+    let (list, mut notes) = harmonics::table(found, spec.calibration.has_bend());
     if list.is_empty() {
         return Ok((text.to_owned(), notes));
     }
@@ -148,7 +148,7 @@ fn correct_bends(text: &str, found: &Diagnosis) -> Result<(String, Vec<String>)>
         return unchanged(vec![]);
     };
     let spec = Spec::from_toml(text, "design.toml")?;
-    if spec.calibration.parameters >= 8 || spec.calibration.parameters == 0 {
+    if spec.calibration.has_bend() || !spec.calibration.is_on() {
         return unchanged(vec![]);
     }
     if spec.sensor.periods_per_revolution == Some(1.0) {

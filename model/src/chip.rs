@@ -5,7 +5,6 @@ use crate::design::Design;
 use crate::graph::{Graph, Node, RangeError, Recorder};
 use crate::kernel::{Coefficients, Input, Probes, State, Structure, advance, sample};
 use crate::signal::Signal;
-use crate::spec::CalibrationMethod;
 
 /// The chip in one reading: `Chip<Bits>` is bit-true, `Chip<f64>` the same algorithm without rounding.
 #[derive(Clone, Debug)]
@@ -110,40 +109,39 @@ fn remembered(name: &str) -> Option<&'static str> {
 /// Which registers this structure has.
 #[must_use]
 pub fn registers(structure: &Structure) -> (Vec<&'static str>, Vec<&'static str>) {
+    let c = &structure.calibration;
     let one = structure.method == crate::kernel::Method::One;
     let two_products = structure.method != crate::kernel::Method::Two;
-    let exact = structure.parameters > 0 && structure.gradient == CalibrationMethod::Exact;
+    let exact = c.is_exact();
     let is_used = |name: &str| match name {
         "alpha_hat_previous" => one,
         "rate" => !one,
         "error_previous" => structure.method != crate::kernel::Method::Two,
-        "theta_5_deviation" => structure.has_phase(),
+        "theta_5_deviation" => c.has_phase(),
         "theta_1_deviation" | "theta_2_deviation" | "theta_3_deviation" | "theta_4_deviation" => {
-            structure.parameters >= 4
+            c.is_on()
         }
-        "theta_6_deviation" | "theta_7_deviation" | "theta_8_deviation" => structure.has_bend(),
+        "theta_6_deviation" | "theta_7_deviation" | "theta_8_deviation" => c.has_bend(),
         "gamma_gear" | "gear_periods" | "travel_origin" | "travel_low" | "travel_high"
-        | "ahead_used" | "behind_used" | "disturbed" | "risen" | "held" => {
-            structure.parameters >= 4
-        }
+        | "ahead_used" | "behind_used" | "disturbed" | "risen" | "held" => c.is_on(),
         "loop_gear" => structure.loop_gears > 0,
         "theta_9_deviation" | "null_gradient" | "null_gradient_rate" | "travel_samples"
-        | "moving" => structure.completion.is_some(),
-        "start_periods" => structure.least_squares_start,
-        "returning" => structure.recall,
-        "null_gradient_error" => structure.completion.is_some() && two_products,
+        | "moving" => c.completed().is_some(),
+        "start_periods" => c.starts(),
+        "returning" => c.recalls(),
+        "null_gradient_error" => c.completed().is_some() && two_products,
         name if name.starts_with("alpha_gradient") => {
             let phase = name.ends_with('5');
             let error = name.starts_with("alpha_gradient_error");
-            exact && (!phase || structure.has_phase()) && (!error || two_products)
+            exact && (!phase || c.has_phase()) && (!error || two_products)
         }
-        "gathered_5" => structure.gathers() && structure.has_phase(),
-        "gathered_6" | "gathered_7" | "gathered_8" => structure.squares() && structure.has_bend(),
-        name if name.starts_with("gathered") => structure.gathers(),
+        "gathered_5" => c.gathers() && c.has_phase(),
+        "gathered_6" | "gathered_7" | "gathered_8" => c.squares() && c.has_bend(),
+        name if name.starts_with("gathered") => c.gathers(),
         _ => true,
     };
     let kept = |name: &str| match remembered(name) {
-        Some(theta) => structure.recall && is_used(theta),
+        Some(theta) => c.recalls() && is_used(theta),
         None => is_used(name),
     };
     let keep = |names: &[&'static str]| names.iter().copied().filter(|n| kept(n)).collect();
@@ -153,14 +151,13 @@ pub fn registers(structure: &Structure) -> (Vec<&'static str>, Vec<&'static str>
 /// Which probes this structure has.
 #[must_use]
 pub fn probes(structure: &Structure) -> (Vec<&'static str>, Vec<&'static str>) {
+    let c = &structure.calibration;
     let used = |name: &str| match name {
-        "theta_5" => structure.has_phase(),
-        "theta_6" | "theta_7" => structure.has_bend(),
+        "theta_5" => c.has_phase(),
+        "theta_6" | "theta_7" => c.has_bend(),
         "skew" => structure.skew.is_some(),
         "harmonic_cos" | "harmonic_sin" => structure.harmonics.is_some(),
-        "theta_2" | "theta_4" | "rho_c" | "rho_s" | "fresh" | "whole_period" => {
-            structure.parameters >= 4
-        }
+        "theta_2" | "theta_4" | "rho_c" | "rho_s" | "fresh" | "whole_period" => c.is_on(),
         _ => true,
     };
     let keep = |names: &[&'static str]| names.iter().copied().filter(|n| used(n)).collect();

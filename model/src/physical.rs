@@ -57,7 +57,7 @@ pub fn theta(spec: &Spec, normalised: [f64; 9]) -> [f64; 9] {
     let [one, two, three, four, five, bends @ ..] = normalised;
     let (gain_c, gain_s) = (one * scale, three * scale);
     // With bends the phase acts on the corrected cosine, which has no unit.
-    let bent = spec.calibration.parameters >= 8;
+    let bent = spec.calibration.has_bend();
     let (cross, shift) = if bent {
         (five, gain_s)
     } else {

@@ -95,7 +95,7 @@ struct Settled<F> {
 
 fn settled(spec: &Spec, seed: u32) -> Settled<impl Fn(f64) -> (f64, f64) + Clone + use<>> {
     // What is not calibrated would hide the rest.
-    let beta = if matches!(spec.calibration.parameters, 5 | 9) {
+    let beta = if spec.calibration.has_phase() {
         5.0
     } else {
         0.0

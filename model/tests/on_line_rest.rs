@@ -39,7 +39,7 @@ fn parameters(s: &State<Bits>) -> [f64; 9] {
 fn noise(design: &Design) -> [f64; 9] {
     let (spec, amplitude) = (&design.spec, design.structure.amplitude_shift as i32);
     let gain = 1 + amplitude;
-    let phase = if design.structure.has_bend() {
+    let phase = if design.structure.calibration.has_bend() {
         2
     } else {
         3 + amplitude
@@ -74,7 +74,7 @@ fn slow(variant: &Variant) -> Spec {
     let mut spec = variant.spec.clone();
     spec.adc.sample_rate_hz = RATE.into();
     spec.sensor.speed_max_periods_per_s = 500.0;
-    let completed = spec.calibration.parameters >= 8 && spec.calibration.completion;
+    let completed = spec.calibration.completed().is_some();
     spec.tracking.bandwidth_hz = if completed { 150.0 } else { 300.0 };
     spec.accuracy.rms_periods = 200e-6;
     spec
@@ -95,7 +95,7 @@ fn moved(variant: &Variant, place: f64, amplitudes: &[f64], seconds: u32, seed: 
     }
     assert!(running.chip.state.locked);
     let before = parameters(&running.chip.state);
-    let awake = running.design.structure.completion.is_none() || before[8] != 0.0;
+    let awake = running.design.structure.calibration.completed().is_none() || before[8] != 0.0;
     assert!(awake, "the completion sleeps");
     let noise = noise(&running.design);
     let rest = |amplitude: &f64| {

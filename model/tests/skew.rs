@@ -79,7 +79,7 @@ fn run(spec: &Spec, delay: f64, motion: Motion) -> Seen {
         ));
     }
     let theta = bench.chip.theta();
-    let tan_beta = if spec.calibration.parameters >= 8 {
+    let tan_beta = if spec.calibration.has_bend() {
         theta[4]
     } else {
         theta[4] / theta[0]

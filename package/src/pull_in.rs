@@ -156,7 +156,7 @@ pub fn pull_in_followed(design: &Design, parts: &[f64], progress: Progress) -> P
 
 /// Amplitudes, offsets and the phase error at either end; with 8 and 9 parameters the bends too.
 fn sensors(spec: &Spec) -> u32 {
-    if spec.calibration.parameters >= 8 {
+    if spec.calibration.has_bend() {
         1 << 7
     } else {
         1 << 5
@@ -194,7 +194,7 @@ fn shares(spec: &Spec, signs: u32) -> Shares {
         gains: [sign(0), sign(1)],
         offsets: [sign(2), sign(3)],
         phase: sign(4),
-        bends: if spec.calibration.parameters >= 8 {
+        bends: if spec.calibration.has_bend() {
             [sign(5), sign(6)]
         } else {
             [0.0; 2]

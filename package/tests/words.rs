@@ -81,7 +81,7 @@ fn check(what: &str, chosen: &Design) {
     }
     // Tables have rows, and coefficients have no signal of their own: gains are such where nothing is calibrated.
     let mut apart = vec!["sine_rows_log2", "harmonic_rows_log2", "coefficient_bits"];
-    if chosen.spec.calibration.parameters == 0 {
+    if !chosen.spec.calibration.is_on() {
         apart.push("gain_bits");
     }
     for word in chosen.word_lengths() {

@@ -25,7 +25,7 @@ impl Costs {
     /// Those of a design; empty where they were not measured.
     pub(crate) fn of(&self, design: &Design) -> [String; 2] {
         let c = &design.spec.calibration;
-        let completion = design.structure.completion.is_some();
+        let completion = design.structure.calibration.completed().is_some();
         let key = format!("{:?},{:?},{},{completion}", c.method, c.start, c.parameters);
         self.0.get(&key).cloned().unwrap_or_default()
     }

@@ -46,7 +46,7 @@ impl OnChip {
     pub(crate) fn step(&mut self, y: [f64; 2]) -> Said {
         let spec = &self.design.spec;
         let (middle, amplitude) = (spec.adc.middle, spec.sensor.amplitude);
-        let bent = spec.calibration.parameters >= 8;
+        let bent = spec.calibration.has_bend();
         // For signals of amplitude 1 about 0, from those in volts.
         let [one, two, three, four, five, bends @ ..] = physical::theta(spec, self.chip.theta());
         let (cross, shift) = if bent {

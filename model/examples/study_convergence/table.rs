@@ -49,7 +49,9 @@ struct Outcome {
 }
 
 fn run(scenario: Scenario, method: &mut Method) -> Outcome {
-    let calibrates_phase = method.design().is_none_or(|d| d.structure.has_phase());
+    let calibrates_phase = method
+        .design()
+        .is_none_or(|d| d.structure.calibration.has_phase());
     let mut furthest = 0.0f64;
     let (mut square, mut counted) = (0.0, 0.0);
     let mut course: Vec<(f64, f64)> = Vec::new();

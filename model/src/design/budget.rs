@@ -6,7 +6,6 @@ use super::followers::Followers;
 use super::formats::multiplied;
 use super::{DesignError, Loop, harmonics, normalisation, word};
 use crate::format::exp2;
-use crate::kernel::gears::SETTLED;
 use crate::spec::{Overrides, Spec};
 
 /// The word lengths.
@@ -85,12 +84,11 @@ fn calibration(spec: &Spec, adc_radians: f64) -> f64 {
     let c = &spec.calibration;
     let four = 2.0 * 0.5 + 2.0 * 2.0 / 8.0;
     let bends = 2.0 * 0.25 + 0.5;
-    let settles = c.gamma_last.saturating_sub(c.gamma_first) >= SETTLED;
     let steps = match c.parameters {
         0 => 0.0,
         4 if c.is_linear_final() => four + 2.0 / 8.0,
         4 => four,
-        5 if c.is_linear_final() && !settles => four + 16.0 * 3.0 / 8.0,
+        5 if c.is_linear_final() && !c.settles() => four + 16.0 * 3.0 / 8.0,
         5 => four + 8.0 * 3.0 / 8.0,
         8 => four + bends,
         _ => four + bends + 4.0 * 3.0 / 8.0,
@@ -104,13 +102,15 @@ fn calibration(spec: &Spec, adc_radians: f64) -> f64 {
 /// constant.
 fn uncorrected(spec: &Spec) -> f64 {
     let s = &spec.sensor;
-    let (offset, gain) = match spec.calibration.parameters {
-        0 => (s.offset_max, s.amplitude_tolerance / 2f64.sqrt()),
-        _ => (0.0, 0.0),
+    let (offset, gain) = if spec.calibration.is_on() {
+        (0.0, 0.0)
+    } else {
+        (s.offset_max, s.amplitude_tolerance / 2f64.sqrt())
     };
-    let phase = match spec.calibration.parameters {
-        0 | 4 | 8 => s.phase_error_max_deg.to_radians() / 8f64.sqrt(),
-        _ => 0.0,
+    let phase = if spec.calibration.has_phase() {
+        0.0
+    } else {
+        s.phase_error_max_deg.to_radians() / 8f64.sqrt()
     };
     (offset * offset + gain * gain + phase * phase).sqrt() / TAU
 }
@@ -118,6 +118,11 @@ fn uncorrected(spec: &Spec) -> f64 {
 /// Rms of a value rounded to this many fraction bits.
 pub(super) fn rounding(fraction: u32) -> f64 {
     exp2(-i64::from(fraction)) / 12f64.sqrt()
+}
+
+/// Rms of what dies below half the last of so many fraction bits: a value anywhere in that dead band.
+pub(super) fn dead_band(fraction: u32) -> f64 {
+    exp2(-i64::from(fraction) - 1) / 3f64.sqrt()
 }
 
 fn terms(words: &Words, spec: &Spec, tracking: &Loop) -> Vec<Term> {
@@ -138,7 +143,7 @@ fn terms(words: &Words, spec: &Spec, tracking: &Loop) -> Vec<Term> {
         rounding(f)
     };
     // Smallest change of the rate is half its last bit: errors below that die in the integrator.
-    let dead_band = exp2(-i64::from(words.phase_bits) - 1) / tracking.ab / 3f64.sqrt();
+    let rate = dead_band(words.phase_bits) / tracking.ab;
     let segment = TAU * exp2(-i64::from(words.sine_rows_log2) - 3);
     // The sine is rounded once more, and the gain that takes the second order off.
     let skew = rounding(f) * (0.5f64 + 0.125).sqrt();
@@ -156,7 +161,7 @@ fn terms(words: &Words, spec: &Spec, tracking: &Loop) -> Vec<Term> {
             "phase parameter as multiplied",
             cross * amplitude * 0.375f64.sqrt(),
         ),
-        ("phase and its increments", dead_band),
+        ("phase and its increments", rate),
         ("parameter accumulators", accumulator(words, spec)),
     ];
     if spec.correction.has_skew() {
@@ -174,11 +179,10 @@ fn terms(words: &Words, spec: &Spec, tracking: &Loop) -> Vec<Term> {
 
 /// Updates below half the last bit are lost: a dead band of the gradient.
 fn accumulator(words: &Words, spec: &Spec) -> f64 {
-    if spec.calibration.parameters == 0 {
+    if !spec.calibration.is_on() {
         return 0.0;
     }
-    exp2(i64::from(spec.calibration.gamma_last) - i64::from(words.accumulator_fraction) - 1)
-        / 3f64.sqrt()
+    exp2(spec.calibration.gamma_last.into()) * dead_band(words.accumulator_fraction)
 }
 
 /// Where a word of the user's misses the budget, the others add no more than this.

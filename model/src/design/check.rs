@@ -4,8 +4,7 @@ use super::DesignError;
 use super::keywords::{KEYWORDS, SYSTEM_KEYWORDS};
 use super::refuse::{between, number, refuse};
 use crate::graph::Graph;
-use crate::kernel::gears::SETTLED;
-use crate::spec::{Calibration, CalibrationMethod, CalibrationStart, Multipliers, Spec};
+use crate::spec::{Calibration, CalibrationMethod, Multipliers, Spec};
 
 /// Checks every field for sense.
 pub(super) fn check(spec: &Spec) -> Result<(), DesignError> {
@@ -224,11 +223,10 @@ fn calibration(spec: &Spec) -> Result<(), DesignError> {
             "offsets and gains are 4, with the phase 5, with the bends of both channels 8 and 9",
         );
     }
-    if c.parameters == 0 {
+    if !c.is_on() {
         return without(c);
     }
-    let bends = c.parameters >= 8;
-    if bends && c.method == CalibrationMethod::Exact {
+    if c.has_bend() && c.method == CalibrationMethod::Exact {
         return refuse(
             "calibration.method",
             "exact",
@@ -236,11 +234,7 @@ fn calibration(spec: &Spec) -> Result<(), DesignError> {
             "recursion (11) for each of 8 or 9 parameters costs 16 or 18 products a sample for what one scalar shows",
         );
     }
-    let squares = matches!(
-        c.method,
-        CalibrationMethod::SumOfSquares | CalibrationMethod::Batch
-    );
-    if squares && c.start == CalibrationStart::LeastSquares {
+    if c.squares() && c.starts() {
         return refuse(
             "calibration.start",
             "least_squares",
@@ -248,19 +242,18 @@ fn calibration(spec: &Spec) -> Result<(), DesignError> {
             "the start is a batch of the radial residual; the sum of squares gathers another one",
         );
     }
-    let gears = c.gamma_last.saturating_sub(c.gamma_first);
-    if c.recall && gears < SETTLED {
+    if c.recall && !c.settles() {
         return refuse(
             "calibration.recall",
             true,
             format!(
                 "false, or gamma_last at least {}",
-                c.gamma_first.saturating_add(SETTLED)
+                c.gamma_first.saturating_add(Calibration::SETTLED)
             ),
             "parameters are held only after four gears: with fewer there is nothing to recall",
         );
     }
-    if bends && c.completion && spec.sensor.periods_per_revolution == Some(1.0) {
+    if c.completed().is_some() && spec.sensor.periods_per_revolution == Some(1.0) {
         return refuse(
             "calibration.completion",
             true,
@@ -286,63 +279,33 @@ fn calibration(spec: &Spec) -> Result<(), DesignError> {
 
 /// Without calibration no key of its says anything: one that does was meant for a chip with it.
 fn without(c: &Calibration) -> Result<(), DesignError> {
-    let none = Calibration {
+    let keys = |c: &Calibration| {
+        let worked_out = Calibration {
+            parameters: 0,
+            gear_periods: Some(c.gear_periods()),
+            ..c.clone()
+        };
+        toml::Table::try_from(worked_out).unwrap_or_default()
+    };
+    let nothing = keys(&Calibration {
         parameters: 0,
         ..Calibration::default()
-    };
-    let said = |key: &str, value: String, differs: bool| {
-        if !differs {
-            return Ok(());
-        }
-        refuse(
+    });
+    match keys(c)
+        .into_iter()
+        .find(|(key, value)| nothing.get(key) != Some(value))
+    {
+        None => Ok(()),
+        Some((key, value)) => refuse(
             format!("calibration.{key}"),
-            value,
+            match value {
+                toml::Value::Float(value) => number(value),
+                value => value.to_string(),
+            },
             "leave it out, or take 4, 5, 8 or 9 parameters",
             "calibration.parameters = 0 calibrates nothing: this key has no effect",
-        )
-    };
-    let method = match c.method {
-        CalibrationMethod::Final => "final",
-        CalibrationMethod::Exact => "exact",
-        CalibrationMethod::SumOfSquares => "sum_of_squares",
-        CalibrationMethod::Batch => "batch",
-    };
-    let start = match c.start {
-        CalibrationStart::Gears => "gears",
-        CalibrationStart::LeastSquares => "least_squares",
-    };
-    said("method", format!("{method:?}"), c.method != none.method)?;
-    said("start", format!("{start:?}"), c.start != none.start)?;
-    for (key, is, was) in [
-        ("forgetting", c.forgetting, none.forgetting),
-        (
-            "completion_gamma",
-            c.completion_gamma,
-            none.completion_gamma,
         ),
-        ("gamma_first", c.gamma_first, none.gamma_first),
-        ("gamma_last", c.gamma_last, none.gamma_last),
-        ("gear_periods", c.gear_periods(), none.gear_periods()),
-    ] {
-        said(key, is.to_string(), is != was)?;
     }
-    for (key, is, was) in [
-        (
-            "restart_residual",
-            c.restart_residual,
-            none.restart_residual,
-        ),
-        ("hold_residual", c.hold_residual, none.hold_residual),
-    ] {
-        said(key, number(is), is != was)?;
-    }
-    for (key, is, was) in [
-        ("completion", c.completion, none.completion),
-        ("recall", c.recall, none.recall),
-    ] {
-        said(key, is.to_string(), is != was)?;
-    }
-    Ok(())
 }
 
 /// Signals of the module that are no nodes of the graph.

@@ -6,12 +6,12 @@ use super::followers::Followers;
 use super::ranges::ranges;
 use super::{Acquisition, DesignError, Loop, Words, harmonics, normalisation, skew};
 use crate::format::{Format, Quantiser, exp2};
-use crate::kernel::gears::{HELD, SETTLED};
+use crate::kernel::gears::HELD;
 use crate::kernel::skew::Order;
 use crate::kernel::start::PERIODS as START_PERIODS;
 use crate::kernel::{Coefficients, Constant, Formats, Method, Structure};
 use crate::rom::{Column, Rom};
-use crate::spec::{CalibrationMethod, CalibrationStart, Coding, Spec};
+use crate::spec::{Calibration, CalibrationMethod, Coding, Spec};
 
 pub(super) fn power_of(value: f64) -> i32 {
     value.log2().ceil() as i32
@@ -70,14 +70,9 @@ pub(super) fn skew_top(spec: &Spec) -> f64 {
     2.5 * skew::phase_max(spec)
 }
 
-/// The calibration begins by least squares.
-pub(super) fn starts(spec: &Spec) -> bool {
-    spec.calibration.parameters > 0 && spec.calibration.start == CalibrationStart::LeastSquares
-}
-
 /// log2 of the largest gathered gradient.
 pub(super) fn gathered_power(spec: &Spec) -> i32 {
-    if starts(spec) {
+    if spec.calibration.starts() {
         // Sums of 64 residuals, each a quarter at most.
         4
     } else if spec.calibration.method == CalibrationMethod::Batch {
@@ -130,7 +125,6 @@ pub(super) fn structure(
         Quantiser::saturating(Format::signed(bits(1 + power + facc as i32), facc))
     };
     let fp = words.phase_bits;
-    let start = starts(spec);
     let fast = spec.sensor.speed_max_periods_per_s > 0.2 * spec.adc.sample_rate_hz;
     let multiplied = multiplied(spec, follow);
     let formats = Formats {
@@ -175,7 +169,7 @@ pub(super) fn structure(
         level: Quantiser::saturating(Format::unsigned(follow.lock_level_bits, 0)),
         // Two bits even where one would do.
         loop_gear: counting_to(acquisition.gears.max(3)),
-        gamma_gear: counting_to(spec.calibration.gamma_last - spec.calibration.gamma_first),
+        gamma_gear: counting_to(spec.calibration.gears()),
         gear_periods: counting_to(spec.calibration.gear_periods().saturating_sub(1).max(HELD)),
     };
     Ok(Structure {
@@ -185,22 +179,14 @@ pub(super) fn structure(
             _ => Method::Three,
         },
         filter_type: spec.tracking.filter_type,
-        parameters: spec.calibration.parameters,
-        gradient: spec.calibration.method,
-        least_squares_start: start,
-        recall: spec.calibration.parameters > 0 && spec.calibration.recall,
-        forgetting: spec.calibration.forgetting,
-        completion: (spec.calibration.parameters >= 8 && spec.calibration.completion)
-            .then_some(spec.calibration.completion_gamma),
+        calibration: spec.calibration.clone(),
         skew: spec.correction.has_skew().then_some(Order::Second),
         harmonics: harmonics::structure(spec, words, follow)?,
         offset_binary,
         formats,
         sine: sine_table(words, follow)?,
         loop_gears: acquisition.gears,
-        gamma_first: spec.calibration.gamma_first,
         amplitude_shift: amplitude_shift(spec),
-        gamma_gears: spec.calibration.gamma_last - spec.calibration.gamma_first,
     })
 }
 
@@ -268,7 +254,7 @@ pub(super) fn constants(
     let full = (1i64 << follow.lock_level_bits) - 1;
     let s = &spec.sensor;
     let more = 5.0 * s.noise_rms
-        + if spec.calibration.parameters >= 8 {
+        + if spec.calibration.has_bend() {
             2.0 * s.bend_max
         } else {
             0.0
@@ -319,8 +305,8 @@ pub(super) fn constants(
         // Above what a promised sensor leaves of e in lock, below what a stop or a start makes of it: 3/32 rad.
         completion_error: Constant::rounded(0.09375, 5),
         travel_samples_last: whole(travel_samples(spec).into()),
-        gamma_gear_settled: whole(SETTLED.into()),
-        gamma_gear_last: whole(structure.gamma_gears.into()),
+        gamma_gear_settled: whole(Calibration::SETTLED.into()),
+        gamma_gear_last: whole(structure.calibration.gears().into()),
         gear_periods_last: whole(i64::from(spec.calibration.gear_periods()) - 1),
         held_periods_last: whole(HELD.into()),
         start_periods_last: whole(START_PERIODS.into()),

@@ -7,6 +7,7 @@ mod followers;
 mod formats;
 mod harmonics;
 mod keywords;
+mod limits;
 mod poles;
 mod promised;
 mod ranges;
@@ -133,13 +134,9 @@ impl Design {
         let acquisition = Acquisition::new(spec, &tracking);
         let (words, mut budget) = budget::choose(spec, &tracking)?;
         let followers = Followers::of(&words, spec, &tracking);
-        for list in [
-            word::of_budget(&words, spec),
-            followers.limits(&words, spec),
-        ] {
-            word::present(spec, &list)?;
-            word::inside(spec, &list)?;
-        }
+        let limits = limits::all(&words, &followers, spec);
+        word::present(spec, &limits)?;
+        word::inside(spec, &limits)?;
         let all = (&words, &followers);
         let mut structure = formats::structure(spec, &acquisition, all)?;
         let constants = formats::constants(spec, &tracking, &acquisition, all, &structure);

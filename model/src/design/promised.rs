@@ -23,13 +23,13 @@ pub(super) fn promised(
     structure: &Structure,
     k: &Coefficients<f64>,
 ) -> impl Iterator<Item = Promised> {
-    let beta_max = if structure.has_phase() {
+    let beta_max = if structure.calibration.has_phase() {
         spec.sensor.phase_error_max_deg.to_radians()
     } else {
         0.0
     };
     let (nominal, tolerance) = (k.theta_1_nominal, spec.sensor.amplitude_tolerance);
-    let bent = structure.has_bend();
+    let bent = structure.calibration.has_bend();
     let pairs = ENDS
         .into_iter()
         .flat_map(|beta| ENDS.map(|gain| (beta, gain)));

@@ -22,7 +22,7 @@ pub(super) fn needs(spec: &Spec) -> Needs {
     Needs {
         gain: nominal / (1.0 - m) / beta.cos() - nominal,
         offset: offset / (1.0 - m) * (1.0 / beta.cos() + beta.tan()),
-        cross: if spec.calibration.parameters >= 8 {
+        cross: if spec.calibration.has_bend() {
             // It acts on the corrected cosine.
             beta.tan() / (1.0 - m)
         } else {

@@ -1,11 +1,10 @@
 //! One word length of a chip: what it is, who chose it, what it may be.
 
-use std::borrow::Cow;
-
 use serde::Serialize;
 
+use super::limits::{self, Limits};
 use super::refuse::refuse;
-use super::{Design, DesignError, Words, budget};
+use super::{Design, DesignError};
 use crate::spec::{Overrides, Spec};
 
 /// A word length of this chip.
@@ -23,18 +22,6 @@ pub struct Word {
     pub highest: i64,
     /// What it is.
     pub meaning: &'static str,
-}
-
-/// A word length and its ends.
-pub(super) struct Limits {
-    pub(super) key: &'static str,
-    pub(super) value: i64,
-    pub(super) lowest: i64,
-    pub(super) highest: i64,
-    /// Why these are its ends.
-    pub(super) why: Cow<'static, str>,
-    /// Why this chip has no such word.
-    pub(super) absent: Option<&'static str>,
 }
 
 /// No word has more bits, and no range is further from 1: what is beyond is refused before anything is made of it.
@@ -94,47 +81,12 @@ pub(super) fn inside(spec: &Spec, list: &[Limits]) -> Result<(), DesignError> {
     }
 }
 
-/// What the words of the budget may be, each with those before it as they are.
-pub(super) fn of_budget(words: &Words, spec: &Spec) -> Vec<Limits> {
-    let values = [
-        ("signal_fraction", words.signal_fraction),
-        ("phase_bits", words.phase_bits),
-        ("sine_phase_bits", words.sine_phase_bits),
-        ("sine_rows_log2", words.sine_rows_log2),
-        ("harmonic_rows_log2", words.harmonic_rows_log2),
-        ("accumulator_fraction", words.accumulator_fraction),
-    ];
-    let harmonics = spec.correction.harmonics.is_empty();
-    let absent = |key: &str| match key {
-        "harmonic_rows_log2" if harmonics => Some("there are no correction.harmonics"),
-        "accumulator_fraction" if spec.calibration.parameters == 0 => {
-            Some("calibration.parameters is 0")
-        }
-        _ => None,
-    };
-    values
-        .into_iter()
-        .map(|(key, value)| {
-            let (lowest, highest) = budget::limits(key, words);
-            Limits {
-                key,
-                value: value.into(),
-                lowest: lowest.into(),
-                highest: highest.into(),
-                why: "the chip cannot be built with it".into(),
-                absent: absent(key),
-            }
-        })
-        .collect()
-}
-
 impl Design {
     /// Every word length that the analysis chose or the design gives, in the order of [`Overrides::KEYS`]; words that this
     /// chip does not have are left out.
     #[must_use]
     pub fn word_lengths(&self) -> Vec<Word> {
-        let mut list = of_budget(&self.words, &self.spec);
-        list.extend(self.followers.limits(&self.words, &self.spec));
+        let mut list = limits::all(&self.words, &self.followers, &self.spec);
         let place = |l: &Limits| Overrides::KEYS.iter().position(|key| *key == l.key);
         list.sort_by_key(place);
         list.into_iter()

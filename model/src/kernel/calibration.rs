@@ -30,10 +30,10 @@ struct Equaliser {
 impl Equaliser {
     fn of(structure: &Structure) -> Self {
         let amplitude = structure.amplitude_shift as i32;
-        if structure.has_bend() {
+        if structure.calibration.has_bend() {
             // By offset and phase the gradient is made of the estimate, whose amplitude is 1, and the offset's has its
             // factor; the phase is 1/2 like the bends.
-            return match structure.gradient {
+            return match structure.calibration.method {
                 CalibrationMethod::SumOfSquares => Self {
                     offset: 0,
                     gain: amplitude,
@@ -54,7 +54,7 @@ impl Equaliser {
                 },
             };
         }
-        let (offset, gain, phase) = match structure.gradient {
+        let (offset, gain, phase) = match structure.calibration.method {
             CalibrationMethod::Final => (0, 1, 4),
             // What is remembered lags and swings: gains and phase half as fast.
             CalibrationMethod::SumOfSquares => (0, 0, 2),
@@ -165,7 +165,7 @@ pub fn update<S: Signal, const PLAIN: bool>(
         start_periods: state.start_periods,
         w_null: k.zero,
     };
-    if structure.parameters == 0 {
+    if !structure.calibration.is_on() {
         return this;
     }
     let starting = if PLAIN {
@@ -174,7 +174,8 @@ pub fn update<S: Signal, const PLAIN: bool>(
         seen.start.map(|start| start.running)
     };
     let mut gradient = gradient::linear(seen, k, structure);
-    let mut bent = (!PLAIN && structure.has_bend()).then(|| gradient::bent(seen, k, structure));
+    let mut bent =
+        (!PLAIN && structure.calibration.has_bend()).then(|| gradient::bent(seen, k, structure));
     let solved = starting.map(|_| {
         let solved = start::start(gradient, seen.theta, gate, state, k, structure);
         (this.gathered, this.start_periods) = (solved.gathered, solved.periods);
@@ -183,16 +184,20 @@ pub fn update<S: Signal, const PLAIN: bool>(
     let method = if PLAIN {
         CalibrationMethod::Final
     } else {
-        structure.gradient
+        structure.calibration.method
     };
     // θ1 … θ4, and θ5 where there is phase.
-    let linear = if structure.has_phase() { 5 } else { 4 };
+    let linear = if structure.calibration.has_phase() {
+        5
+    } else {
+        4
+    };
     if let Some(bent) = &bent {
         (gradient[1], gradient[3], gradient[4]) = (bent.offsets[0], bent.offsets[1], bent.phase);
         this.w_null = bent.w;
     }
     match method {
-        CalibrationMethod::Final if structure.parameters == 4 => {
+        CalibrationMethod::Final if structure.calibration.parameters == 4 => {
             let apart = |own: S::Wide, other: S::Wide| own - other.scale(-1);
             (gradient[0], gradient[2]) = (
                 apart(gradient[0], gradient[2]),
@@ -242,16 +247,17 @@ pub fn update<S: Signal, const PLAIN: bool>(
     let old = this.theta;
     let nominal = gears::nominal(state, k);
     let settled = structure
+        .calibration
         .phase_settles()
         .then(|| gears::settled(state, k, structure));
     let step = |gradient: S::Wide, i: usize, equaliser: i32| {
         let geared = gradient
-            .scale(equaliser - structure.gamma_first as i32)
+            .scale(equaliser - structure.calibration.gamma_first as i32)
             .named(GRADIENT[i])
             .quantise_geared(
                 state.gamma_gear,
                 1,
-                structure.gamma_gears,
+                structure.calibration.gears(),
                 &structure.formats.step,
             );
         let geared = match settled.filter(|_| i == 4) {
@@ -274,7 +280,7 @@ pub fn update<S: Signal, const PLAIN: bool>(
         moved(old[i], step, i, nominal, k, structure)
     };
     let by = Equaliser::of(structure);
-    if structure.has_phase() {
+    if structure.calibration.has_phase() {
         this.theta[4] = step(gradient[4], 4, by.phase);
     }
     this.theta[0] = step(gradient[0], 0, by.gain);

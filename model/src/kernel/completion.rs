@@ -64,7 +64,7 @@ pub fn complete<S: Signal>(
     let samples = (state.travel_samples + S::select(late, k.zero, k.one))
         .quantise(&Quantiser::wrapping(structure.formats.travel_samples));
     e.begin(&COMPLETION);
-    let gamma = structure.completion.unwrap_or(0) as i32;
+    let gamma = structure.calibration.completed().unwrap_or(0) as i32;
     let step = (sensitivity.error * e)
         .scale(-gamma)
         .named("gradient_9")

@@ -49,7 +49,7 @@ pub fn parameters<S: Signal>(
     let [first, third, fifth] = structure.formats.theta;
     let theta_1 = (k.theta_1_nominal + state.theta_1_deviation).quantise(&first);
     let theta_3 = (k.theta_3_nominal + state.theta_3_deviation).quantise(&third);
-    let theta_5 = if structure.has_phase() {
+    let theta_5 = if structure.calibration.has_phase() {
         state.theta_5_deviation.quantise(&fifth)
     } else {
         k.zero
@@ -82,7 +82,7 @@ pub fn correct_bent<S: Signal>(
         .named("u_s_exact")
         .quantise(signal);
     let (c, s) = bend::bend((u_c.named("u_c"), u_s.named("u_s")), bends, k, structure);
-    if !structure.has_phase() {
+    if !structure.calibration.has_phase() {
         return (c, s);
     }
     c.begin(&CORRECT_BENT);
@@ -97,7 +97,7 @@ pub fn correct<S: Signal>(y_c: S, y_s: S, theta: [S; 5], structure: &Structure) 
     let signal = &structure.formats.signal;
     let c = theta_1 * y_c + theta_2.widen();
     let mut s = theta_3 * y_s + theta_4.widen();
-    if structure.has_phase() {
+    if structure.calibration.has_phase() {
         s = s + theta_5 * y_c;
     }
     (
@@ -115,10 +115,10 @@ pub fn tan_beta<S: Signal>(
     structure: &Structure,
 ) -> Option<S> {
     let signal = &structure.formats.signal;
-    if !structure.has_phase() {
+    if !structure.calibration.has_phase() {
         return None;
     }
-    if structure.has_bend() {
+    if structure.calibration.has_bend() {
         return Some(theta_5);
     }
     let gain = (k.nominal_amplitude * theta_1)

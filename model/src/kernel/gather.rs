@@ -42,13 +42,14 @@ pub fn squares<S: Signal>(
     zero: S,
     structure: &Structure,
 ) -> Gathered<S> {
-    if structure.gradient == CalibrationMethod::Batch {
+    if structure.calibration.method == CalibrationMethod::Batch {
         return over_a_period(gradient, before, gate, zero, structure);
     }
     before.begin(&GATHER);
     let to = &structure.formats.gathered;
     let difference = gradient - before.widen();
-    let mean = (before.widen() + difference.scale(-(structure.forgetting as i32))).quantise(to);
+    let mean = (before.widen() + difference.scale(-(structure.calibration.forgetting as i32)))
+        .quantise(to);
     Gathered {
         gradient: mean,
         next: S::select(gate.fresh, mean, before).quantise(to),

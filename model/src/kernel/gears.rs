@@ -1,7 +1,7 @@
 //! γ shifts gear: large first, halved after every few periods of travel, large again when the residual shows that the
 //! signal has changed.
 //!
-//! A residual that was small and is no longer may be a signal that fades. So where γ has settled ([`SETTLED`] gears) it moves
+//! A residual that was small and is no longer may be a signal that fades. So where γ has settled ([`Calibration::SETTLED`](crate::spec::Calibration::SETTLED) gears) it moves
 //! no parameter: they are held to the end of the first period without it, and after a sample out of the lock window until the
 //! lock level is full again. Where the radius is far too large, which it is of no signal that fades, or has been too small for
 //! [`HELD`] periods and lock was not lost, the signal has changed, and the search begins again. A signal that is lost in the
@@ -12,9 +12,6 @@ use super::detector::within;
 use super::{Coefficients, State, Structure};
 use crate::format::Quantiser;
 use crate::signal::{Formula, Logic, Signal};
-
-/// From this gear on γ has settled.
-pub const SETTLED: u32 = 4;
 
 /// Periods of travel that parameters are held before the search begins again, less one.
 pub const HELD: u32 = 31;
@@ -82,13 +79,13 @@ pub fn hold<S: Signal>(
         .and(counted)
         .named("residual_large");
     let suspect = large.or(state.disturbed).or(state.held).or(follows.not());
-    let suspect = if structure.recall {
+    let suspect = if structure.calibration.recalls() {
         suspect.or(state.returning)
     } else {
         suspect
     };
     let held = suspect.and(settled).named("hold");
-    let recall = structure.recall.then(|| {
+    let recall = structure.calibration.recalls().then(|| {
         let last = last_gear(state, k);
         held.and(last).named("recall")
     });
@@ -107,7 +104,7 @@ fn last_gear<S: Signal>(state: &State<S>, k: &Coefficients<S>) -> S::Bool {
 
 /// γ has settled. With fewer gears it never has.
 pub fn settled<S: Signal>(state: &State<S>, k: &Coefficients<S>, structure: &Structure) -> S::Bool {
-    if structure.gamma_gears < SETTLED {
+    if !structure.calibration.settles() {
         return k.never();
     }
     let early = state.gamma_gear.less_than(k.gamma_gear_settled);

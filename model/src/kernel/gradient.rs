@@ -57,7 +57,7 @@ pub struct Seen<S: Signal> {
 /// ρ as it moves the parameters. More than a quarter of the radius is no measurement: the word holds it there, and every
 /// step after it is short.
 pub fn limited<S: Signal>(rho: S, structure: &Structure) -> S {
-    rho.begin(if structure.squares() {
+    rho.begin(if structure.calibration.squares() {
         &ALONG
     } else {
         &DIRECTION
@@ -85,7 +85,7 @@ pub fn linear<S: Signal>(
         y_c = S::select(start.running, cos, y_c).named("m_c");
         y_s = S::select(start.running, sin, y_s).named("m_s");
     }
-    let fifth = if structure.has_phase() {
+    let fifth = if structure.calibration.has_phase() {
         y_c * rho_s
     } else {
         k.zero.widen()
@@ -116,7 +116,7 @@ pub struct Bent<S: Signal> {
 /// The bends are small, so M is taken as it is without them, in α̂ (for the sum of squares in the pair's own angle): T2 is
 /// cos 2α̂ in the cosine and −cos 2α̂ in the sine.
 pub fn bent<S: Signal>(seen: &Seen<S>, k: &Coefficients<S>, structure: &Structure) -> Bent<S> {
-    seen.rho.begin(if structure.squares() {
+    seen.rho.begin(if structure.calibration.squares() {
         &BENDS_OF_PAIR
     } else {
         &BENDS
@@ -135,7 +135,7 @@ pub fn bent<S: Signal>(seen: &Seen<S>, k: &Coefficients<S>, structure: &Structur
             twice(rho_c) - second_c.scale(2),
             twice(rho_s) + second_s.scale(2),
         ],
-        phase: if structure.has_phase() {
+        phase: if structure.calibration.has_phase() {
             w * seen.rho
         } else {
             k.zero.widen()
@@ -194,7 +194,7 @@ pub fn sensitivities<S: Signal>(
     let next = |w: S, i: usize, error: &'static str| {
         sensitivity::advance(w, before[i], error, k, structure)
     };
-    let fifth = if structure.has_phase() {
+    let fifth = if structure.calibration.has_phase() {
         let w = (cos_hat * y_c).quantise(signal).named("w_5");
         next(w, 4, "w_5_error")
     } else {

@@ -32,7 +32,7 @@ pub use state::{Input, Probes, State};
 
 use crate::format::{Format, Quantiser};
 use crate::rom::Rom;
-use crate::spec::CalibrationMethod;
+use crate::spec::Calibration;
 
 /// The loop filter of the paper, section 4.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,18 +52,8 @@ pub struct Structure {
     pub method: Method,
     /// Poles of the filter at 1: 1 or 2.
     pub filter_type: u32,
-    /// Calibrated parameters: 0 (none), 4, 5, 8 or 9.
-    pub parameters: u32,
-    /// Which gradient moves them.
-    pub gradient: CalibrationMethod,
-    /// The first periods of travel are solved by least squares.
-    pub least_squares_start: bool,
-    /// Where parameters begin to be held, those of some periods before come back.
-    pub recall: bool,
-    /// λ = 1 − 2^-`forgetting` of the sum of squares.
-    pub forgetting: u32,
-    /// γ = 2^-that of the direction that no radius shows; `None`: it is not learnt.
-    pub completion: Option<u32>,
+    /// Which parameters are calibrated, and by what search.
+    pub calibration: Calibration,
     /// How far channel skew is corrected; `None`: the sine is sampled with the cosine.
     pub skew: Option<skew::Order>,
     /// Stored harmonics of the scale period; `None`: the channels are pure.
@@ -76,58 +66,18 @@ pub struct Structure {
     pub sine: Rom,
     /// Last loop gear, each of half the bandwidth of the one before; gear 0 is the widest. 0: a single gear.
     pub loop_gears: u32,
-    /// First γ is 2^-`gamma_first`.
-    pub gamma_first: u32,
     /// The gradient by gains and phase carries the square of the amplitude, ¼ … 1; this power of two brings it near 1.
     pub amplitude_shift: u32,
-    /// Last γ gear; each halves γ.
-    pub gamma_gears: u32,
 }
 
 impl Structure {
-    /// θ5 is calibrated.
-    #[must_use]
-    pub fn has_phase(&self) -> bool {
-        matches!(self.parameters, 5 | 9)
-    }
-
-    /// The step of θ5 is halved once γ has settled.
-    #[must_use]
-    pub fn phase_settles(&self) -> bool {
-        let final_form = self.gradient == CalibrationMethod::Final;
-        let settles = self.gamma_gears >= gears::SETTLED;
-        final_form && self.parameters == 5 && settles
-    }
-
     /// Neither bends, nor skew, nor harmonics, nor another gradient than the final form, nor another start than its gears, nor
     /// recall.
     #[must_use]
     pub fn is_plain(&self) -> bool {
-        let searches = self.gradient != CalibrationMethod::Final || self.least_squares_start;
+        let c = &self.calibration;
         let known = self.skew.is_some() || self.harmonics.is_some();
-        !(self.has_bend() || known || searches || self.recall)
-    }
-
-    /// Gradients are gathered over samples: by the search or by its start.
-    #[must_use]
-    pub fn gathers(&self) -> bool {
-        self.squares() || self.least_squares_start
-    }
-
-    /// The sum of squares moves the parameters.
-    #[must_use]
-    pub fn squares(&self) -> bool {
-        self.parameters > 0
-            && matches!(
-                self.gradient,
-                CalibrationMethod::SumOfSquares | CalibrationMethod::Batch
-            )
-    }
-
-    /// θ6 … θ9 are calibrated.
-    #[must_use]
-    pub fn has_bend(&self) -> bool {
-        self.parameters >= 8
+        c.is_linear_final() && !(known || c.starts() || c.recalls())
     }
 }
 

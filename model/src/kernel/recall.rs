@@ -40,7 +40,7 @@ pub fn recall<S: Signal>(
     let before = Memory::of(state);
     let passed = gears.passed;
     updated.theta = std::array::from_fn(|i| S::select(recall, before.proven[i], updated.theta[i]));
-    if structure.gradient == CalibrationMethod::SumOfSquares {
+    if structure.calibration.method == CalibrationMethod::SumOfSquares {
         // A mean gradient of the way down would be the first to act on what was recalled.
         updated.gathered = updated.gathered.map(|sum| S::select(recall, k.zero, sum));
     }

@@ -56,7 +56,7 @@ fn advance_of<S: Signal, const PLAIN: bool>(
     let y_s = correction::normalise(input.adc_sin, k, structure);
     let theta = correction::parameters(state, k, structure);
     let mut bends = None;
-    let (mut c, mut s) = if !PLAIN && structure.has_bend() {
+    let (mut c, mut s) = if !PLAIN && structure.calibration.has_bend() {
         let bends = bends.insert(bend::parameters(state, structure));
         correction::correct_bent(y_c, y_s, theta, bends, k, structure)
     } else {
@@ -95,7 +95,7 @@ fn advance_of<S: Signal, const PLAIN: bool>(
     let direction = position::direction(rate, state.direction, k);
 
     let counting = travel::counting(input, state);
-    let starting = (!PLAIN && structure.least_squares_start).then(|| start::running(state, k));
+    let starting = (!PLAIN && structure.calibration.starts()).then(|| start::running(state, k));
     let measure = starting.map(|running| start::measure(e, running, k));
     let travel = travel::travel(counting, measure, state, k, structure);
     let counted = counting.and(in_window).and(travel.new_sector);
@@ -112,7 +112,7 @@ fn advance_of<S: Signal, const PLAIN: bool>(
     let mut polar = None;
     // What the gradient is made of: the residual, and the pair or its estimate.
     let (mut residual, mut frame) = (rho, estimate);
-    let (rho_c, rho_s) = if !PLAIN && structure.squares() {
+    let (rho_c, rho_s) = if !PLAIN && structure.calibration.squares() {
         let epsilon = sum_of_squares::half_square(c, s, k.half, structure);
         (residual, frame) = (gradient::limited(epsilon, structure), (c, s));
         gradient::along(residual, frame, structure)
@@ -142,7 +142,11 @@ fn advance_of<S: Signal, const PLAIN: bool>(
         clear: travel.clear,
     };
     let mut updated = calibration::update::<S, PLAIN>(&seen, gate, state, k, structure);
-    let completion = if PLAIN { None } else { structure.completion };
+    let completion = if PLAIN {
+        None
+    } else {
+        structure.calibration.completed()
+    };
     let completed = completion.map(|_| {
         let open = counting.and(hold.held.not());
         let seen = (updated.w_null, e, rho);

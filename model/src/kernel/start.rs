@@ -129,7 +129,11 @@ pub fn start<S: Signal>(
 ) -> Start<S> {
     let mut gathered = super::gather::gathered(state);
     let mut mean = [k.zero; 5];
-    let linear = if structure.has_phase() { 5 } else { 4 };
+    let linear = if structure.calibration.has_phase() {
+        5
+    } else {
+        4
+    };
     let components = gradient.into_iter().zip(&mut gathered).zip(&mut mean);
     for ((gradient, gathered), mean) in components.take(linear) {
         let sum = over_a_period(gradient, *gathered, gate, k.zero, structure);
@@ -171,7 +175,10 @@ fn steps<S: Signal>(
     let step_1 = (theta_1 * delta_1).quantise(to).named("solved_1");
     // What δ5 takes of the new c goes to θ5 and, where that acts on y_c, to θ4. With bends θ5 acts on the corrected
     // cosine, and what θ5 took of the old one has moved.
-    let (step_5, shared) = match (structure.has_phase(), structure.has_bend()) {
+    let (step_5, shared) = match (
+        structure.calibration.has_phase(),
+        structure.calibration.has_bend(),
+    ) {
         (false, _) => (k.zero, k.zero.widen()),
         (true, false) => {
             let theta_1 = (theta_1 - step_1).quantise(&structure.formats.theta[0]);

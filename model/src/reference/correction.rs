@@ -60,6 +60,15 @@ impl Parameters {
         }
     }
 
+    /// Where the phase stands, counted from 0; `None`: it is not calibrated.
+    #[must_use]
+    pub fn phase(self) -> Option<usize> {
+        match self {
+            Self::Five | Self::Nine | Self::ChebyshevNine => Some(self.count() - 1),
+            Self::Four | Self::Eight | Self::ChebyshevEight => None,
+        }
+    }
+
     /// Θ for a sensor of this amplitude without errors.
     #[must_use]
     pub fn nominal(self, amplitude: f64) -> Theta {

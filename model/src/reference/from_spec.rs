@@ -13,10 +13,7 @@ use super::poles::Poles;
 use super::start::Start;
 use super::sum_of_squares::Smoothing;
 use super::{Config, Parameters, ReferenceError, Steps, Theta};
-use crate::spec::{CalibrationMethod, CalibrationStart, Spec};
-
-/// Halvings of γ after which it has settled.
-const SETTLED: u32 = 4;
+use crate::spec::{Calibration, CalibrationMethod, Spec};
 
 /// From the unit of the ADC's range to y: the middle becomes 0, the nominal amplitude 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -99,8 +96,8 @@ fn equaliser(spec: &Spec, parameters: Parameters) -> Steps {
     let mut equaliser = Theta::repeat(1.0);
     let [gain_c, _, gain_s, _] = parameters.linear();
     (equaliser[gain_c], equaliser[gain_s]) = (gain, gain);
-    if parameters.count() % 2 == 1 {
-        equaliser[parameters.count() - 1] = phase;
+    if let Some(at) = parameters.phase() {
+        equaliser[at] = phase;
     }
     let mut steps = Steps::from_diagonal(&equaliser);
     if (spec.calibration.method, parameters.count()) == (CalibrationMethod::Final, 4) {
@@ -113,11 +110,11 @@ fn equaliser(spec: &Spec, parameters: Parameters) -> Steps {
 /// one fixed point, and what tells the designs apart is the completion.
 fn search(spec: &Spec) -> Search {
     let k = &spec.calibration;
-    match (k.parameters, k.method) {
-        (0, _) => Search::None,
-        (8 | 9, _) if k.completion => Search::Completed(CompletedConfig {
+    match (k.completed(), k.method) {
+        _ if !k.is_on() => Search::None,
+        (Some(gamma), _) => Search::Completed(CompletedConfig {
             // The chip's θ9 turns the pair four times as far as v does.
-            gamma_v: 4.0 * 0.5f64.powi(k.completion_gamma as i32),
+            gamma_v: 4.0 * 0.5f64.powi(gamma as i32),
             slowest: TAU * spec.tracking.bandwidth_hz / (5.0 * spec.adc.sample_rate_hz),
         }),
         (_, CalibrationMethod::Final) => Search::Residual(Form::Final),
@@ -167,17 +164,18 @@ pub fn config(spec: &Spec) -> Result<Config, ReferenceError> {
     // What a loop that follows none of it sees as phase error.
     let turn = s.amplitude_tolerance + SQRT_2 * s.offset_max + 0.75 * beta + more;
     let first = equaliser(spec, parameters) * (0.5f64.powi(k.gamma_first as i32) * gathered(spec));
-    let mut later = first;
-    if (k.method, k.parameters) == (CalibrationMethod::Final, 5) {
-        later[(4, 4)] /= 2.0;
-    }
+    let settled = k.phase_settles().then(|| {
+        let mut steps = first;
+        steps[(4, 4)] /= 2.0;
+        (Calibration::SETTLED, steps)
+    });
     // A loop settles within some multiples of 1/ω0.
     let omega = TAU * spec.tracking.bandwidth_hz / spec.adc.sample_rate_hz;
-    let settled = (4.0 / omega).ceil().clamp(8.0, 1e6) as u32;
+    let settles = (4.0 / omega).ceil().clamp(8.0, 1e6) as u32;
     let window = Window {
         e: (1.2 * turn).clamp(0.35, 0.8),
         rho: (1.25 * radius).clamp(0.4, 0.9),
-        samples: settled,
+        samples: settles,
     };
     Ok(Config {
         parameters,
@@ -188,29 +186,26 @@ pub fn config(spec: &Spec) -> Result<Config, ReferenceError> {
         search: search(spec),
         gamma: Gamma {
             first,
-            halvings: k.gamma_last.saturating_sub(k.gamma_first),
+            halvings: k.gears(),
             periods: k.gear_periods().into(),
-            settled: Some((SETTLED, later)),
+            settled,
         },
-        gate: if k.parameters == 0 {
-            Gate::Locked(window)
-        } else {
+        gate: if k.is_on() {
             Gate::Travelled(window)
+        } else {
+            Gate::Locked(window)
         },
-        solved: match k.start {
-            CalibrationStart::LeastSquares if k.parameters > 0 => 2,
-            _ => 0,
-        },
+        solved: if k.starts() { 2 } else { 0 },
         hold: Some(HoldConfig {
             residual: spec.hold_residual(),
             restart: k.restart_residual,
-            settled: SETTLED,
+            settled: Calibration::SETTLED,
             periods: 32.0,
             recall: k.recall.then_some(k.gear_periods().into()),
         }),
         bound: Theta::repeat(1.0),
         start: Start::Arctangent {
-            samples: settled.min(64),
+            samples: settles.min(64),
         },
     })
 }

@@ -96,22 +96,14 @@ impl Solved {
     fn solve(&self, parameters: Parameters) -> Option<Theta> {
         let mut own = SMatrix::<f64, 9, 9>::identity();
         let mut right = Theta::zeros();
-        let linear = linear(parameters);
-        for &i in &linear {
+        // Gains, offsets and, where there is one, the phase.
+        let linear = || parameters.linear().into_iter().chain(parameters.phase());
+        for i in linear() {
             right[i] = self.right[i];
-            for &j in &linear {
+            for j in linear() {
                 own[(i, j)] = self.normal[(i, j)];
             }
         }
         own.cholesky().map(|normal| normal.solve(&right))
     }
-}
-
-/// Gains, offsets and, where there is one, the phase.
-fn linear(parameters: Parameters) -> Vec<usize> {
-    let mut list = parameters.linear().to_vec();
-    if parameters.count() % 2 == 1 {
-        list.push(parameters.count() - 1);
-    }
-    list
 }

@@ -1,10 +1,12 @@
 //! `design.toml`: what the user asks for, in physical units.
 
+mod calibration;
 mod correction;
 mod overrides;
 mod place;
 mod read;
 
+pub use calibration::{Calibration, CalibrationMethod, CalibrationStart};
 pub use correction::{Correction, Harmonic};
 pub use overrides::Overrides;
 pub use place::Place;
@@ -131,161 +133,6 @@ pub struct Tracking {
 
 fn damping() -> f64 {
     std::f64::consts::FRAC_1_SQRT_2
-}
-
-/// `[calibration]`
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Calibration {
-    /// 0 (off), 4 (gains, offsets), 5 (and phase), 8 (4 and bends) or 9 (8 and phase).
-    #[serde(default = "five")]
-    pub parameters: u32,
-    /// Which gradient moves them.
-    #[serde(default)]
-    pub method: CalibrationMethod,
-    /// How the search begins after lock.
-    #[serde(default)]
-    pub start: CalibrationStart,
-    /// The mean gradient of `sum_of_squares` forgets 2^-`forgetting` of itself with each sample: λ = 1 − 2^-`forgetting`.
-    #[serde(default = "forgetting")]
-    pub forgetting: u32,
-    /// Whether 8 and 9 parameters learn the direction that the radius does not show.
-    #[serde(default = "yes")]
-    pub completion: bool,
-    /// γ of that direction is 2^-`completion_gamma` per sample.
-    #[serde(default = "completion_gamma")]
-    pub completion_gamma: u32,
-    /// First γ is 2^-`gamma_first`.
-    #[serde(default = "gamma_first")]
-    pub gamma_first: u32,
-    /// Last γ is 2^-`gamma_last`.
-    #[serde(default = "gamma_last")]
-    pub gamma_last: u32,
-    /// Periods of travel between gears. Default: see [`gear_periods`](Self::gear_periods).
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub gear_periods: Option<u32>,
-    /// |ρ| above this returns to the first γ.
-    #[serde(default = "restart")]
-    pub restart_residual: f64,
-    /// |ρ| above this holds the parameters once γ has settled: the signal may be fading. See [`Spec::hold_residual`].
-    #[serde(default = "hold")]
-    pub hold_residual: f64,
-    /// Where they begin to be held, the parameters go back to what they were some periods before: a fade of the signal takes
-    /// nothing along. Two registers for each parameter.
-    #[serde(default)]
-    pub recall: bool,
-}
-
-fn five() -> u32 {
-    5
-}
-fn forgetting() -> u32 {
-    3
-}
-fn yes() -> bool {
-    true
-}
-fn completion_gamma() -> u32 {
-    10
-}
-fn gamma_first() -> u32 {
-    4
-}
-fn gamma_last() -> u32 {
-    10
-}
-fn restart() -> f64 {
-    0.25
-}
-
-fn hold() -> f64 {
-    0.0625
-}
-
-impl Spec {
-    /// |ρ| from which parameters are held: as the design says, and at least what noise (six σ) and a phase error that is not
-    /// calibrated (sin β sin 2α / 2, and a quarter of that) leave in the radius.
-    #[must_use]
-    pub fn hold_residual(&self) -> f64 {
-        let phase = match self.calibration.parameters {
-            5 | 9 => 0.0,
-            _ => 0.625 * self.sensor.phase_error_max_deg.to_radians().sin(),
-        };
-        let left = 6.0 * self.sensor.noise_rms + phase;
-        self.calibration.hold_residual.max(left)
-    }
-}
-
-impl Calibration {
-    /// Whether the search is the final form with four or five parameters.
-    #[must_use]
-    pub fn is_linear_final(&self) -> bool {
-        self.method == CalibrationMethod::Final && self.parameters < 8
-    }
-
-    /// Periods of travel between gears: as the design says, or what is soonest below 1 % of the first miscalibration. The final
-    /// form with four and five parameters is still quick in the fourth period; the others swing or are noisy there.
-    #[must_use]
-    pub fn gear_periods(&self) -> u32 {
-        self.gear_periods
-            .unwrap_or(if self.is_linear_final() { 4 } else { 3 })
-    }
-
-    /// Which of θ1 … θ9 are calibrated.
-    #[must_use]
-    pub fn thetas(&self) -> &'static [usize] {
-        match self.parameters {
-            0 => &[],
-            4 => &[1, 2, 3, 4],
-            5 => &[1, 2, 3, 4, 5],
-            8 => &[1, 2, 3, 4, 6, 7, 8, 9],
-            _ => &[1, 2, 3, 4, 5, 6, 7, 8, 9],
-        }
-    }
-}
-
-/// The gradient searches of the paper.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum CalibrationMethod {
-    /// The residual gradient in its final form (5.5.1): along the radius.
-    #[default]
-    Final,
-    /// The residual gradient with the recursion (11).
-    Exact,
-    /// The sum of squares (5.2, 5.3) with a forgetting factor.
-    SumOfSquares,
-    /// The sum of squares, gathered over a period of travel before each update.
-    Batch,
-}
-
-/// How the calibration begins after lock, and again where the residual shows that the signal has changed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum CalibrationStart {
-    /// With the largest γ.
-    #[default]
-    Gears,
-    /// Θ by linearised least squares over each of the first two periods of travel, then the gears.
-    LeastSquares,
-}
-
-impl Default for Calibration {
-    fn default() -> Self {
-        Self {
-            parameters: five(),
-            method: CalibrationMethod::default(),
-            start: CalibrationStart::default(),
-            forgetting: forgetting(),
-            completion: yes(),
-            completion_gamma: completion_gamma(),
-            gamma_first: gamma_first(),
-            gamma_last: gamma_last(),
-            gear_periods: None,
-            restart_residual: restart(),
-            hold_residual: hold(),
-            recall: false,
-        }
-    }
 }
 
 /// `[accuracy]`

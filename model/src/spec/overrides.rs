@@ -3,12 +3,16 @@
 use serde::{Deserialize, Serialize};
 
 macro_rules! overrides {
-    ($($(#[doc = $doc:literal])* $(#[serde($($how:tt)*)])? $key:ident: $kind:ty),* $(,)?) => {
+    ($($(#[doc = $doc:literal])* $key:ident: $kind:ty),* $(,)?) => {
         /// `[formats]`: any of these replaces what the analysis chose. Every word length that it chooses is here; those of the
         /// other signals follow from them, from the design's own numbers or from the algorithm.
         #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
         pub struct Overrides {
-            $($(#[doc = $doc])* #[serde(default)] $(#[serde($($how)*)])? pub $key: Option<$kind>,)*
+            $(
+                $(#[doc = $doc])*
+                #[serde(default, skip_serializing_if = "Option::is_none")]
+                pub $key: Option<$kind>,
+            )*
         }
 
         impl Overrides {
@@ -58,71 +62,49 @@ overrides! {
     /// Rows of the quarter-wave table: 2^`sine_rows_log2`.
     sine_rows_log2: u32,
     /// Rows of the table of harmonics: 2^`harmonic_rows_log2`.
-    #[serde(skip_serializing_if = "Option::is_none")]
     harmonic_rows_log2: u32,
     /// Fraction bits of the parameter accumulators and of their steps.
     accumulator_fraction: u32,
     /// Fraction bits of the values in the quarter-wave table.
-    #[serde(skip_serializing_if = "Option::is_none")]
     sine_value_fraction: u32,
     /// Fraction bits of the slopes (per turn) in the quarter-wave table.
-    #[serde(skip_serializing_if = "Option::is_none")]
     sine_slope_fraction: u32,
     /// Fraction bits of the harmonics as they are read.
-    #[serde(skip_serializing_if = "Option::is_none")]
     harmonic_fraction: u32,
     /// Fraction bits of the values in the table of harmonics.
-    #[serde(skip_serializing_if = "Option::is_none")]
     harmonic_value_fraction: u32,
     /// Fraction bits of the slopes (per turn) in the table of harmonics.
-    #[serde(skip_serializing_if = "Option::is_none")]
     harmonic_slope_fraction: u32,
     /// Bits of the gains θ1 and θ3 as they are multiplied.
-    #[serde(skip_serializing_if = "Option::is_none")]
     gain_bits: u32,
     /// Bits of the phase θ5 as it is multiplied.
-    #[serde(skip_serializing_if = "Option::is_none")]
     cross_bits: u32,
     /// Bits of the even bends θ6 and θ7 as they are multiplied.
-    #[serde(skip_serializing_if = "Option::is_none")]
     bend_bits: u32,
     /// Bits of the odd bends 4 (θ8 ± θ9) as they are multiplied.
-    #[serde(skip_serializing_if = "Option::is_none")]
     cubic_bits: u32,
     /// log2 of the largest deviation of the gains θ1 and θ3.
-    #[serde(skip_serializing_if = "Option::is_none")]
     gain_range_log2: i32,
     /// log2 of the largest offsets θ2 and θ4.
-    #[serde(skip_serializing_if = "Option::is_none")]
     offset_range_log2: i32,
     /// log2 of the largest phase θ5.
-    #[serde(skip_serializing_if = "Option::is_none")]
     cross_range_log2: i32,
     /// log2 of the largest bends θ6 … θ9.
-    #[serde(skip_serializing_if = "Option::is_none")]
     bend_range_log2: i32,
     /// Bits of the coefficients that multiply: of the loop, of the delay of the sine, of turns and amplitude.
-    #[serde(skip_serializing_if = "Option::is_none")]
     coefficient_bits: u32,
     /// Bits of the upper part of the rate in a loop of type 1, multiplied on its own.
-    #[serde(skip_serializing_if = "Option::is_none")]
     rate_high_bits: u32,
     /// Fraction bits of the radial residual as it moves the parameters.
-    #[serde(skip_serializing_if = "Option::is_none")]
     residual_fraction: u32,
     /// Fraction bits of the sensitivities of the phase, and of their increments.
-    #[serde(skip_serializing_if = "Option::is_none")]
     sensitivity_fraction: u32,
     /// Fraction bits of the gathered gradients.
-    #[serde(skip_serializing_if = "Option::is_none")]
     gathered_fraction: u32,
     /// Bits of the speed as it is multiplied by the delay of the sine.
-    #[serde(skip_serializing_if = "Option::is_none")]
     skew_rate_bits: u32,
     /// Bits of the phase of the delay of the sine.
-    #[serde(skip_serializing_if = "Option::is_none")]
     skew_bits: u32,
     /// Bits of the counter of samples to lock.
-    #[serde(skip_serializing_if = "Option::is_none")]
     lock_level_bits: u32,
 }

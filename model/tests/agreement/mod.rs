@@ -190,7 +190,7 @@ pub(crate) fn compare(
             gamma[(4, 4)] /= 2.0;
         }
         let y = codes.map(|code| code as f64 / half * unit);
-        let fresh = fresh && spec.calibration.parameters > 0;
+        let fresh = fresh && spec.calibration.is_on();
         let seen = paper.step_with(y[0], y[1], fresh.then_some(&gamma), false);
 
         let angle = wrapped(chip.position() - paper.tracking().alpha_hat() / TAU);

@@ -86,7 +86,7 @@ impl Bench {
         let theta = self.chip.theta();
         let scale = self.design.spec.sensor.amplitude / self.design.spec.adc.full_scale;
         let power = (1.0 / scale).log2().floor().exp2().max(1.0);
-        let bent = self.design.spec.calibration.parameters >= 8;
+        let bent = self.design.spec.calibration.has_bend();
         move |y| {
             let y = (y.0 * scale * power, y.1 * scale * power);
             if bent {

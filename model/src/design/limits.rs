@@ -1,0 +1,250 @@
+//! What each word length may be, and why.
+
+use std::borrow::Cow;
+
+use super::formats::{gathered_power, held, power_of, skew_top, speed_top};
+use super::ranges::{just, needs, ranges};
+use super::refuse::number;
+use super::{Followers, Words, budget};
+use crate::format::exp2;
+use crate::spec::Spec;
+
+/// A word length and its ends.
+pub(super) struct Limits {
+    pub(super) key: &'static str,
+    pub(super) value: i64,
+    pub(super) lowest: i64,
+    pub(super) highest: i64,
+    /// Why these are its ends.
+    pub(super) why: Cow<'static, str>,
+    /// Why this chip has no such word.
+    pub(super) absent: Option<&'static str>,
+}
+
+/// Of every word, each with the others as they are.
+pub(super) fn all(words: &Words, followers: &Followers, spec: &Spec) -> Vec<Limits> {
+    let mut list = of_budget(words, spec);
+    list.extend(of_followers(followers, words, spec));
+    list.extend(of_ranges(spec));
+    list
+}
+
+/// Why a chip has no word of this key, where it has none.
+fn absent(key: &str, spec: &Spec) -> Option<&'static str> {
+    let c = &spec.calibration;
+    let (missing, why) = match key {
+        key if key.starts_with("harmonic_") => (
+            spec.correction.harmonics.is_empty(),
+            "there are no correction.harmonics",
+        ),
+        "accumulator_fraction" | "residual_fraction" | "gain_range_log2" | "offset_range_log2" => {
+            (!c.is_on(), "calibration.parameters is 0")
+        }
+        "cross_bits" | "cross_range_log2" => {
+            (!c.has_phase(), "θ5 needs 5 or 9 calibration.parameters")
+        }
+        "bend_bits" | "cubic_bits" | "bend_range_log2" => {
+            (!c.has_bend(), "bends need 8 or 9 calibration.parameters")
+        }
+        "rate_high_bits" => (
+            spec.tracking.filter_type == 2,
+            "a loop of type 2 multiplies no rate",
+        ),
+        "sensitivity_fraction" => (
+            c.completed().is_none() && !c.is_exact(),
+            "sensitivities are of calibration.method = \"exact\" and of calibration.completion",
+        ),
+        "gathered_fraction" => (
+            !c.gathers(),
+            "gradients are gathered by the sum of squares, the batch and the start by least squares",
+        ),
+        "skew_rate_bits" | "skew_bits" => (
+            !spec.correction.has_skew(),
+            "correction.channel_skew_s is 0",
+        ),
+        _ => (false, ""),
+    };
+    missing.then_some(why)
+}
+
+/// The words of the budget, each with those before it as they are.
+fn of_budget(words: &Words, spec: &Spec) -> Vec<Limits> {
+    let values = [
+        ("signal_fraction", words.signal_fraction),
+        ("phase_bits", words.phase_bits),
+        ("sine_phase_bits", words.sine_phase_bits),
+        ("sine_rows_log2", words.sine_rows_log2),
+        ("harmonic_rows_log2", words.harmonic_rows_log2),
+        ("accumulator_fraction", words.accumulator_fraction),
+    ];
+    values
+        .into_iter()
+        .map(|(key, value)| {
+            let (lowest, highest) = budget::limits(key, words);
+            Limits {
+                key,
+                value: value.into(),
+                lowest: lowest.into(),
+                highest: highest.into(),
+                why: "the chip cannot be built with it".into(),
+                absent: absent(key, spec),
+            }
+        })
+        .collect()
+}
+
+const TABLE: &str =
+    "a table's values hold half the last bit of what is read; below eight more bits nothing counts";
+const SLOPES: &str =
+    "a slope has a bit behind its point, and below a signal's last bit eight count for nothing";
+const READ: &str = "a harmonic is a quarter of the amplitude at most, and is taken off a signal";
+const FACTOR: &str = "the largest of these parameters needs a bit behind its point, and eight bits more than a signal's count \
+                      for nothing";
+const COEFFICIENT: &str =
+    "with fewer the loop is another one, and eight bits more than a signal's count for nothing";
+const UPPER: &str = "the rate has so many bits, of which the lower part keeps some";
+const RESIDUAL: &str = "a quarter of the radius at most moves the parameters, as fine as a signal";
+const CONTAINER: &str = "fewer lose what is summed up; more do not fit";
+const DELAY: &str = "fewer are no number, and more are finer than what they are made of";
+const LEVEL: &str = "lock takes as many samples as the loop takes to settle: 32 to 4096";
+
+/// The words that follow from those of the budget.
+fn of_followers(words_that_follow: &Followers, words: &Words, spec: &Spec) -> Vec<Limits> {
+    let w = words_that_follow;
+    let (f, p, h) = (words.signal_fraction, words.phase_bits, w.harmonic_fraction);
+    let r = ranges(spec);
+    let least = |largest: f64| u32::try_from(power_of(largest) + 2).unwrap_or(0).max(6);
+    let reach = |n: usize| exp2(r.deviation[n].into());
+    let factor = |largest: f64| (least(largest), f + 8);
+    // As wide as its finest bit allows.
+    let most = |largest: f64, finest: u32| held(largest, 64, finest).format.width;
+    let values = (h.saturating_add(1), h.saturating_add(8));
+    let gathered = (8, 44 - gathered_power(spec).unsigned_abs());
+    let skew_rate = (4, most(speed_top(spec), p));
+    let skew = (4, most(skew_top(spec), f + 6));
+    let rows = [
+        (
+            "sine_value_fraction",
+            w.sine_value_fraction,
+            (f + 1, f + 8),
+            TABLE,
+        ),
+        (
+            "sine_slope_fraction",
+            w.sine_slope_fraction,
+            (1, f + 8),
+            SLOPES,
+        ),
+        ("harmonic_fraction", h, (4, f + 2), READ),
+        (
+            "harmonic_value_fraction",
+            w.harmonic_value_fraction,
+            values,
+            TABLE,
+        ),
+        (
+            "harmonic_slope_fraction",
+            w.harmonic_slope_fraction,
+            (1, f + 8),
+            SLOPES,
+        ),
+        (
+            "gain_bits",
+            w.gain_bits,
+            factor(r.nominal + reach(0)),
+            FACTOR,
+        ),
+        ("cross_bits", w.cross_bits, factor(reach(4)), FACTOR),
+        ("bend_bits", w.bend_bits, factor(reach(5)), FACTOR),
+        ("cubic_bits", w.cubic_bits, factor(8.0 * reach(7)), FACTOR),
+        (
+            "coefficient_bits",
+            w.coefficient_bits,
+            (8, f + 8),
+            COEFFICIENT,
+        ),
+        ("rate_high_bits", w.rate_high_bits, (4, p - 2), UPPER),
+        ("residual_fraction", w.residual_fraction, (4, f), RESIDUAL),
+        (
+            "sensitivity_fraction",
+            w.sensitivity_fraction,
+            (8, 44),
+            CONTAINER,
+        ),
+        (
+            "gathered_fraction",
+            w.gathered_fraction,
+            gathered,
+            CONTAINER,
+        ),
+        ("skew_rate_bits", w.skew_rate_bits, skew_rate, DELAY),
+        ("skew_bits", w.skew_bits, skew, DELAY),
+        ("lock_level_bits", w.lock_level_bits, (5, 12), LEVEL),
+    ];
+    rows.into_iter()
+        .map(|(key, value, (lowest, highest), why)| Limits {
+            key,
+            value: value.into(),
+            lowest: lowest.into(),
+            highest: highest.max(lowest).into(),
+            why: why.into(),
+            absent: absent(key, spec),
+        })
+        .collect()
+}
+
+/// log2 of the largest range of a parameter.
+const WIDEST: i64 = 4;
+
+/// Ranges of the parameters: each holds what the promised sensors need at their worst.
+fn of_ranges(spec: &Spec) -> Vec<Limits> {
+    let (need, s, r) = (needs(spec), &spec.sensor, ranges(spec));
+    let m = number(s.amplitude_tolerance);
+    let beta = format!(
+        "sensor.phase_error_max_deg is {}",
+        number(s.phase_error_max_deg)
+    );
+    let tolerance = format!("sensor.amplitude_tolerance is {m} and {beta}");
+    let offset = format!("sensor.offset_max is {}, {tolerance}", number(s.offset_max));
+    let bend = format!("sensor.bend_max is {}", number(s.bend_max));
+    let rows = [
+        (
+            "gain_range_log2",
+            "theta_1_deviation and theta_3_deviation reach",
+            need.gain,
+            0,
+            &tolerance,
+        ),
+        (
+            "offset_range_log2",
+            "theta_2_deviation and theta_4_deviation reach",
+            need.offset,
+            1,
+            &offset,
+        ),
+        (
+            "cross_range_log2",
+            "theta_5_deviation reaches",
+            need.cross,
+            4,
+            &tolerance,
+        ),
+        (
+            "bend_range_log2",
+            "theta_6_deviation to theta_9_deviation reach",
+            need.bend,
+            5,
+            &bend,
+        ),
+    ];
+    rows.into_iter()
+        .map(|(key, node, need, of, when)| Limits {
+            key,
+            value: r.deviation[of].into(),
+            lowest: just(need).into(),
+            highest: WIDEST,
+            why: format!("{node} {need:.3} where {when}, and no parameter is beyond 16",).into(),
+            absent: absent(key, spec),
+        })
+        .collect()
+}
