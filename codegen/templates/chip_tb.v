@@ -58,7 +58,13 @@ module chip_tb;
         end
     endtask
 
-    task play(input [8*64-1:0] path, input [8*32-1:0] name, input integer rows);
+    // The stimulus that is played
+    integer stimulus;
+    reg [8*64-1:0] path;
+    reg [8*32-1:0] name;
+    integer rows;
+
+    task play;
         begin
             bad = 1'b0;
             played = 0;
@@ -125,15 +131,22 @@ module chip_tb;
         end
     endtask
 
-    // With +stop_at_first nothing is played after a stimulus that failed.
-    task play_next(input [8*64-1:0] path, input [8*32-1:0] name, input integer rows);
-        if (!any_bad || !$test$plusargs("stop_at_first")) play(path, name, rows);
-    endtask
-
+    // Played in one place: Verilator compiles a task, or the inside of a loop that it can count, once for each time.
+    reg finished = 1'b0;
     initial begin
+        stimulus = 0;
+        while (!finished) begin
+            case (stimulus)
 //%- for s in stimuli %//
-        play_next("vectors/${ s.0 }$.vec", "${ s.0 }$", ${ s.1 }$);
+                ${ loop.index0 }$: begin path = "vectors/${ s.0 }$.vec"; name = "${ s.0 }$"; rows = ${ s.1 }$; end
 //%- endfor %//
+                default: finished = 1'b1;
+            endcase
+            // With +stop_at_first nothing is played after a stimulus that failed.
+            if (any_bad && $test$plusargs("stop_at_first")) finished = 1'b1;
+            if (!finished) play;
+            stimulus = stimulus + 1;
+        end
         if (any_bad) $display("FAIL");
         else $display("PASS");
         $finish(0);

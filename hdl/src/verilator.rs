@@ -27,20 +27,21 @@ pub enum Effort {
 }
 
 impl Effort {
-    /// What is quicker in all for so many rows of vectors: up to some hundred thousand an optimised build takes longer than the run it
+    /// What is quicker in all for so many rows of vectors: up to some thousand an optimised build takes longer than the run it
     /// saves.
     pub fn for_rows(rows: u64) -> Effort {
-        if rows < 200_000 {
+        if rows < 10_000 {
             Effort::QuickBuild
         } else {
             Effort::QuickRun
         }
     }
 
+    /// Verilator's own part is the same for every chip, and kept by ccache: it is always made to run fast.
     fn make_flags(self) -> &'static str {
         match self {
-            Effort::QuickBuild => "OPT_FAST=-O0 OPT_SLOW=-O0 OPT_GLOBAL=-O0",
-            Effort::QuickRun => "OPT_FAST=-O3 OPT_SLOW=-O0 OPT_GLOBAL=-O2",
+            Effort::QuickBuild => "OPT_FAST=-O0 OPT_SLOW=-O0 OPT_GLOBAL=-O2",
+            Effort::QuickRun => "OPT_FAST=-O1 OPT_SLOW=-O0 OPT_GLOBAL=-O2",
         }
     }
 }
@@ -78,11 +79,8 @@ pub fn simulate(
 }
 
 fn build(chip: &ChipDir, effort: Effort, verilator: &Found, to: &Path) -> Result<Output, Error> {
-    let mut job = Job::new(&verilator.path, &chip.root, BUILD_LIMIT);
-    if effort == Effort::QuickBuild {
-        // In one piece the compiler reads the headers once.
-        job = job.args(["--output-split", "0"]);
-    }
+    // In one piece the compiler reads the headers once.
+    let mut job = Job::new(&verilator.path, &chip.root, BUILD_LIMIT).args(["--output-split", "0"]);
     // Verilator's own part is the same for every chip.
     if let Ok(ccache) = Tool::Ccache.find() {
         job = job.env("OBJCACHE", ccache.path);

@@ -52,21 +52,6 @@ fn ports_only(dir: &Path) {
         text.lines().partition(|line| line.contains("(chip."));
     assert!(inside.len() > 10 && ports.iter().any(|l| l.contains("(position")));
     assert!(ports.iter().any(|l| l.contains("(theta_2 !==")));
-    let played = |line: &&str| {
-        let other = line.trim_start().starts_with("play_next(");
-        !other
-            || PLAYED
-                .iter()
-                .any(|name| line.contains(&format!("\"{name}\"")))
-    };
-    let ports: Vec<&str> = ports.into_iter().filter(played).collect();
-    for vectors in fs::read_dir(dir.join("vectors")).expect("vectors") {
-        let path = vectors.expect("an entry").path();
-        let name = path.file_stem().and_then(|s| s.to_str()).expect("a name");
-        if !PLAYED.contains(&name) {
-            fs::remove_file(&path).expect("a file");
-        }
-    }
     fs::write(file, ports.join("\n") + "\n").expect("a testbench");
 }
 
@@ -86,7 +71,7 @@ fn small_enough(dir: &Path) {
 
 fn synthesised(spec: &Spec, change: impl Fn(&Path)) -> Run {
     let dir = tempfile::tempdir().expect("a scratch folder");
-    chip::write(spec, ROWS, dir.path());
+    chip::write_with(spec, ROWS, dir.path(), |name| PLAYED.contains(&name));
     change(dir.path());
     synthesise(dir.path(), &spec.name);
     if spec.name == "optical" {

@@ -204,6 +204,6 @@ const HEAD: &str = "\
 
 Written by `cargo run --release -p nonius-hdl --example speed -- designs/optical.toml docs`; do not edit. One core;
 the fastest of fifty repetitions of two hundred thousand samples (Verilog from C++: of ten of forty thousand): other work
-on the machine only ever slows. The Verilog is compiled with -O3. The testbench's time includes reading the vectors.
+on the machine only ever slows. The Verilog is compiled with -O3 (its testbench as `nonius verify` does it). The testbench's time includes reading the vectors.
 
 ";
