@@ -2,10 +2,11 @@
 
 use std::fmt::Write;
 
-use nonius_model::graph::{Graph, Kind, Op};
-use nonius_model::kernel::{Coefficients, Constant};
+use nonius_model::graph::Graph;
 use nonius_model::rom::Rom;
 use serde_json::{Value, json};
+
+use crate::constants::coefficients;
 
 /// A table or coefficient file: path below the output folder, content.
 type File = (String, String);
@@ -141,32 +142,17 @@ fn rom_mif(head: &str, rom: &Rom) -> String {
     out + "END;\n"
 }
 
-/// The coefficients that the chip reads: name, integer, bits, fraction bits.
-fn coefficients(graph: &Graph) -> Vec<(String, i64, u32, u32)> {
-    graph
-        .ids()
-        .filter_map(|id| {
-            let node = graph.node(id);
-            let (Op::Constant(raw), Kind::Value) = (node.op, node.kind) else {
-                return None;
-            };
-            let name = node.name.clone().filter(|_| graph.is_read(id))?;
-            Some((name, raw, node.format.width, node.format.fraction))
-        })
-        .collect()
-}
-
 fn coefficients_json(head: &str, graph: &Graph) -> String {
     let list: Vec<Value> = coefficients(graph)
         .into_iter()
-        .map(|(name, raw, bits, fraction)| {
+        .map(|c| {
             json!({
-                "name": name,
-                "raw": raw,
-                "bits": bits,
-                "fraction_bits": fraction,
-                "value": Constant { raw, fraction, ideal: 0.0 }.value(),
-                "meaning": Coefficients::<Constant>::meaning(&name).unwrap_or_default(),
+                "name": c.name,
+                "raw": c.raw,
+                "bits": c.bits,
+                "fraction_bits": c.fraction,
+                "value": c.value,
+                "meaning": c.meaning,
             })
         })
         .collect();
@@ -175,19 +161,16 @@ fn coefficients_json(head: &str, graph: &Graph) -> String {
 
 fn coefficients_vh(head: &str, graph: &Graph) -> String {
     let mut out = format!("// Coefficients of {head}\n");
-    for (name, raw, bits, fraction) in coefficients(graph) {
-        let value = Constant {
-            raw,
-            fraction,
-            ideal: 0.0,
-        }
-        .value();
+    for c in coefficients(graph) {
         let _ = writeln!(
             out,
-            "localparam signed [{}:0] {} = {}; // {value}, {fraction} fraction bits",
-            bits - 1,
-            name.to_uppercase(),
-            crate::writer::literal(raw.into(), bits)
+            "localparam signed [{}:0] {} = {}; // {}, {} fraction bits. {}",
+            c.bits - 1,
+            c.name.to_uppercase(),
+            crate::writer::literal(c.raw.into(), c.bits),
+            c.value,
+            c.fraction,
+            c.meaning
         );
     }
     out

@@ -2,8 +2,7 @@
 
 use askama::Template;
 use nonius_model::design::Design;
-use nonius_model::graph::{Graph, Kind, NodeId, Op};
-use nonius_model::kernel::{Coefficients, Constant};
+use nonius_model::graph::{Graph, Kind, NodeId};
 
 use crate::netlist::{Netlist, Register, Section, meaning, width};
 use crate::schedule::schedule;
@@ -20,6 +19,8 @@ struct Chip<'a> {
     hash: &'a str,
     summary: String,
     timetable: Vec<String>,
+    kind: &'static str,
+    purpose: Vec<String>,
     constants: Vec<String>,
     ports: Vec<(String, String, String)>,
     state: &'a [Register],
@@ -129,33 +130,6 @@ pub(crate) fn has_port(name: &str) -> bool {
     parameter || ["speed", "locked", "lock_lost", "signal_lost", "direction"].contains(&name)
 }
 
-fn constants(design: &Design) -> Vec<String> {
-    let graph = &design.graph;
-    let read = |id: NodeId| {
-        graph.nodes.iter().any(|n| n.op.operands().contains(&id))
-            || graph
-                .next
-                .iter()
-                .chain(&graph.probes)
-                .any(|(_, n)| *n == id)
-    };
-    let mut lines = vec![];
-    for id in graph.ids() {
-        let node = graph.node(id);
-        let (Op::Constant(raw), Kind::Value) = (node.op, node.kind) else {
-            continue;
-        };
-        let Some(name) = node.name.as_deref().filter(|_| read(id)) else {
-            continue;
-        };
-        let value = raw as f64 * node.format.lsb();
-        let first = format!("  {name:<18} {value:<24}");
-        let what = Coefficients::<Constant>::meaning(name).unwrap_or_default();
-        lines.extend(crate::units::wrap(&first, what, 116));
-    }
-    lines
-}
-
 fn ports(
     design: &Design,
     clocks: usize,
@@ -203,7 +177,7 @@ fn ports(
         input(
             "",
             "calibrate",
-            "this sample may move the parameters".into(),
+            crate::about::calibrate(&design.spec).into(),
         ),
         (
             format!(
@@ -296,7 +270,9 @@ pub fn generate(
             if schedule.multipliers == 1 { "" } else { "s" }
         ),
         timetable: crate::units::timetable(&writer),
-        constants: constants(design),
+        kind: crate::about::kind(&design.spec),
+        purpose: crate::about::purpose(&design.spec),
+        constants: crate::constants::listed(graph),
         ports: ports(design, clocks, &columns),
         state: &netlist
             .state

@@ -6,7 +6,7 @@ use nonius_model::spec::Spec;
 use serde::Serialize;
 
 use crate::channel_skew::ChannelSkew;
-use crate::coefficient::Coefficient;
+use crate::coefficient::{Coefficient, coefficients};
 use crate::harmonics::HarmonicTable;
 use crate::pull_in::PullIn;
 use crate::signals::Signal;
@@ -196,7 +196,7 @@ impl DesignJson {
             channel_skew: ChannelSkew::of(design),
             harmonics: HarmonicTable::of(design),
             position: Position::of(design),
-            coefficients: Coefficient::all(design),
+            coefficients: coefficients(design),
             formats: crate::signals::signals(design),
             sine_table: SineTable {
                 rows: rom.rows(),

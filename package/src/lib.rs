@@ -17,6 +17,7 @@ mod sine;
 mod tracking;
 mod write;
 
+pub use coefficient::{Coefficient, coefficients};
 pub use design_json::DesignJson;
 pub use engineering::{digits, engineering, periods_per_second};
 pub use progress::{Event, Progress, silent};
