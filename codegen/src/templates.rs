@@ -5,7 +5,7 @@ use nonius_model::design::Design;
 use nonius_model::graph::{Graph, Kind, NodeId};
 
 use crate::netlist::{Netlist, Register, Section, meaning, width};
-use crate::schedule::schedule;
+use crate::schedule::schedule_for;
 use crate::shifter::Unit;
 use crate::units::{Multiplier, Table};
 use crate::writer::{Writer, range};
@@ -92,6 +92,8 @@ pub struct Files {
     pub files: Vec<(String, String)>,
     /// Clocks per sample.
     pub clocks: usize,
+    /// Multipliers that the chip has.
+    pub multipliers: usize,
     /// Columns of a vector row behind sample number and inputs: name, node, bits.
     pub columns: Vec<(String, NodeId, u32)>,
 }
@@ -223,7 +225,7 @@ pub fn generate(
     stimuli: &[(String, usize)],
 ) -> Result<Files, askama::Error> {
     let graph = &design.graph;
-    let schedule = schedule(graph, design.spec.chip.multipliers.count(graph.products()));
+    let schedule = schedule_for(graph, design.spec.chip.multipliers);
     let writer = Writer::new(graph, &schedule);
     let tables = crate::units::tables(&writer);
     let netlist = Netlist::new(&writer);
@@ -356,6 +358,7 @@ pub fn generate(
     Ok(Files {
         files,
         clocks,
+        multipliers: schedule.multipliers,
         columns,
     })
 }

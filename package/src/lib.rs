@@ -99,7 +99,8 @@ pub fn package_followed(
     let simulation = simulate(design);
     let pull_in = pull_in_followed(design, &BOTH_WAYS, progress);
     progress(Event::Writing);
-    let json = DesignJson::of(design, &hash, chip.clocks, simulation.accuracy, pull_in);
+    let size = (chip.clocks, chip.multipliers);
+    let json = DesignJson::of(design, &hash, size, simulation.accuracy, pull_in);
     let mut files: Vec<(String, Vec<u8>)> = chip
         .files
         .into_iter()
