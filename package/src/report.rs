@@ -334,6 +334,9 @@ fn files(files: &[(String, Vec<u8>)]) -> Vec<(String, String)> {
         "vec" => "stimulus and every expected value, hexadecimal",
         "vcd" => "waves of the bit-true model",
         "gtkw" => "opens the waves in GTKWave",
+        "mem" | "hex" | "coe" | "mif" if path.contains("/coefficients.") => {
+            "coefficients as words of a memory, rows as in coefficients.json"
+        }
         "mem" | "hex" => "table for $readmemh",
         "coe" => "table for Vivado's memory generator",
         "mif" => "table for Quartus",

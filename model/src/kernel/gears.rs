@@ -104,7 +104,8 @@ pub fn hold<S: Signal>(
 
 /// γ is as small as it becomes.
 fn last_gear<S: Signal>(state: &State<S>, k: &Coefficients<S>) -> S::Bool {
-    state.gamma_gear.less_than(k.gamma_gear_last).not()
+    let before = state.gamma_gear.less_than(k.gamma_gear_last);
+    before.not().named("last_gamma_gear")
 }
 
 /// γ has settled. With fewer gears it never has.
