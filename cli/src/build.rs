@@ -6,6 +6,7 @@ use std::time::Duration;
 use anyhow::{Result, bail};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
+use nonius_model::spec::Multipliers;
 use nonius_package::{
     DesignJson, Event, PullIn, ROWS, engineering, package_followed, periods_per_second, write,
 };
@@ -146,6 +147,14 @@ fn summary(j: &DesignJson, output: &Path, shown: &str) {
         j.products,
         j.sine_table.bits + j.harmonics.as_ref().map_or(0, |h| h.bits)
     );
+    if let Multipliers::Count(asked) = j.spec.chip.multipliers
+        && asked as usize > j.multipliers
+    {
+        say!(
+            "  note        chip.multipliers = {asked}: more than {} would never have a product",
+            j.multipliers
+        );
+    }
     say!(
         "  bandwidth   {} at -3 dB, to {}",
         engineering(j.tracking.bandwidth_3db_hz, "Hz"),

@@ -4,7 +4,9 @@
 //! expression per operation, the templates hold ports, resets, step counter, memories and the testbench. No number of
 //! the chip is computed here.
 
+mod about;
 mod condition;
+mod constants;
 pub mod evaluate;
 mod expression;
 mod names;

@@ -22,9 +22,9 @@ pub(crate) fn names(graph: &Graph) -> Vec<String> {
             names[id.index()] = Some(give(format!("{register}_next")));
         }
     }
-    for id in graph.ids().filter(|id| graph.node(*id).name.is_none()) {
+    for id in graph.ids() {
         if names[id.index()].is_none()
-            && let Some(wish) = spoken(graph, id)
+            && let Some(wish) = spoken(graph, id).or_else(|| decision(graph, &names, id))
         {
             names[id.index()] = Some(give(wish));
         }
@@ -50,7 +50,7 @@ pub(crate) fn names(graph: &Graph) -> Vec<String> {
     names.into_iter().flatten().collect()
 }
 
-/// A product or comparison of values that have names, as one would say it.
+/// A product or comparison of values, or a window around 0, where they have names, as one would say it.
 fn spoken(graph: &Graph, id: NodeId) -> Option<String> {
     let name = |id: NodeId| graph.node(id).name.clone();
     let signed = |id: NodeId| match graph.node(id).op {
@@ -60,8 +60,37 @@ fn spoken(graph: &Graph, id: NodeId) -> Option<String> {
     match graph.node(id).op {
         Op::Mul(a, b) => Some(format!("{}_times_{}", name(a)?, name(b)?)),
         Op::LessThan(a, b) => Some(format!("{}_below_{}", name(a)?, signed(b)?)),
+        Op::And(below, above) => {
+            let Op::Not(above) = graph.node(above).op else {
+                return None;
+            };
+            let (Op::LessThan(x, limit), Op::LessThan(same, minus)) =
+                (graph.node(below).op, graph.node(above).op)
+            else {
+                return None;
+            };
+            let of_limit = name(minus)? == format!("minus_{}", name(limit)?);
+            let within = format!("{}_within_{}", name(x)?, name(limit)?);
+            (x == same && of_limit).then_some(within)
+        }
         _ => None,
     }
+}
+
+/// The longest name that a decision gets of what it is made of.
+const SPOKEN: usize = 40;
+
+/// A decision of decisions that have names, as one would say it, while that is short.
+fn decision(graph: &Graph, names: &[Option<String>], id: NodeId) -> Option<String> {
+    let name = |id: NodeId| names[id.index()].clone();
+    let wish = match graph.node(id).op {
+        Op::Not(a) => format!("not_{}", name(a)?),
+        Op::And(a, b) => format!("{}_and_{}", name(a)?, name(b)?),
+        Op::Or(a, b) => format!("{}_or_{}", name(a)?, name(b)?),
+        Op::Xor(a, b) => format!("either_{}_or_{}", name(a)?, name(b)?),
+        _ => return None,
+    };
+    (wish.len() <= SPOKEN).then_some(wish)
 }
 
 /// What a nameless value is in the one it goes into.

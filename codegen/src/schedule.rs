@@ -4,11 +4,12 @@
 //! a cycle: its operands are put into the multiplier's operand registers at the end of the cycle before, the product
 //! register holds the result in the cycle after. What is computed from a product register may go straight into an
 //! operand register, so dependent products follow each other every second cycle. A table row is there one cycle after
-//! its address. Shifts by the same gear share as many shifters as there are multipliers. Everything else is
+//! its address. Shifts by the same gear share as many shifters as there may be multipliers. Everything else is
 //! combinational, chained within a cycle up to a depth. All registers of the chip commit at the end of the last cycle.
 
 use nonius_model::format::{Quantiser, Rounding};
 use nonius_model::graph::{Graph, NodeId, Op};
+use nonius_model::spec::Multipliers;
 
 use crate::settle::settle;
 
@@ -29,7 +30,7 @@ pub struct Schedule {
     pub shift: Vec<Option<usize>>,
     /// The shared shifters.
     pub shifters: Vec<Shifter>,
-    /// Number of multipliers.
+    /// Multipliers that have a product in some cycle, no more than asked for.
     pub multipliers: usize,
     /// Clocks from one sample to the next.
     pub clocks: usize,
@@ -98,7 +99,22 @@ fn urgency(graph: &Graph) -> Vec<u32> {
     urgency
 }
 
-/// Lists the graph on `multipliers` multipliers.
+/// The schedule that a design asks for: `"all"` takes the fewest multipliers with which a sample takes no more clocks than with
+/// one for each product.
+#[must_use]
+pub fn schedule_for(graph: &Graph, wanted: Multipliers) -> Schedule {
+    let most = wanted.count(graph.products());
+    let fastest = schedule(graph, most);
+    match wanted {
+        Multipliers::Count(_) => fastest,
+        Multipliers::All(_) => (1..most)
+            .map(|fewer| schedule(graph, fewer))
+            .find(|fewer| fewer.clocks <= fastest.clocks)
+            .unwrap_or(fastest),
+    }
+}
+
+/// Lists the graph on `multipliers` multipliers, or on fewer where never so many products are waiting.
 #[must_use]
 pub fn schedule(graph: &Graph, multipliers: usize) -> Schedule {
     let n = graph.nodes.len();
@@ -147,12 +163,14 @@ pub fn schedule(graph: &Graph, multipliers: usize) -> Schedule {
     }
     let ready: Vec<usize> = lister.ready.into_iter().flatten().collect();
     let clocks = ready.iter().max().copied().unwrap_or(0) + 1;
+    // The first ones are taken first.
+    let used = issue.iter().flatten().map(|(m, _)| m + 1).max();
     let mut schedule = Schedule {
         ready,
         issue,
         shift: lister.shift,
         shifters: lister.shifters,
-        multipliers,
+        multipliers: used.unwrap_or(0),
         clocks,
     };
     settle(graph, &mut schedule);
@@ -208,7 +226,7 @@ impl Lister<'_> {
         }
     }
 
-    /// A shifter of this kind that is not taken in this cycle; a new one while there are fewer than multipliers.
+    /// A shifter of this kind that is not taken in this cycle; a new one while there are fewer than there may be multipliers.
     fn unit(&mut self, wanted: Shifter, taken: &[usize]) -> Option<usize> {
         let same: Vec<usize> = (0..self.shifters.len())
             .filter(|&u| self.shifters[u] == wanted)

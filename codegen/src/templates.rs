@@ -2,11 +2,10 @@
 
 use askama::Template;
 use nonius_model::design::Design;
-use nonius_model::graph::{Graph, Kind, NodeId, Op};
-use nonius_model::kernel::{Coefficients, Constant};
+use nonius_model::graph::{Graph, Kind, NodeId};
 
 use crate::netlist::{Netlist, Register, Section, meaning, width};
-use crate::schedule::schedule;
+use crate::schedule::schedule_for;
 use crate::shifter::Unit;
 use crate::units::{Multiplier, Table};
 use crate::writer::{Writer, range};
@@ -20,6 +19,8 @@ struct Chip<'a> {
     hash: &'a str,
     summary: String,
     timetable: Vec<String>,
+    kind: &'static str,
+    purpose: Vec<String>,
     constants: Vec<String>,
     ports: Vec<(String, String, String)>,
     state: &'a [Register],
@@ -91,6 +92,8 @@ pub struct Files {
     pub files: Vec<(String, String)>,
     /// Clocks per sample.
     pub clocks: usize,
+    /// Multipliers that the chip has.
+    pub multipliers: usize,
     /// Columns of a vector row behind sample number and inputs: name, node, bits.
     pub columns: Vec<(String, NodeId, u32)>,
 }
@@ -127,33 +130,6 @@ pub(crate) fn has_port(name: &str) -> bool {
         .strip_prefix("theta_")
         .is_some_and(|n| n.chars().all(|c| c.is_ascii_digit()));
     parameter || ["speed", "locked", "lock_lost", "signal_lost", "direction"].contains(&name)
-}
-
-fn constants(design: &Design) -> Vec<String> {
-    let graph = &design.graph;
-    let read = |id: NodeId| {
-        graph.nodes.iter().any(|n| n.op.operands().contains(&id))
-            || graph
-                .next
-                .iter()
-                .chain(&graph.probes)
-                .any(|(_, n)| *n == id)
-    };
-    let mut lines = vec![];
-    for id in graph.ids() {
-        let node = graph.node(id);
-        let (Op::Constant(raw), Kind::Value) = (node.op, node.kind) else {
-            continue;
-        };
-        let Some(name) = node.name.as_deref().filter(|_| read(id)) else {
-            continue;
-        };
-        let value = raw as f64 * node.format.lsb();
-        let first = format!("  {name:<18} {value:<24}");
-        let what = Coefficients::<Constant>::meaning(name).unwrap_or_default();
-        lines.extend(crate::units::wrap(&first, what, 116));
-    }
-    lines
 }
 
 fn ports(
@@ -203,7 +179,7 @@ fn ports(
         input(
             "",
             "calibrate",
-            "this sample may move the parameters".into(),
+            crate::about::calibrate(&design.spec).into(),
         ),
         (
             format!(
@@ -249,7 +225,7 @@ pub fn generate(
     stimuli: &[(String, usize)],
 ) -> Result<Files, askama::Error> {
     let graph = &design.graph;
-    let schedule = schedule(graph, design.spec.chip.multipliers.count(graph.products()));
+    let schedule = schedule_for(graph, design.spec.chip.multipliers);
     let writer = Writer::new(graph, &schedule);
     let tables = crate::units::tables(&writer);
     let netlist = Netlist::new(&writer);
@@ -296,7 +272,9 @@ pub fn generate(
             if schedule.multipliers == 1 { "" } else { "s" }
         ),
         timetable: crate::units::timetable(&writer),
-        constants: constants(design),
+        kind: crate::about::kind(&design.spec),
+        purpose: crate::about::purpose(&design.spec),
+        constants: crate::constants::listed(graph),
         ports: ports(design, clocks, &columns),
         state: &netlist
             .state
@@ -380,6 +358,7 @@ pub fn generate(
     Ok(Files {
         files,
         clocks,
+        multipliers: schedule.multipliers,
         columns,
     })
 }

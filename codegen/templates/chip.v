@@ -1,8 +1,8 @@
-// ${ name }$: sin/cos interpolation chip that calibrates itself${ separator }$${ description }$
+// ${ name }$: ${ kind }$${ separator }$${ description }$
 //
-// A digital loop follows the angle alpha of a sin/cos sensor: the corrected pair is turned back by the estimate
-// alpha_hat, what is left is the phase error e, and the loop filter turns e into the next step of the estimate. The
-// radial residual rho shows what the correction still misses and moves its parameters theta.
+//%- for line in purpose %//
+// ${ line }$
+//%- endfor %//
 // After S. Balemi, "Automatic calibration of sinusoidal encoder signals", IFAC 2005; equation numbers are the paper's.
 //
 // Design ${ hash }$: ${ summary }$.

@@ -4,7 +4,7 @@
 mod shipped;
 
 use nonius_codegen::evaluate::evaluate;
-use nonius_codegen::schedule::schedule;
+use nonius_codegen::schedule::{Schedule, schedule, schedule_for};
 use nonius_model::design::Design;
 use nonius_model::graph::{Evaluation, Graph};
 use nonius_model::spec::Overrides;
@@ -22,6 +22,11 @@ fn scheduled_graph_equals_recorded_graph() {
 fn scheduled_equals_recorded(kind: &str, graph: &Graph, random: &mut StdRng) {
     for multipliers in [1, 2, 3, 5, graph.products()] {
         let schedule = schedule(graph, multipliers);
+        let idle = idle(&schedule);
+        assert!(
+            idle.is_empty(),
+            "{kind} on {multipliers} multipliers: {idle:?}"
+        );
         for _ in 0..60 {
             let mut inputs = std::collections::HashMap::new();
             for (name, id) in &graph.inputs {
@@ -38,6 +43,40 @@ fn scheduled_equals_recorded(kind: &str, graph: &Graph, random: &mut StdRng) {
                 );
             }
         }
+    }
+}
+
+/// Multipliers that never have a product.
+fn idle(schedule: &Schedule) -> Vec<usize> {
+    let busy = |m: usize| schedule.issue.iter().flatten().any(|issue| issue.0 == m);
+    (0..schedule.multipliers).filter(|&m| !busy(m)).collect()
+}
+
+/// More multipliers never take more clocks, and "all" takes the fewest multipliers that take the fewest clocks.
+#[test]
+fn all_multipliers_are_those_that_are_of_use() {
+    for kind in kinds() {
+        let design = kind.design();
+        let graph = &design.graph;
+        let all = schedule_for(graph, variants::ALL);
+        let few = 1..=graph.products().min(6);
+        let clocks: Vec<usize> = few
+            .chain([graph.products()])
+            .map(|m| schedule(graph, m).clocks)
+            .collect();
+        println!(
+            "{}: {} products, {} multipliers and {} clocks for all of {clocks:?}",
+            kind.what,
+            graph.products(),
+            all.multipliers,
+            all.clocks
+        );
+        assert!(clocks.is_sorted_by(|a, b| a >= b), "{}", kind.what);
+        assert_eq!(Some(&all.clocks), clocks.last(), "{}", kind.what);
+        if let Some(fewer) = all.multipliers.checked_sub(2) {
+            assert!(clocks[fewer] > all.clocks, "{}", kind.what);
+        }
+        assert!(idle(&all).is_empty(), "{}", kind.what);
     }
 }
 

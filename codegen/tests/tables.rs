@@ -117,3 +117,54 @@ fn coefficients_are_those_of_the_design() {
         assert!(vh.1.contains(&format!(" {name} = ")), "{name}");
     }
 }
+
+/// The coefficients as words of a memory, in every form, and the table of harmonics where there is one.
+#[test]
+fn memories_hold_the_coefficients_and_every_table() {
+    let variant = shipped::variants::harmonics().swap_remove(0);
+    let design = variant.design();
+    let files = generate(&design, "0123", &[])
+        .expect("templates render")
+        .files;
+    let file = |name: &str| {
+        let path = format!("coefficients/{name}");
+        let found = files.iter().find(|f| f.0 == path);
+        &found.unwrap_or_else(|| panic!("no {path}")).1
+    };
+    for rom in &design.graph.roms {
+        for ending in ["json", "vh", "mem", "hex", "coe", "mif"] {
+            assert!(!file(&format!("{}.{ending}", rom.name)).is_empty());
+        }
+    }
+    assert_eq!(design.graph.roms.len(), 2);
+
+    let json: serde_json::Value = serde_json::from_str(file("coefficients.json")).expect("JSON");
+    let list = json["coefficients"].as_array().expect("a list");
+    let number = |c: &serde_json::Value, key: &str| c[key].as_i64().expect("an integer");
+    let bits = list.iter().map(|c| number(c, "bits")).max().expect("some");
+    let words: Vec<u128> = list
+        .iter()
+        .map(|c| number(c, "raw") as u128 & ((1 << bits) - 1))
+        .collect();
+    for (row, c) in list.iter().enumerate() {
+        assert_eq!(number(c, "row"), row as i64);
+    }
+    for ending in ["mem", "hex"] {
+        let rows: Vec<u128> = file(&format!("coefficients.{ending}"))
+            .lines()
+            .map(hex)
+            .collect();
+        assert_eq!(rows, words, "{ending}");
+    }
+    let (_, vector) = file("coefficients.coe")
+        .split_once("memory_initialization_vector=")
+        .expect("a vector");
+    let vector = vector.trim().trim_end_matches(';').split(',').map(hex);
+    assert_eq!(vector.collect::<Vec<_>>(), words);
+    let mif = file("coefficients.mif");
+    assert!(mif.contains(&format!("WIDTH={bits};\nDEPTH={};", words.len())));
+    let (_, content) = mif.split_once("CONTENT BEGIN").expect("content");
+    let rows = content.split(';').filter_map(|row| row.split_once(':'));
+    let rows: Vec<u128> = rows.map(|(_, word)| hex(word)).collect();
+    assert_eq!(rows, words);
+}

@@ -6,7 +6,7 @@ use nonius_model::spec::Spec;
 use serde::Serialize;
 
 use crate::channel_skew::ChannelSkew;
-use crate::coefficient::Coefficient;
+use crate::coefficient::{Coefficient, coefficients};
 use crate::harmonics::HarmonicTable;
 use crate::pull_in::PullIn;
 use crate::signals::Signal;
@@ -27,7 +27,7 @@ pub struct DesignJson {
     pub clocks_per_sample: usize,
     /// Products of a sample.
     pub products: usize,
-    /// Multipliers they are computed on.
+    /// Multipliers they are computed on: as many as the chip has, which may be fewer than `spec.chip.multipliers` allows.
     pub multipliers: usize,
     /// Latencies.
     pub latency: Latency,
@@ -166,12 +166,12 @@ impl DesignJson {
         !self.misses() && self.pull_in.holds()
     }
 
-    /// All of it; measures the sine.
+    /// All of it, of a chip with so many clocks per sample and multipliers; measures the sine.
     #[must_use]
     pub fn of(
         design: &Design,
         hash: &str,
-        clocks: usize,
+        (clocks, multipliers): (usize, usize),
         simulated: Accuracy,
         pull_in: PullIn,
     ) -> Self {
@@ -185,7 +185,7 @@ impl DesignJson {
             hash: hash.into(),
             clocks_per_sample: clocks,
             products,
-            multipliers: spec.chip.multipliers.count(products),
+            multipliers,
             latency: Latency {
                 clocks,
                 clock_hz_min: clock,
@@ -196,7 +196,7 @@ impl DesignJson {
             channel_skew: ChannelSkew::of(design),
             harmonics: HarmonicTable::of(design),
             position: Position::of(design),
-            coefficients: Coefficient::all(design),
+            coefficients: coefficients(design),
             formats: crate::signals::signals(design),
             sine_table: SineTable {
                 rows: rom.rows(),

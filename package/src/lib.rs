@@ -17,6 +17,7 @@ mod sine;
 mod tracking;
 mod write;
 
+pub use coefficient::{Coefficient, coefficients};
 pub use design_json::DesignJson;
 pub use engineering::{digits, engineering, periods_per_second};
 pub use progress::{Event, Progress, silent};
@@ -98,7 +99,8 @@ pub fn package_followed(
     let simulation = simulate(design);
     let pull_in = pull_in_followed(design, &BOTH_WAYS, progress);
     progress(Event::Writing);
-    let json = DesignJson::of(design, &hash, chip.clocks, simulation.accuracy, pull_in);
+    let size = (chip.clocks, chip.multipliers);
+    let json = DesignJson::of(design, &hash, size, simulation.accuracy, pull_in);
     let mut files: Vec<(String, Vec<u8>)> = chip
         .files
         .into_iter()

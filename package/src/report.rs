@@ -3,6 +3,7 @@
 use askama::Template;
 use nonius_model::design::Design;
 use nonius_model::physical::{metres, radians_of_revolution};
+use nonius_model::spec::Spec;
 use nonius_plot::{Axis, Look, Mark, Plot, Series};
 
 use crate::curves;
@@ -96,7 +97,15 @@ fn said(design: &Design, j: &DesignJson) -> Vec<(&'static str, String, String)> 
         (
             PREDICTED,
             per_period(j.budget.total),
-            format!("rms, slow, calibrated; asked {:.2e}", j.budget.asked),
+            format!(
+                "rms, slow{}; asked {:.2e}",
+                if spec.calibration.is_on() {
+                    ", calibrated"
+                } else {
+                    ", errors of the sensor at their worst"
+                },
+                j.budget.asked
+            ),
         ),
         (
             SIMULATED,
@@ -171,17 +180,31 @@ fn said(design: &Design, j: &DesignJson) -> Vec<(&'static str, String, String)> 
                 0 => "off".into(),
                 n => format!("{n} parameters on line"),
             },
-            format!(
-                "corrects amplitudes ±{:.0} %, offsets {:.0} %, phase {:.1}°",
-                spec.sensor.amplitude_tolerance * 100.0,
-                spec.sensor.offset_max * 100.0,
-                spec.sensor.phase_error_max_deg
-            ),
+            corrected(spec),
         ),
     ];
     list.extend(skew);
     list.extend(harmonics);
     list
+}
+
+/// What the parameters correct, as far as the design promises.
+fn corrected(spec: &Spec) -> String {
+    let (c, s) = (&spec.calibration, &spec.sensor);
+    if !c.is_on() {
+        return "nominal gains; what the sensor promises stays".into();
+    }
+    let mut parts = vec![
+        format!("amplitudes ±{:.0} %", s.amplitude_tolerance * 100.0),
+        format!("offsets {:.0} %", s.offset_max * 100.0),
+    ];
+    if c.has_phase() {
+        parts.push(format!("phase {:.1}°", s.phase_error_max_deg));
+    }
+    if c.has_bend() {
+        parts.push(format!("bends {:.1} %", s.bend_max * 100.0));
+    }
+    format!("corrects {}", parts.join(", "))
 }
 
 /// From power-up into full speed.
@@ -233,7 +256,8 @@ fn bode(design: &Design) -> Plot {
 }
 
 /// The angle error from power-up on, and along a period in the end.
-fn simulated(simulation: &Simulation) -> [Plot; 2] {
+fn simulated(simulation: &Simulation, calibrated: bool) -> [Plot; 2] {
+    let calibrated = if calibrated { "calibrated, " } else { "" };
     let course = &simulation.course;
     let raw = simulation.raw_rms_periods;
     let ends = [course.first(), course.last()];
@@ -257,7 +281,7 @@ fn simulated(simulation: &Simulation) -> [Plot; 2] {
             round: false,
         },
         Plot {
-            title: "Along a period, calibrated, mean of many samples at each place".into(),
+            title: format!("Along a period, {calibrated}mean of many samples at each place"),
             x: Axis::linear("place in the period, periods", [0.0, 1.0]),
             y: Axis::fitted("angle error, periods", along.iter().map(|p| p[1])),
             series: vec![Series::new("chip", Look::Model, along.clone())],
@@ -275,12 +299,11 @@ fn bars(j: &DesignJson) -> Vec<Bar> {
             "given",
         ),
         ("ADC".to_owned(), j.budget.adc, "given"),
-        (
-            "noise of the calibration at its last gamma".to_owned(),
-            j.budget.calibration,
-            "search",
-        ),
     ];
+    if j.spec.calibration.is_on() {
+        let what = "noise of the calibration at its last gamma".to_owned();
+        list.push((what, j.budget.calibration, "search"));
+    }
     if j.budget.uncorrected > 0.0 {
         let what = "errors of the sensor that are not calibrated, at worst".to_owned();
         list.push((what, j.budget.uncorrected, "given"));
@@ -311,6 +334,9 @@ fn files(files: &[(String, Vec<u8>)]) -> Vec<(String, String)> {
         "vec" => "stimulus and every expected value, hexadecimal",
         "vcd" => "waves of the bit-true model",
         "gtkw" => "opens the waves in GTKWave",
+        "mem" | "hex" | "coe" | "mif" if path.contains("/coefficients.") => {
+            "coefficients as words of a memory, rows as in coefficients.json"
+        }
         "mem" | "hex" => "table for $readmemh",
         "coe" => "table for Vivado's memory generator",
         "mif" => "table for Quartus",
@@ -337,7 +363,7 @@ pub(crate) fn page(
         facts: facts(design, j),
         diagram: Diagram::of(&design.spec),
         bode: bode(design).html(),
-        simulated: simulated(simulation).map(|plot| plot.html()),
+        simulated: simulated(simulation, design.spec.calibration.is_on()).map(|plot| plot.html()),
         style: nonius_plot::STYLE,
         script: nonius_plot::script(),
         bars: bars(j),

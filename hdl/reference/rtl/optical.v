@@ -2,10 +2,10 @@
 //
 // A digital loop follows the angle alpha of a sin/cos sensor: the corrected pair is turned back by the estimate
 // alpha_hat, what is left is the phase error e, and the loop filter turns e into the next step of the estimate. The
-// radial residual rho shows what the correction still misses and moves its parameters theta.
+// radial residual rho shows what the correction still misses and moves its parameters theta_1 to theta_5.
 // After S. Balemi, "Automatic calibration of sinusoidal encoder signals", IFAC 2005; equation numbers are the paper's.
 //
-// Design 40300cbff845: 16 products on 1 multiplier, 19 clocks per sample.
+// Design 17fbca86931a: 16 products on 1 multiplier, 19 clocks per sample.
 //
 // Formats: sW.F is a two's complement number of W bits, F of them behind the point; uW.F has no sign and is kept here
 // with a zero in front, so that every number is signed. Angles are in turns of a scale period. A signal that saturates
@@ -21,65 +21,76 @@
 // step | in the multiplier        | computed from it
 // -----+--------------------------+-------------------------------------------------------------------------------
 //    0 | -                        | sine_phase upper_half odd_quadrant quarter_phase quarter_phase_mirrored
-//      |                          | sin_address sin_inside cos_address cos_inside theta_1 theta_3 theta_5
-//      |                          | last_gear periods_modulo_4 sector sector_relative sector_ahead gamma_settled
-//      |                          | nominal
+//      |                          | sin_address sin_inside cos_address cos_inside cos_negative theta_1 theta_3
+//      |                          | theta_5 last_gear periods_modulo_4 sector sector_relative period_ahead
+//      |                          | period_behind a_period_away reach_ahead reach_behind unseen_ahead
+//      |                          | may_add_ahead sector_ahead unseen_behind may_add_behind gamma_settled nominal
+//      |                          | held_long restart_cause quiet gear_done hold_begins hold_ends
+//      |                          | periods_count_ends
 //    1 | loop_ab * error_previous | sin_value sin_slope y_c y_s counting whole_period sector_behind travel_clear
+//      |                          | sector_added new_sector still_used_ahead used_up_ahead still_used_behind
+//      |                          | used_up_behind lost_before
 //    2 | theta_1 * y_c            | cos_value cos_slope drift
 //    3 | cos_slope * cos_inside   | c_exact c
 //    4 | theta_3 * y_s            | cos_magnitude cos_hat c_weak
 //    5 | sin_slope * sin_inside   |
 //    6 | theta_5 * y_c            | sin_magnitude sin_hat
 //    7 | c * cos_hat              | s_exact s
-//    8 | s * sin_hat              | s_weak
-//    9 | s * cos_hat              | rho_exact rho flip rho_limited
-//   10 | c * sin_hat              | alpha_hat_turned
+//    8 | s * sin_hat              | s_weak signal_present may_flip
+//    9 | s * cos_hat              | rho_exact rho rho_in_window flip half_turn rho_high rho_large rho_not_small
+//      |                          | rho_limited
+//   10 | c * sin_hat              | alpha_hat_turned rho_too_large
 //   11 | sin_hat * rho_limited    | e_exact e_seen e
-//   12 | cos_hat * rho_limited    | in_window e_change counted residual_large radius_large rho_s period_tick
-//      |                          | gamma_restart gamma_shift
-//   13 | loop_a * e_change        | level_moved level_full level_empty narrower hold fresh rho_c gradient_4 step_4
-//      |                          | gear_periods_again
+//   12 | cos_hat * rho_limited    | e_in_window in_window level_step e_change sample_counts counted residual_large
+//      |                          | disturbed_lately disturbed_or_held radius_large rho_s period_tick
+//      |                          | disturbed_period gamma_restart gear_passed gamma_shift gear_periods_up
+//      |                          | periods_end within_period still_held
+//   13 | loop_a * e_change        | level_moved level_full level_empty narrower loop_gear_up full_in_last_gear
+//      |                          | hold fresh rho_c gradient_4 step_4 gamma_gear_up gear_periods_again holding
+//      |                          | lock_falls
 //   14 | y_c * rho_s              | kick gradient_2 step_2
-//   15 | y_c * rho_c              | speed gradient_5 step_5
-//   16 | y_s * rho_s              | alpha_hat_sum carry gradient_1 step_1
+//   15 | y_c * rho_c              | speed backwards not_forwards gradient_5 step_5
+//   16 | y_s * rho_s              | alpha_hat_sum carry count_before gradient_1 step_1
 //   17 | -                        | gradient_3 step_3
 //   18 | -                        |
 //
 // Coefficients, by name in the comments below:
-//     loop_a             0.014132976531982422    Loop coefficient a, turns per radian.
-//     loop_ab            0.0006010159850120544   Loop coefficients a + b, turns per radian.
-//     theta_1_nominal    1.25                    Nominal θ1.
-//     theta_3_nominal    1.25                    Nominal θ3.
-//     quarter_turn       0.24999618530273438     A quarter turn, less one bit of the sine phase.
-//     half_bit           0.0000019073486328125   Half a bit of the sine phase: what was cut off, on average.
-//     half_segment       0.001953125             Half a sine table segment.
-//     lock_error         0.4375                  Largest |e| in lock, radians.
-//     weak_signal        0.25                    Corrected signals below this are lost.
-//     restart_residual   0.25                    |ρ| above this begins the search again.
-//     hold_residual      0.0625                  |ρ| above this holds the parameters once γ has settled.
-//     direction_rate     0.0000152587890625      Rate below which the direction does not change, turns per sample.
-//     lock_down          -8                      What a bad sample adds to the lock level.
-//     lock_full          63                      The full lock level.
-//     lock_restart       31                      Lock level after a change of loop gear.
-//     loop_gear_last     3                       Last loop gear.
-//     gamma_gear_settled 4                       From this γ gear on γ has settled.
-//     gamma_gear_last    6                       Last γ gear.
-//     gear_periods_last  3                       Periods of travel per γ gear, less one.
-//     held_periods_last  31                      Periods of travel that the parameters are held before the search begins
-//                                                again, less one.
-//     unit_radius        0.9999923706054688      The radius 1, less half a bit of the residual.
-//     zero               0                       0.
-//     one                1                       1.
-//     half               0.5                     ½.
-//     quarter            0.25                    ¼.
-//     minus_weak_signal  -0.25
-//     minus_lock_error   -0.4375
-//     minus_lock_residual -0.5
-//     minus_one          -1
-//     minus_direction_rate -0.0000152587890625
-//     minus_quarter      -0.25
-//     minus_restart_residual -0.25
-//     minus_hold_residual -0.0625
+//     loop_a                 0.014132976531982422    Loop coefficient a, turns per radian.
+//     loop_ab                0.0006010159850120544   Loop coefficients a + b, turns per radian.
+//     theta_1_nominal        1.25                    Nominal θ1.
+//     theta_3_nominal        1.25                    Nominal θ3.
+//     quarter_turn           0.24999618530273438     A quarter turn, less one bit of the sine phase.
+//     half_bit               0.0000019073486328125   Half a bit of the sine phase: what was cut off, on average.
+//     half_segment           0.001953125             Half a sine table segment.
+//     lock_error             0.4375                  Largest |e| in lock, radians.
+//     weak_signal            0.25                    Corrected signals below this are lost.
+//     restart_residual       0.25                    |ρ| above this begins the search again.
+//     hold_residual          0.0625                  |ρ| above this holds the parameters once γ has settled.
+//     direction_rate         0.0000152587890625      Rate below which the direction does not change, turns per sample.
+//     lock_down              -8                      What a bad sample adds to the lock level.
+//     lock_full              63                      The full lock level.
+//     lock_restart           31                      Lock level after a change of loop gear.
+//     loop_gear_last         3                       Last loop gear.
+//     gamma_gear_settled     4                       From this γ gear on γ has settled.
+//     gamma_gear_last        6                       Last γ gear.
+//     gear_periods_last      3                       Periods of travel per γ gear, less one.
+//     held_periods_last      31                      Periods of travel that the parameters are held before the search
+//                                                    begins again, less one.
+//     unit_radius            0.9999923706054688      The radius 1, less half a bit of the residual.
+//     zero                   0                       0.
+//     one                    1                       1.
+//     half                   0.5                     ½.
+//     quarter                0.25                    ¼.
+//     minus_weak_signal      -0.25                   Minus weak_signal: Corrected signals below this are lost.
+//     minus_lock_error       -0.4375                 Minus lock_error: Largest |e| in lock, radians.
+//     minus_lock_residual    -0.5                    Minus lock_residual: Largest −ρ in lock.
+//     minus_one              -1                      −1.
+//     minus_direction_rate   -0.0000152587890625     Minus direction_rate: Rate below which the direction does not
+//                                                    change, turns per sample.
+//     minus_quarter          -0.25                   −¼.
+//     minus_restart_residual -0.25                   Minus restart_residual: |ρ| above this begins the search again.
+//     minus_hold_residual    -0.0625                 Minus hold_residual: |ρ| above this holds the parameters once γ
+//                                                    has settled.
 
 `default_nettype none
 `timescale 1ns / 1ps
@@ -144,7 +155,7 @@ module optical (
     reg signed [10:0] cos_inside;
     reg signed [19:0] cos_value;
     reg signed [17:0] sin_hat;
-    reg cos_hat_condition;
+    reg cos_negative;
     reg signed [17:0] cos_hat;
     reg signed [28:0] s_exact_sum;
     reg signed [17:0] c;
@@ -159,10 +170,10 @@ module optical (
     reg signed [17:0] rho;
     reg signed [34:0] s_times_cos_hat;
     reg signed [17:0] e;
-    reg in_window_condition_3;
-    reg in_window_condition;
+    reg rho_in_window;
+    reg signal_present;
     reg in_window;
-    reg flip_condition;
+    reg may_flip;
     reg signed [7:0] level_moved_sum;
     reg level_empty;
     reg loop_gear_below_loop_gear_last;
@@ -174,37 +185,37 @@ module optical (
     reg signed [25:0] kick;
     reg signed [25:0] drift;
     reg signed [26:0] speed_sum_2;
-    reg signed [1:0] alpha_hat_turned_chosen;
+    reg signed [1:0] half_turn;
     reg signed [28:0] alpha_hat_turned;
     reg signed [27:0] alpha_hat_next;
     reg signed [31:0] count_next;
-    reg speed_below_minus_direction_rate;
-    reg speed_below_direction_rate;
+    reg backwards;
+    reg not_forwards;
     reg direction_next;
     reg counting;
     reg signed [7:0] sector;
     reg signed [7:0] sector_relative;
-    reg whole_period_condition_3;
-    reg whole_period_condition_2;
-    reg whole_period_condition;
+    reg period_ahead;
+    reg period_behind;
+    reg a_period_away;
     reg whole_period;
     reg sector_ahead;
-    reg sector_behind_condition_2;
-    reg sector_behind_condition;
+    reg unseen_behind;
+    reg may_add_behind;
     reg travel_clear;
-    reg counted_condition_2;
+    reg new_sector;
     reg signed [7:0] travel_low_next;
     reg signed [7:0] travel_high_next;
     reg ahead_used_next;
     reg behind_used_next;
     reg counted;
     reg gamma_settled;
-    reg residual_large_condition_7;
-    reg residual_large_condition_6;
-    reg residual_large_condition_3;
-    reg residual_large_condition;
+    reg rho_high;
+    reg rho_large;
+    reg rho_not_small;
+    reg rho_too_large;
     reg residual_large;
-    reg hold_condition_2;
+    reg disturbed_or_held;
     reg radius_large;
     reg fresh;
     reg signed [14:0] rho_limited;
@@ -220,24 +231,24 @@ module optical (
     reg signed [22:0] step_3;
     reg signed [21:0] step_4;
     reg signed [24:0] theta_4_deviation_next;
-    reg gamma_restart_condition_4;
-    reg gamma_restart_condition;
+    reg restart_cause;
+    reg disturbed_period;
     reg gamma_restart;
     reg gamma_gear_below_gamma_gear_last;
-    reg gamma_shift_condition_2;
+    reg gear_done;
     reg gamma_shift;
-    reg signed [1:0] gear_periods_next_chosen_2;
-    reg gear_periods_again_condition_2;
-    reg gear_periods_again_condition;
-    reg disturbed_next_condition_2;
-    reg held_next_condition_2;
+    reg signed [1:0] gear_periods_up;
+    reg periods_count_ends;
+    reg periods_end;
+    reg within_period;
+    reg still_held;
     reg signed [3:0] gamma_gear_next;
     reg signed [5:0] gear_periods_next;
     reg disturbed_next;
     reg risen_next;
     reg held_next;
-    reg lock_lost_next_condition_3;
-    reg lock_lost_next_condition;
+    reg lost_before;
+    reg lock_falls;
     reg lock_lost_next;
 
     // Operands and products
@@ -314,9 +325,9 @@ module optical (
     wire signed [17:0] cos_magnitude = cos_magnitude_sum[31:14]; // s18.16, step 4
     wire signed [17:0] sin_hat_negated = -sin_magnitude; // s18.16, step 6
     wire signed [17:0] sin_hat_now = upper_half ? sin_hat_negated : sin_magnitude; // s18.16, step 6
-    wire cos_hat_condition_now = upper_half_now ^ odd_quadrant; // step 0
+    wire cos_negative_now = upper_half_now ^ odd_quadrant; // step 0
     wire signed [17:0] cos_hat_negated = -cos_magnitude; // s18.16, step 4
-    wire signed [17:0] cos_hat_now = cos_hat_condition ? cos_hat_negated : cos_magnitude; // s18.16, step 4
+    wire signed [17:0] cos_hat_now = cos_negative ? cos_hat_negated : cos_magnitude; // s18.16, step 4
 
     // ADC codes
     //   y = code, as a fraction of the range that the nominal amplitude needs
@@ -380,16 +391,17 @@ module optical (
     // Lock window
     //   |e| and -rho below their limits, signal present
     //   (calibration needs lock: the update would otherwise drive the gains to zero)
-    wire in_window_condition_3_now = $signed(~rho_now[17:15]) < 3'sd1; // step 9, with minus_lock_residual
-    wire in_window_condition_now = ~signal_lost_next_now; // step 8
-    wire in_window_now = ((($signed(e[17:12]) < 6'sd7) & ($signed(~e[17:12]) < 6'sd7)) & in_window_condition_3) & in_window_condition; // step 12, with lock_error, minus_lock_error
-    wire flip_condition_now = ~(locked | signal_lost_next_now); // step 8
-    wire flip = ~($signed(~rho_now[17:16]) < 2'sd1) & flip_condition; // step 9
+    wire e_in_window = ($signed(e[17:12]) < 6'sd7) & ($signed(~e[17:12]) < 6'sd7); // step 12, with lock_error, minus_lock_error
+    wire rho_in_window_now = $signed(~rho_now[17:15]) < 3'sd1; // step 9, with minus_lock_residual
+    wire signal_present_now = ~signal_lost_next_now; // step 8
+    wire in_window_now = (e_in_window & rho_in_window) & signal_present; // step 12
+    wire may_flip_now = ~(locked | signal_lost_next_now); // step 8
+    wire flip = ~($signed(~rho_now[17:16]) < 2'sd1) & may_flip; // step 9
 
     // Lock level and loop gear
-    //   level' = level + 1 if good, else level - 8; full: narrower loop, empty: widest loop
-    wire signed [3:0] level_moved_chosen = in_window_now ? 4'sd1 : 4'sh8; // s4.0, step 12, with lock_down
-    wire signed [7:0] level_moved_sum_now = {lock_level[6], lock_level} + {{4{level_moved_chosen[3]}}, level_moved_chosen}; // s8.0, step 12
+    //   level' = level + 1 if good, else level - 8; full: narrower loop, in the last gear locked; empty: widest loop, lock is lost
+    wire signed [3:0] level_step = in_window_now ? 4'sd1 : 4'sh8; // s4.0, step 12, with lock_down
+    wire signed [7:0] level_moved_sum_now = {lock_level[6], lock_level} + {{4{level_step[3]}}, level_step}; // s8.0, step 12
     wire signed [6:0] level_moved = level_moved_sum[7] ? 7'sd0 : (level_moved_sum[6] ? {1'b0, {6{1'b1}}} : {1'b0, level_moved_sum[5:0]}); // u6.0, step 13
     wire level_moved_below_lock_full = level_moved < 7'sh3f; // step 13, with lock_full
     wire level_full = ~level_moved_below_lock_full; // step 13
@@ -397,18 +409,19 @@ module optical (
     wire loop_gear_below_loop_gear_last_now = loop_gear < 3'sd3; // step 0, with loop_gear_last
     wire last_gear_now = ~loop_gear_below_loop_gear_last_now; // step 0
     wire narrower = level_full & loop_gear_below_loop_gear_last; // step 13
-    wire signed [1:0] loop_gear_next_chosen_2 = narrower ? 2'sd1 : 2'sd0; // s2.0, step 13
-    wire signed [3:0] loop_gear_next_sum = {loop_gear[2], loop_gear} + {{2{loop_gear_next_chosen_2[1]}}, loop_gear_next_chosen_2}; // s4.0, step 13
+    wire signed [1:0] loop_gear_up = narrower ? 2'sd1 : 2'sd0; // s2.0, step 13
+    wire signed [3:0] loop_gear_next_sum = {loop_gear[2], loop_gear} + {{2{loop_gear_up[1]}}, loop_gear_up}; // s4.0, step 13
     wire signed [2:0] loop_gear_next_bits_now = {1'b0, loop_gear_next_sum[1:0]}; // u2.0, step 13
     wire signed [2:0] loop_gear_next_chosen = level_empty ? 3'sd0 : loop_gear_next_bits; // s3.0, step 14
     wire signed [6:0] lock_level_next_chosen = narrower ? 7'sh1f : level_moved; // s7.0, step 13, with lock_restart
-    wire locked_next_now = (locked | (level_full & last_gear)) & ~level_empty_now; // step 13
+    wire full_in_last_gear = level_full & last_gear; // step 13
+    wire locked_next_now = (locked | full_in_last_gear) & ~level_empty_now; // step 13
     wire signed [6:0] lock_level_next_now = lock_level_next_chosen; // u6.0, step 13
     wire signed [2:0] loop_gear_next_now = loop_gear_next_chosen; // u2.0, step 14
 
     // Loop filter
-    //   rate' = p rate + a (e - e_1) + (a + b) e_1, wider by powers of two in acquisition
-    //   (paper equations (2) and (9), sections 4.1 to 4.3)
+    //   rate' = rate + a (e - e_1) + (a + b) e_1; a times 2^n, a + b times 4^n in acquisition
+    //   (paper section 4.3: Method 1's a and b, c = -2, d = 1; the rate is kept, it is the speed)
     wire signed [18:0] e_change_difference = {e[17], e} - {error_previous[17], error_previous}; // s19.16, step 12
     wire signed [17:0] e_change = ((&e_change_difference[18:17]) | ~(|e_change_difference[18:17])) ? e_change_difference[17:0] : {e_change_difference[18], {17{~e_change_difference[18]}}}; // s18.16, step 12
     wire signed [34:0] loop_a_times_e_change = product_0[34:0]; // s35.39, step 14
@@ -430,21 +443,21 @@ module optical (
     // Position
     //   alpha_hat' = alpha_hat + rate' (mod 1), count' = count + carry
     //   (paper equation (9))
-    wire signed [1:0] alpha_hat_turned_chosen_now = flip ? 2'sd1 : 2'sd0; // s2.1, step 9
-    wire signed [28:0] alpha_hat_turned_now = {alpha_hat[27], alpha_hat} + {alpha_hat_turned_chosen[1], alpha_hat_turned_chosen, 26'b0}; // s29.27, step 10
+    wire signed [1:0] half_turn_now = flip ? 2'sd1 : 2'sd0; // s2.1, step 9
+    wire signed [28:0] alpha_hat_turned_now = {alpha_hat[27], alpha_hat} + {half_turn[1], half_turn, 26'b0}; // s29.27, step 10
     wire signed [28:0] alpha_hat_sum = alpha_hat_turned + {{3{speed[25]}}, speed}; // s29.27, step 16
     wire signed [27:0] alpha_hat_next_now = {1'b0, alpha_hat_sum[26:0]}; // u27.27, step 16
     wire signed [2:0] carry = {alpha_hat_sum[28], alpha_hat_sum[28:27]}; // s3.0, step 16
-    wire signed [31:0] count_next_chosen = preset_held ? 32'sd0 : count; // s32.32, step 16
+    wire signed [31:0] count_before = preset_held ? 32'sd0 : count; // s32.32, step 16
     wire signed [1:0] count_next_scaled = carry[1:0]; // s2.32, step 16
-    wire signed [32:0] count_next_sum = {count_next_chosen[31], count_next_chosen} + {{31{count_next_scaled[1]}}, count_next_scaled}; // s33.32, step 16
+    wire signed [32:0] count_next_sum = {count_before[31], count_before} + {{31{count_next_scaled[1]}}, count_next_scaled}; // s33.32, step 16
     wire signed [31:0] count_next_now = count_next_sum[31:0]; // s32.32, step 16
 
     // Direction
     //   sign of the rate, with a dead band
-    wire speed_below_minus_direction_rate_now = ~($signed(~speed_now[25:11]) < 15'sd1); // step 15, with minus_direction_rate
-    wire speed_below_direction_rate_now = $signed(speed_now[25:11]) < 15'sd1; // step 15, with direction_rate
-    wire direction_next_now = speed_below_minus_direction_rate | (direction & speed_below_direction_rate); // step 16
+    wire backwards_now = ~($signed(~speed_now[25:11]) < 15'sd1); // step 15, with minus_direction_rate
+    wire not_forwards_now = $signed(speed_now[25:11]) < 15'sd1; // step 15, with direction_rate
+    wire direction_next_now = backwards | (direction & not_forwards); // step 16
 
     // Travel
     //   a sector of the period is fresh until it was used once since the last whole period
@@ -456,39 +469,48 @@ module optical (
     wire signed [7:0] sector_now = {periods_modulo_4, 6'b0} + {sector_bits[6], sector_bits}; // s8.6, step 0
     wire signed [8:0] sector_relative_difference = {sector_now[7], sector_now} - {travel_origin[7], travel_origin}; // s9.6, step 0
     wire signed [7:0] sector_relative_now = sector_relative_difference[7:0]; // s8.6, step 0
-    wire whole_period_condition_3_now = ~($signed(sector_relative_now[7:6]) < 2'sd1); // step 0
-    wire whole_period_condition_2_now = ~(~sector_relative_now < 8'sh3f); // step 0
-    wire whole_period_condition_now = whole_period_condition_3_now | whole_period_condition_2_now; // step 0
-    wire whole_period_now = whole_period_condition & counting_now; // step 1
-    wire signed [8:0] sector_ahead_sum = {travel_low[7], travel_low} + 9'sh40; // s9.6, step 0
-    wire sector_ahead_now = ((travel_high < sector_relative_now) & ($signed({sector_relative_now[7], sector_relative_now}) < sector_ahead_sum)) & ~(($signed(sector_relative_now[7:4]) < 4'sd1) & ahead_used); // step 0
-    wire signed [8:0] sector_behind_difference = {travel_high[7], travel_high} - 9'sh40; // s9.6, step 0
-    wire sector_behind_condition_2_now = (sector_relative_now < travel_low) & (sector_behind_difference < $signed({sector_relative_now[7], sector_relative_now})); // step 0
-    wire sector_behind_condition_now = ~(($signed(~sector_relative_now[7:4]) < 4'sd1) & behind_used); // step 0, with minus_quarter
-    wire sector_behind = sector_behind_condition_2 & sector_behind_condition; // step 1
+    wire period_ahead_now = ~($signed(sector_relative_now[7:6]) < 2'sd1); // step 0
+    wire period_behind_now = ~(~sector_relative_now < 8'sh3f); // step 0
+    wire a_period_away_now = period_ahead_now | period_behind_now; // step 0
+    wire whole_period_now = a_period_away & counting_now; // step 1
+    wire signed [8:0] reach_ahead = {travel_low[7], travel_low} + 9'sh40; // s9.6, step 0
+    wire signed [8:0] reach_behind = {travel_high[7], travel_high} - 9'sh40; // s9.6, step 0
+    wire unseen_ahead = (travel_high < sector_relative_now) & ($signed({sector_relative_now[7], sector_relative_now}) < reach_ahead); // step 0
+    wire may_add_ahead = ~(($signed(sector_relative_now[7:4]) < 4'sd1) & ahead_used); // step 0
+    wire sector_ahead_now = unseen_ahead & may_add_ahead; // step 0
+    wire unseen_behind_now = (sector_relative_now < travel_low) & (reach_behind < $signed({sector_relative_now[7], sector_relative_now})); // step 0
+    wire may_add_behind_now = ~(($signed(~sector_relative_now[7:4]) < 4'sd1) & behind_used); // step 0, with minus_quarter
+    wire sector_behind = unseen_behind & may_add_behind; // step 1
     wire travel_clear_now = whole_period_now | ~counting_now; // step 1
-    wire counted_condition_2_now = (sector_ahead | sector_behind) | travel_clear_now; // step 1
+    wire sector_added = sector_ahead | sector_behind; // step 1
+    wire new_sector_now = sector_added | travel_clear_now; // step 1
     wire signed [7:0] travel_origin_next = travel_clear ? sector : travel_origin; // s8.6, step 18
     wire signed [7:0] travel_low_next_chosen = sector_behind ? sector_relative : travel_low; // s8.6, step 1
     wire signed [7:0] travel_low_next_now = travel_clear_now ? 8'sd0 : travel_low_next_chosen; // s8.6, step 1
     wire signed [7:0] travel_high_next_chosen = sector_ahead ? sector_relative : travel_high; // s8.6, step 1
     wire signed [7:0] travel_high_next_now = travel_clear_now ? 8'sd0 : travel_high_next_chosen; // s8.6, step 1
-    wire ahead_used_next_now = counting_now & (whole_period_condition_2 | (ahead_used & ~(whole_period_now | sector_ahead))); // step 1
-    wire behind_used_next_now = counting_now & (whole_period_condition_3 | (behind_used & ~(whole_period_now | sector_behind))); // step 1
-    wire counted_now = (counting & in_window_now) & counted_condition_2; // step 12
+    wire still_used_ahead = ahead_used & ~(whole_period_now | sector_ahead); // step 1
+    wire used_up_ahead = period_behind | still_used_ahead; // step 1
+    wire ahead_used_next_now = counting_now & used_up_ahead; // step 1
+    wire still_used_behind = behind_used & ~(whole_period_now | sector_behind); // step 1
+    wire used_up_behind = period_ahead | still_used_behind; // step 1
+    wire behind_used_next_now = counting_now & used_up_behind; // step 1
+    wire sample_counts = counting & in_window_now; // step 12
+    wire counted_now = sample_counts & new_sector; // step 12
 
     // Hold
     //   once gamma has settled a residual that is not small, and all until the end of a period without one, moves no parameter
     wire gamma_gear_below_gamma_gear_settled = $signed(gamma_gear[3:2]) < 2'sd1; // step 0, with gamma_gear_settled
     wire gamma_settled_now = ~gamma_gear_below_gamma_gear_settled; // step 0
-    wire residual_large_condition_7_now = ~($signed(rho_now[17:14]) < 4'sd1); // step 9, with restart_residual
-    wire residual_large_condition_6_now = residual_large_condition_7_now | ~($signed(~rho_now[17:14]) < 4'sd1); // step 9, with minus_restart_residual
-    wire residual_large_condition_3_now = ~(($signed(rho_now[17:12]) < 6'sd1) & ($signed(~rho_now[17:12]) < 6'sd1)); // step 9, with hold_residual, minus_hold_residual
-    wire residual_large_condition_now = residual_large_condition_6 | (gamma_settled & residual_large_condition_3); // step 10
-    wire residual_large_now = residual_large_condition & counted_now; // step 12
-    wire hold_condition_2_now = (residual_large_now | disturbed) | held; // step 12
-    wire hold = (hold_condition_2 | level_moved_below_lock_full) & gamma_settled; // step 13
-    wire radius_large_now = residual_large_condition_7 & counted_now; // step 12
+    wire rho_high_now = ~($signed(rho_now[17:14]) < 4'sd1); // step 9, with restart_residual
+    wire rho_large_now = rho_high_now | ~($signed(~rho_now[17:14]) < 4'sd1); // step 9, with minus_restart_residual
+    wire rho_not_small_now = ~(($signed(rho_now[17:12]) < 6'sd1) & ($signed(~rho_now[17:12]) < 6'sd1)); // step 9, with hold_residual, minus_hold_residual
+    wire rho_too_large_now = rho_large | (gamma_settled & rho_not_small); // step 10
+    wire residual_large_now = rho_too_large & counted_now; // step 12
+    wire disturbed_lately = residual_large_now | disturbed; // step 12
+    wire disturbed_or_held_now = disturbed_lately | held; // step 12
+    wire hold = (disturbed_or_held | level_moved_below_lock_full) & gamma_settled; // step 13
+    wire radius_large_now = rho_high & counted_now; // step 12
     wire fresh_now = counted & ~hold; // step 13
 
     // Gradient along the radius
@@ -545,36 +567,42 @@ module optical (
 
     // Gears of gamma
     //   gamma halves after some periods of travel, starts again when the residual stays large
-    wire gamma_restart_condition_4_now = period_tick & disturbed; // step 12
-    wire gamma_restart_condition_now = (gamma_gear_below_gamma_gear_settled | risen) | (held & ~(gear_periods < 6'sh1f)); // step 0, with held_periods_last
-    wire gamma_restart_now = gamma_restart_condition_4_now & gamma_restart_condition; // step 12
+    wire held_long = held & ~(gear_periods < 6'sh1f); // step 0, with held_periods_last
+    wire restart_cause_now = (gamma_gear_below_gamma_gear_settled | risen) | held_long; // step 0
+    wire disturbed_period_now = period_tick & disturbed; // step 12
+    wire gamma_restart_now = disturbed_period_now & restart_cause; // step 12
     wire gamma_gear_below_gamma_gear_last_now = $signed(gamma_gear[3:1]) < 3'sd3; // step 0, with gamma_gear_last
-    wire gamma_shift_condition_2_now = ~(gear_periods < 6'sd3) & ~(disturbed | held); // step 0, with gear_periods_last
-    wire gamma_shift_now = (period_tick & gamma_shift_condition_2) & gamma_gear_below_gamma_gear_last; // step 12
-    wire signed [1:0] gamma_gear_next_chosen_2 = gamma_shift ? 2'sd1 : 2'sd0; // s2.0, step 13
-    wire signed [4:0] gamma_gear_next_sum = {gamma_gear[3], gamma_gear} + {{3{gamma_gear_next_chosen_2[1]}}, gamma_gear_next_chosen_2}; // s5.0, step 13
+    wire quiet = ~(disturbed | held); // step 0
+    wire gear_done_now = ~(gear_periods < 6'sd3) & quiet; // step 0, with gear_periods_last
+    wire gear_passed = period_tick & gear_done; // step 12
+    wire gamma_shift_now = gear_passed & gamma_gear_below_gamma_gear_last; // step 12
+    wire signed [1:0] gamma_gear_up = gamma_shift ? 2'sd1 : 2'sd0; // s2.0, step 13
+    wire signed [4:0] gamma_gear_next_sum = {gamma_gear[3], gamma_gear} + {{3{gamma_gear_up[1]}}, gamma_gear_up}; // s5.0, step 13
     wire signed [3:0] gamma_gear_next_bits = {1'b0, gamma_gear_next_sum[2:0]}; // u3.0, step 13
-    wire signed [1:0] gear_periods_next_chosen_2_now = period_tick ? 2'sd1 : 2'sd0; // s2.0, step 12
-    wire signed [6:0] gear_periods_next_sum = {gear_periods[5], gear_periods} + {{5{gear_periods_next_chosen_2[1]}}, gear_periods_next_chosen_2}; // s7.0, step 13
+    wire signed [1:0] gear_periods_up_now = period_tick ? 2'sd1 : 2'sd0; // s2.0, step 12
+    wire signed [6:0] gear_periods_next_sum = {gear_periods[5], gear_periods} + {{5{gear_periods_up[1]}}, gear_periods_up}; // s7.0, step 13
     wire signed [5:0] gear_periods_next_bits = {1'b0, gear_periods_next_sum[4:0]}; // u5.0, step 13
-    wire gear_periods_again_condition_2_now = (gamma_shift_condition_2_now | (disturbed & ~held)) | (held & ~disturbed); // step 0
-    wire gear_periods_again_condition_now = period_tick & gear_periods_again_condition_2; // step 12
-    wire gear_periods_again = gear_periods_again_condition | gamma_restart; // step 13
-    wire disturbed_next_condition_2_now = ~period_tick & counting; // step 12
-    wire held_next_condition_2_now = held & ~period_tick; // step 12
+    wire hold_begins = disturbed & ~held; // step 0
+    wire hold_ends = held & ~disturbed; // step 0
+    wire periods_count_ends_now = (gear_done_now | hold_begins) | hold_ends; // step 0
+    wire periods_end_now = period_tick & periods_count_ends; // step 12
+    wire gear_periods_again = periods_end | gamma_restart; // step 13
+    wire within_period_now = ~period_tick & counting; // step 12
+    wire still_held_now = held & ~period_tick; // step 12
+    wire holding = (disturbed_period & ~gamma_restart) | still_held; // step 13
     wire signed [3:0] gamma_gear_next_chosen = gamma_restart ? 4'sd0 : gamma_gear_next_bits; // s4.0, step 13
     wire signed [3:0] gamma_gear_next_now = gamma_gear_next_chosen; // u3.0, step 13
     wire signed [5:0] gear_periods_next_chosen = gear_periods_again ? 6'sd0 : gear_periods_next_bits; // s6.0, step 13
     wire signed [5:0] gear_periods_next_now = gear_periods_next_chosen; // u5.0, step 13
-    wire disturbed_next_now = residual_large | (disturbed & disturbed_next_condition_2); // step 13
-    wire risen_next_now = radius_large | (risen & disturbed_next_condition_2); // step 13
-    wire held_next_now = ((gamma_restart_condition_4 & ~gamma_restart) | held_next_condition_2) & counting; // step 13
+    wire disturbed_next_now = residual_large | (disturbed & within_period); // step 13
+    wire risen_next_now = radius_large | (risen & within_period); // step 13
+    wire held_next_now = holding & counting; // step 13
 
     // Flags
     //   what the machine control needs to know
-    wire lock_lost_next_condition_3_now = lock_lost & ~preset_held; // step 1
-    wire lock_lost_next_condition_now = locked & ~locked_next_now; // step 13
-    wire lock_lost_next_now = lock_lost_next_condition_3 | lock_lost_next_condition; // step 14
+    wire lost_before_now = lock_lost & ~preset_held; // step 1
+    wire lock_falls_now = locked & ~locked_next_now; // step 13
+    wire lock_lost_next_now = lost_before | lock_falls; // step 14
 
     // Shifter 1, shared: gamma is a power of two
     reg signed [26:0] unshifted_1;
@@ -630,7 +658,7 @@ module optical (
             sin_inside <= sin_inside_now;
             cos_address <= cos_address_now;
             cos_inside <= cos_inside_now;
-            cos_hat_condition <= cos_hat_condition_now;
+            cos_negative <= cos_negative_now;
             theta_1 <= theta_1_now;
             theta_3 <= theta_3_now;
             theta_5 <= theta_5_now;
@@ -638,18 +666,18 @@ module optical (
             last_gear <= last_gear_now;
             sector <= sector_now;
             sector_relative <= sector_relative_now;
-            whole_period_condition_3 <= whole_period_condition_3_now;
-            whole_period_condition_2 <= whole_period_condition_2_now;
-            whole_period_condition <= whole_period_condition_now;
+            period_ahead <= period_ahead_now;
+            period_behind <= period_behind_now;
+            a_period_away <= a_period_away_now;
             sector_ahead <= sector_ahead_now;
-            sector_behind_condition_2 <= sector_behind_condition_2_now;
-            sector_behind_condition <= sector_behind_condition_now;
+            unseen_behind <= unseen_behind_now;
+            may_add_behind <= may_add_behind_now;
             gamma_settled <= gamma_settled_now;
             nominal <= nominal_now;
-            gamma_restart_condition <= gamma_restart_condition_now;
+            restart_cause <= restart_cause_now;
             gamma_gear_below_gamma_gear_last <= gamma_gear_below_gamma_gear_last_now;
-            gamma_shift_condition_2 <= gamma_shift_condition_2_now;
-            gear_periods_again_condition_2 <= gear_periods_again_condition_2_now;
+            gear_done <= gear_done_now;
+            periods_count_ends <= periods_count_ends_now;
             theta_2 <= theta_2_deviation;
             theta_4 <= theta_4_deviation;
         end
@@ -659,12 +687,12 @@ module optical (
             counting <= counting_now;
             whole_period <= whole_period_now;
             travel_clear <= travel_clear_now;
-            counted_condition_2 <= counted_condition_2_now;
+            new_sector <= new_sector_now;
             travel_low_next <= travel_low_next_now;
             travel_high_next <= travel_high_next_now;
             ahead_used_next <= ahead_used_next_now;
             behind_used_next <= behind_used_next_now;
-            lock_lost_next_condition_3 <= lock_lost_next_condition_3_now;
+            lost_before <= lost_before_now;
         end
         if (step == 5'd2) begin
             cos_value <= cos_value_now;
@@ -694,22 +722,22 @@ module optical (
         if (step == 5'd8) begin
             signal_lost_next <= signal_lost_next_now;
             rho_exact_difference <= rho_exact_difference_now;
-            in_window_condition <= in_window_condition_now;
-            flip_condition <= flip_condition_now;
+            signal_present <= signal_present_now;
+            may_flip <= may_flip_now;
         end
         if (step == 5'd9) begin
             rho <= rho_now;
-            in_window_condition_3 <= in_window_condition_3_now;
-            alpha_hat_turned_chosen <= alpha_hat_turned_chosen_now;
-            residual_large_condition_7 <= residual_large_condition_7_now;
-            residual_large_condition_6 <= residual_large_condition_6_now;
-            residual_large_condition_3 <= residual_large_condition_3_now;
+            rho_in_window <= rho_in_window_now;
+            half_turn <= half_turn_now;
+            rho_high <= rho_high_now;
+            rho_large <= rho_large_now;
+            rho_not_small <= rho_not_small_now;
             rho_limited <= rho_limited_now;
         end
         if (step == 5'd10) begin
             s_times_cos_hat <= s_times_cos_hat_now;
             alpha_hat_turned <= alpha_hat_turned_now;
-            residual_large_condition <= residual_large_condition_now;
+            rho_too_large <= rho_too_large_now;
         end
         if (step == 5'd11) begin
             e <= e_now;
@@ -719,16 +747,16 @@ module optical (
             level_moved_sum <= level_moved_sum_now;
             counted <= counted_now;
             residual_large <= residual_large_now;
-            hold_condition_2 <= hold_condition_2_now;
+            disturbed_or_held <= disturbed_or_held_now;
             radius_large <= radius_large_now;
             rho_s <= rho_s_now;
-            gamma_restart_condition_4 <= gamma_restart_condition_4_now;
+            disturbed_period <= disturbed_period_now;
             gamma_restart <= gamma_restart_now;
             gamma_shift <= gamma_shift_now;
-            gear_periods_next_chosen_2 <= gear_periods_next_chosen_2_now;
-            gear_periods_again_condition <= gear_periods_again_condition_now;
-            disturbed_next_condition_2 <= disturbed_next_condition_2_now;
-            held_next_condition_2 <= held_next_condition_2_now;
+            gear_periods_up <= gear_periods_up_now;
+            periods_end <= periods_end_now;
+            within_period <= within_period_now;
+            still_held <= still_held_now;
         end
         if (step == 5'd13) begin
             level_empty <= level_empty_now;
@@ -743,7 +771,7 @@ module optical (
             disturbed_next <= disturbed_next_now;
             risen_next <= risen_next_now;
             held_next <= held_next_now;
-            lock_lost_next_condition <= lock_lost_next_condition_now;
+            lock_falls <= lock_falls_now;
         end
         if (step == 5'd14) begin
             loop_gear_next <= loop_gear_next_now;
@@ -754,8 +782,8 @@ module optical (
         end
         if (step == 5'd15) begin
             speed <= speed_now;
-            speed_below_minus_direction_rate <= speed_below_minus_direction_rate_now;
-            speed_below_direction_rate <= speed_below_direction_rate_now;
+            backwards <= backwards_now;
+            not_forwards <= not_forwards_now;
             step_5 <= step_5_now;
             theta_2_deviation_next <= theta_2_deviation_next_now;
         end

@@ -181,43 +181,43 @@ pub(crate) fn faults() -> Vec<Fault> {
         ),
         swap(
             "last bit of the lock limit",
-            &["wire in_window_now ="],
+            &["wire e_in_window ="],
             "6'sd7",
             "6'sd8",
         ),
         swap(
             "last bit of the limit that begins again",
-            &["wire residual_large_condition_7_now ="],
+            &["wire rho_high_now ="],
             "< 4'sd1)",
             "< 4'sd2)",
         ),
         swap(
             "last bit of the limit that holds",
-            &["wire residual_large_condition_3_now ="],
+            &["wire rho_not_small_now ="],
             "~rho_now[17:12]) < 6'sd1)",
             "~rho_now[17:12]) < 6'sd2)",
         ),
         swap(
             "direction forwards from twice the speed on",
-            &["wire speed_below_direction_rate_now ="],
+            &["wire not_forwards_now ="],
             "< 15'sd1;",
             "< 15'sd2;",
         ),
         swap(
             "sectors counted again by turning back behind",
-            &["wire sector_behind_condition_now ="],
+            &["wire may_add_behind_now ="],
             " & behind_used",
             " & 1'b0",
         ),
         swap(
             "sectors counted again by turning back ahead",
-            &["wire sector_ahead_now ="],
+            &["wire may_add_ahead ="],
             " & ahead_used",
             " & 1'b0",
         ),
         swap(
             "turning back that is never forgotten",
-            &["wire behind_used_next_now ="],
+            &["wire still_used_behind ="],
             "(whole_period_now | sector_behind)",
             "whole_period_now",
         ),
@@ -309,7 +309,7 @@ pub(crate) fn recall_faults() -> Vec<Fault> {
         swap(
             "recall before the last gear",
             &["wire recall_now ="],
-            " & recall_condition",
+            " & last_gamma_gear",
             "",
         ),
         swap(
@@ -339,7 +339,7 @@ pub(crate) fn recall_faults() -> Vec<Fault> {
         swap(
             "quiet periods counted from before the loss",
             &["wire gear_periods_again ="],
-            " | travel_clear_condition",
+            " | not_counting",
             "",
         ),
     ]

@@ -94,6 +94,11 @@ static UPDATE: Formula = Formula {
     source: "paper section 5.5.1, M of equation (7)",
 };
 
+static UPDATE_SQUARES: Formula = Formula {
+    source: "paper sections 5.2 to 5.4, the sum of squares",
+    ..UPDATE
+};
+
 /// Which samples count.
 #[derive(Clone, Copy, Debug)]
 pub struct Gate<S: Signal> {
@@ -143,7 +148,12 @@ pub fn update<S: Signal, const PLAIN: bool>(
     k: &Coefficients<S>,
     structure: &Structure,
 ) -> Update<S> {
-    seen.rho.begin(&UPDATE);
+    let formula = if structure.calibration.squares() {
+        &UPDATE_SQUARES
+    } else {
+        &UPDATE
+    };
+    seen.rho.begin(formula);
     let mut this = Update {
         theta: [
             state.theta_1_deviation,
@@ -233,7 +243,7 @@ pub fn update<S: Signal, const PLAIN: bool>(
             newton(gradient[2], gradient[0]),
         );
     }
-    seen.rho.begin(&UPDATE);
+    seen.rho.begin(formula);
     // What is gathered acts where its period ends.
     let period_ends = || gate.fresh.and(gate.whole_period);
     let due = match starting {

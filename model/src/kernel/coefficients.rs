@@ -4,13 +4,15 @@ use crate::bits::Bits;
 use crate::graph::{Node, Recorder};
 use crate::signal::Signal;
 
-/// A coefficient: an integer, its point, and what it stands for without rounding.
+/// A coefficient: an integer, its point, what was rounded to it, and what it stands for in `f64`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Constant {
     /// Integer in units of 2^-`fraction`.
     pub raw: i64,
     /// Fraction bits.
     pub fraction: u32,
+    /// What it was derived as, before rounding.
+    pub exact: f64,
     /// What the `f64` reading takes. For loop coefficients the quantised value (same loop, other arithmetic);
     /// for half-bit corrections of a truncation the value without it.
     pub ideal: f64,
@@ -24,6 +26,7 @@ impl Constant {
         Self {
             raw,
             fraction,
+            exact: value,
             ideal: raw as f64 * crate::format::exp2(-i64::from(fraction)),
         }
     }
@@ -157,6 +160,21 @@ coefficients! {
     half,
     /// ¼.
     quarter,
+}
+
+impl<T: Copy> Coefficients<T> {
+    /// What the coefficient of this name is, or the negative one `minus_…`, in a sentence.
+    #[must_use]
+    pub fn described(name: &str) -> Option<String> {
+        let Some(positive) = name.strip_prefix("minus_") else {
+            return Self::meaning(name).map(str::to_owned);
+        };
+        let meaning = Self::meaning(positive)?;
+        Some(match positive {
+            "one" | "half" | "quarter" => format!("−{meaning}"),
+            _ => format!("Minus {positive}: {meaning}"),
+        })
+    }
 }
 
 impl Coefficients<Constant> {

@@ -58,7 +58,7 @@ pub fn complete<S: Signal>(
         .less_than(k.travel_samples_last)
         .not()
         .named("travel_late");
-    let fast = late.not().and(counting);
+    let fast = late.not().and(counting).named("fast_enough");
     let moving = fast.and(travel.whole_period.or(state.moving));
     let clear = travel.whole_period.or(counting.not());
     let samples = (state.travel_samples + S::select(late, k.zero, k.one))
@@ -69,7 +69,8 @@ pub fn complete<S: Signal>(
         .scale(-gamma)
         .named("gradient_9")
         .quantise(&structure.formats.step);
-    let allowed = state.moving.and(follows(e, rho, open, k, structure));
+    let follows = follows(e, rho, open, k, structure);
+    let allowed = state.moving.and(follows).named("completion_learns");
     Completion {
         step: S::select(allowed, step, k.zero).named("step_9"),
         sensitivity,
@@ -88,11 +89,13 @@ fn follows<S: Signal>(
     structure: &Structure,
 ) -> S::Bool {
     // What fades or is not yet calibrated along the radius teaches nothing across it.
-    let round = open.and(within(rho, k.completion_residual));
+    let small = within(rho, k.completion_residual).named("rho_small");
+    let round = open.and(small).named("completion_open");
     if structure.filter_type == 1 {
         // A loop of type 1 always lags.
         return round;
     }
     // Where the loop catches up with motion, e is no error of the sensor.
-    round.and(within(e, k.completion_error))
+    let calm = within(e, k.completion_error).named("e_small");
+    round.and(calm).named("completion_follows")
 }

@@ -16,7 +16,25 @@ static THETA: Formula = Formula {
     source: "paper section 5.3",
 };
 
+static NOMINAL: Formula = Formula {
+    title: "Parameters as multiplied",
+    equation: "theta_1 and theta_3 nominal: nothing is calibrated",
+    source: "",
+};
+
+static SCALE: Formula = Formula {
+    title: "Scaling",
+    equation: "c = theta_1 y_c,  s = theta_3 y_s",
+    source: "",
+};
+
 static CORRECT: Formula = Formula {
+    title: "Correction",
+    equation: "c = theta_1 y_c + theta_2,  s = theta_3 y_s + theta_4",
+    source: "paper section 5.2",
+};
+
+static CORRECT_PHASE: Formula = Formula {
     title: "Correction",
     equation: "c = theta_1 y_c + theta_2,  s = theta_3 y_s + theta_4 + theta_5 y_c",
     source: "paper section 5.3",
@@ -24,9 +42,28 @@ static CORRECT: Formula = Formula {
 
 static CORRECT_BENT: Formula = Formula {
     title: "Correction",
+    equation: "u_c = theta_1 y_c + theta_2,  u_s = theta_3 y_s + theta_4",
+    source: "paper section 5.4, offset and gain first",
+};
+
+static CORRECT_BENT_PHASE: Formula = Formula {
+    title: "Correction",
     equation: "u_c = theta_1 y_c + theta_2,  u_s = theta_3 y_s + theta_4,  after the bend: s + theta_5 c",
     source: "paper section 5.4, offset and gain first, phase last",
 };
+
+fn formula(structure: &Structure) -> &'static Formula {
+    match (
+        structure.calibration.has_bend(),
+        structure.calibration.has_phase(),
+    ) {
+        _ if !structure.calibration.is_on() => &SCALE,
+        (false, false) => &CORRECT,
+        (false, true) => &CORRECT_PHASE,
+        (true, false) => &CORRECT_BENT,
+        (true, true) => &CORRECT_BENT_PHASE,
+    }
+}
 
 /// An ADC code, given as a fraction of the ADC's range, as a signal: `y` has the nominal amplitude between ½ and 1.
 pub fn normalise<S: Signal>(code: S, k: &Coefficients<S>, structure: &Structure) -> S {
@@ -45,7 +82,8 @@ pub fn parameters<S: Signal>(
     k: &Coefficients<S>,
     structure: &Structure,
 ) -> [S; 5] {
-    state.alpha_hat.begin(&THETA);
+    let fixed = !structure.calibration.is_on();
+    state.alpha_hat.begin(if fixed { &NOMINAL } else { &THETA });
     let [first, third, fifth] = structure.formats.theta;
     let theta_1 = (k.theta_1_nominal + state.theta_1_deviation).quantise(&first);
     let theta_3 = (k.theta_3_nominal + state.theta_3_deviation).quantise(&third);
@@ -72,7 +110,7 @@ pub fn correct_bent<S: Signal>(
     k: &Coefficients<S>,
     structure: &Structure,
 ) -> (S, S) {
-    y_c.begin(&CORRECT_BENT);
+    y_c.begin(formula(structure));
     let [theta_1, theta_2, theta_3, theta_4, theta_5] = theta;
     let signal = &structure.formats.signal;
     let u_c = (theta_1 * y_c + theta_2.widen())
@@ -85,14 +123,14 @@ pub fn correct_bent<S: Signal>(
     if !structure.calibration.has_phase() {
         return (c, s);
     }
-    c.begin(&CORRECT_BENT);
+    c.begin(formula(structure));
     let s = s.named("s_before_phase").widen() + theta_5 * c;
     (c, s.named("s_exact").quantise(signal))
 }
 
 /// The corrected pair (c, s).
 pub fn correct<S: Signal>(y_c: S, y_s: S, theta: [S; 5], structure: &Structure) -> (S, S) {
-    y_c.begin(&CORRECT);
+    y_c.begin(formula(structure));
     let [theta_1, theta_2, theta_3, theta_4, theta_5] = theta;
     let signal = &structure.formats.signal;
     let c = theta_1 * y_c + theta_2.widen();

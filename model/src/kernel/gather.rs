@@ -6,10 +6,16 @@ use super::{State, Structure};
 use crate::signal::{Formula, Signal, Wide};
 use crate::spec::CalibrationMethod;
 
-static GATHER: Formula = Formula {
+static FORGETTING: Formula = Formula {
     title: "Gathered gradient",
-    equation: "forgetting: sum' = sum + (gradient - sum)/2^m; batch: sum' = sum + gradient, 0 after a whole period",
-    source: "paper sections 5.2 and 5.3: forgetting factor, or the gradient over a number of steps",
+    equation: "sum' = sum + (gradient - sum)/2^m",
+    source: "paper sections 5.2 and 5.3: forgetting factor",
+};
+
+static PERIOD: Formula = Formula {
+    title: "Gathered gradient",
+    equation: "sum' = sum + gradient, 0 after a whole period",
+    source: "paper sections 5.2 and 5.3: the gradient over a number of steps",
 };
 
 /// What one parameter's step is made of, and what stays gathered.
@@ -45,7 +51,7 @@ pub fn squares<S: Signal>(
     if structure.calibration.method == CalibrationMethod::Batch {
         return over_a_period(gradient, before, gate, zero, structure);
     }
-    before.begin(&GATHER);
+    before.begin(&FORGETTING);
     let to = &structure.formats.gathered;
     let difference = gradient - before.widen();
     let mean = (before.widen() + difference.scale(-(structure.calibration.forgetting as i32)))
@@ -65,7 +71,7 @@ pub fn over_a_period<S: Signal>(
     zero: S,
     structure: &Structure,
 ) -> Gathered<S> {
-    before.begin(&GATHER);
+    before.begin(&PERIOD);
     let to = &structure.formats.gathered;
     let sum = (before.widen() + gradient).quantise(to);
     let kept = S::select(gate.fresh, sum, before);

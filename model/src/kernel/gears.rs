@@ -71,14 +71,19 @@ pub fn hold<S: Signal>(
 ) -> Hold<S> {
     rho.begin(&HOLD);
     let settled = settled(state, k, structure);
-    let risen = rho.less_than(k.restart_residual).not();
-    let large = risen.or(rho.less_than(-k.restart_residual));
-    let small = within(rho, k.hold_residual);
+    let risen = rho.less_than(k.restart_residual).not().named("rho_high");
+    let large = risen
+        .or(rho.less_than(-k.restart_residual))
+        .named("rho_large");
+    let not_small = within(rho, k.hold_residual).not().named("rho_not_small");
     let large = large
-        .or(settled.and(small.not()))
+        .or(settled.and(not_small))
+        .named("rho_too_large")
         .and(counted)
         .named("residual_large");
-    let suspect = large.or(state.disturbed).or(state.held).or(follows.not());
+    let disturbed = large.or(state.disturbed).named("disturbed_lately");
+    let disturbed = disturbed.or(state.held).named("disturbed_or_held");
+    let suspect = disturbed.or(follows.not());
     let suspect = if structure.calibration.recalls() {
         suspect.or(state.returning)
     } else {
@@ -99,7 +104,8 @@ pub fn hold<S: Signal>(
 
 /// γ is as small as it becomes.
 fn last_gear<S: Signal>(state: &State<S>, k: &Coefficients<S>) -> S::Bool {
-    state.gamma_gear.less_than(k.gamma_gear_last).not()
+    let before = state.gamma_gear.less_than(k.gamma_gear_last);
+    before.not().named("last_gamma_gear")
 }
 
 /// γ has settled. With fewer gears it never has.
@@ -118,6 +124,11 @@ pub fn nominal<S: Signal>(state: &State<S>, k: &Coefficients<S>) -> S::Bool {
     first.and(lost).named("nominal")
 }
 
+/// A period of travel ends in which the residual was large.
+fn disturbed_period<S: Signal>(gate: Gate<S>, state: &State<S>) -> S::Bool {
+    gate.tick.and(state.disturbed).named("disturbed_period")
+}
+
 /// The search begins again: the residual was large before γ had settled, or the radius too large, or the residual large for
 /// so long that the signal must have changed.
 pub fn restart<S: Signal>(
@@ -128,9 +139,10 @@ pub fn restart<S: Signal>(
 ) -> S::Bool {
     let early = settled(state, k, structure).not();
     let long = state.gear_periods.less_than(k.held_periods_last).not();
-    gate.tick
-        .and(state.disturbed)
-        .and(early.or(state.risen).or(state.held.and(long)))
+    let long = state.held.and(long).named("held_long");
+    let cause = early.or(state.risen).or(long).named("restart_cause");
+    disturbed_period(gate, state)
+        .and(cause)
         .named("gamma_restart")
 }
 
@@ -151,26 +163,30 @@ pub fn gears<S: Signal>(
     let last = last_gear(state, k);
     let done = state.gear_periods.less_than(k.gear_periods_last).not();
     let done = starting.map_or(done, |starting| done.or(starting));
-    let quiet = state.disturbed.or(state.held).not();
-    let done = done.and(quiet);
-    let passed = tick.and(done);
+    let quiet = state.disturbed.or(state.held).not().named("quiet");
+    let done = done.and(quiet).named("gear_done");
+    let passed = tick.and(done).named("gear_passed");
     let shift = passed.and(last.not()).named("gamma_shift");
-    let gear = (state.gamma_gear + S::select(shift, k.one, k.zero)).quantise(&gear_format);
-    let counted = (state.gear_periods + S::select(tick, k.one, k.zero)).quantise(&period_format);
+    let up = S::select(shift, k.one, k.zero).named("gamma_gear_up");
+    let gear = (state.gamma_gear + up).quantise(&gear_format);
+    let one_more = S::select(tick, k.one, k.zero).named("gear_periods_up");
+    let counted = (state.gear_periods + one_more).quantise(&period_format);
     // Periods held are counted from the first, and those of a gear from the first after them.
-    let begins = state.disturbed.and(state.held.not());
-    let ends = state.held.and(state.disturbed.not());
-    let again = tick.and(done.or(begins).or(ends)).or(restart);
+    let begins = state.disturbed.and(state.held.not()).named("hold_begins");
+    let ends = state.held.and(state.disturbed.not()).named("hold_ends");
+    let count_ends = done.or(begins).or(ends).named("periods_count_ends");
+    let again = tick.and(count_ends).named("periods_end").or(restart);
     // Periods before a loss of lock were not quiet.
     let again = hold
         .recall
         .map_or(again, |_| again.or(counting.not()))
         .named("gear_periods_again");
-    let within = tick.not().and(counting);
-    let held = tick
-        .and(state.disturbed)
+    let within = tick.not().and(counting).named("within_period");
+    let still_held = state.held.and(tick.not()).named("still_held");
+    let held = disturbed_period(gate, state)
         .and(restart.not())
-        .or(state.held.and(tick.not()));
+        .or(still_held)
+        .named("holding");
     Gears {
         gear: S::select(restart, k.zero, gear).quantise(&gear_format),
         periods: S::select(again, k.zero, counted).quantise(&period_format),

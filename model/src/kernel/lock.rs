@@ -15,9 +15,20 @@ static WINDOW: Formula = Formula {
     source: "calibration needs lock: the update would otherwise drive the gains to zero",
 };
 
+static WINDOW_OF_FIXED: Formula = Formula {
+    source: "",
+    ..WINDOW
+};
+
 static LEVEL: Formula = Formula {
+    title: "Lock level",
+    equation: "level' = level + 1 if good, else level - 8; full: locked, empty: lock is lost",
+    source: "",
+};
+
+static LEVEL_AND_GEAR: Formula = Formula {
     title: "Lock level and loop gear",
-    equation: "level' = level + 1 if good, else level - 8; full: narrower loop, empty: widest loop",
+    equation: "level' = level + 1 if good, else level - 8; full: narrower loop, in the last gear locked; empty: widest loop, lock is lost",
     source: "",
 };
 
@@ -35,16 +46,28 @@ pub struct Lock<S: Signal> {
 
 /// Whether this sample looks as in lock. A radius that is too large does not speak against it: parameters of a signal that had
 /// faded make one, and only in lock do they find back.
-pub fn in_window<S: Signal>(e: S, rho: S, weak: S::Bool, k: &Coefficients<S>) -> S::Bool {
-    e.begin(&WINDOW);
-    within(e, k.lock_error)
-        .and(rho.less_than(-k.lock_residual).not())
-        .and(weak.not())
+pub fn in_window<S: Signal>(
+    e: S,
+    rho: S,
+    weak: S::Bool,
+    k: &Coefficients<S>,
+    structure: &Structure,
+) -> S::Bool {
+    e.begin(if structure.calibration.is_on() {
+        &WINDOW
+    } else {
+        &WINDOW_OF_FIXED
+    });
+    let of_e = within(e, k.lock_error).named("e_in_window");
+    let of_rho = rho.less_than(-k.lock_residual).not();
+    of_e.and(of_rho.named("rho_in_window"))
+        .and(weak.not().named("signal_present"))
 }
 
 /// Whether the estimate points away from the signal and may be turned round.
 pub fn flip<S: Signal>(rho: S, weak: S::Bool, state: &State<S>, k: &Coefficients<S>) -> S::Bool {
-    rho.less_than(-k.one).and(state.locked.or(weak).not())
+    let may = state.locked.or(weak).not().named("may_flip");
+    rho.less_than(-k.one).and(may)
 }
 
 /// Next level, gear and lock.
@@ -54,9 +77,14 @@ pub fn update<S: Signal>(
     k: &Coefficients<S>,
     structure: &Structure,
 ) -> Lock<S> {
-    state.lock_level.begin(&LEVEL);
+    state.lock_level.begin(if structure.loop_gears == 0 {
+        &LEVEL
+    } else {
+        &LEVEL_AND_GEAR
+    });
     let formats = &structure.formats;
-    let level = (state.lock_level + S::select(good, k.one, k.lock_down))
+    let step = S::select(good, k.one, k.lock_down).named("level_step");
+    let level = (state.lock_level + step)
         .quantise(&formats.level)
         .named("level_moved");
     let full = level.less_than(k.lock_full).not().named("level_full");
@@ -76,14 +104,15 @@ pub fn update<S: Signal>(
         .not()
         .named("last_gear");
     let narrower = full.and(last.not()).named("narrower");
-    let up = S::select(narrower, k.one, k.zero);
+    let up = S::select(narrower, k.one, k.zero).named("loop_gear_up");
     let gear = S::select(
         empty,
         k.zero,
         (state.loop_gear + up).quantise(&crate::format::Quantiser::wrapping(formats.loop_gear)),
     );
     let level = S::select(narrower, k.lock_restart, level);
-    let locked = state.locked.or(full.and(last)).and(empty.not());
+    let full_in_last = full.and(last).named("full_in_last_gear");
+    let locked = state.locked.or(full_in_last).and(empty.not());
     Lock {
         level: level.quantise(&formats.level),
         gear: gear.quantise(&crate::format::Quantiser::wrapping(formats.loop_gear)),

@@ -10,15 +10,72 @@ use super::{Coefficients, Method, State, Structure};
 use crate::format::Quantiser;
 use crate::signal::{Formula, Signal, Wide};
 
-static FILTER: Formula = Formula {
-    title: "Loop filter",
-    equation: "rate' = p rate + a (e - e_1) + (a + b) e_1, wider by powers of two in acquisition",
-    source: "paper equations (2) and (9), sections 4.1 to 4.3",
-};
+/// The filter with one gear, and with more.
+macro_rules! filter {
+    ($equation:literal, $wider:literal, $source:literal) => {
+        [
+            Formula {
+                title: "Loop filter",
+                equation: $equation,
+                source: $source,
+            },
+            Formula {
+                title: "Loop filter",
+                equation: concat!($equation, "; ", $wider, " in acquisition"),
+                source: $source,
+            },
+        ]
+    };
+}
+
+static METHOD_1_TYPE_1: [Formula; 2] = filter!(
+    "rate' = p (alpha_hat - alpha_hat_1) + a (e - e_1) + (a + b) e_1",
+    "a times 2^n, a + b times 4^n",
+    "paper section 4.1, equations (2) and (9) with c = -(1 + p), d = p; rate' = alpha_hat' - alpha_hat"
+);
+
+static METHOD_1_TYPE_2: [Formula; 2] = filter!(
+    "rate' = alpha_hat - alpha_hat_1 + a (e - e_1) + (a + b) e_1",
+    "a times 2^n, a + b times 4^n",
+    "paper section 4.1, equations (2) and (9) with c = -2, d = 1; rate' = alpha_hat' - alpha_hat"
+);
+
+static METHOD_2: [Formula; 2] = filter!(
+    "rate' = p rate + a e, p = p1 p2, a = p1 p2 - p1 - p2 + 1",
+    "a times 2^n",
+    "paper section 4.2: first-order stage a/(z - p), then the integrator z/(z - 1); the rate is the speed"
+);
+
+static METHOD_3_TYPE_1: [Formula; 2] = filter!(
+    "rate' = p rate + a (e - e_1) + (a + b) e_1",
+    "a times 2^n, a + b times 4^n",
+    "paper section 4.3: Method 1's a and b, c = -(1 + p), d = p; the rate is kept, it is the speed"
+);
+
+static METHOD_3_TYPE_2: [Formula; 2] = filter!(
+    "rate' = rate + a (e - e_1) + (a + b) e_1",
+    "a times 2^n, a + b times 4^n",
+    "paper section 4.3: Method 1's a and b, c = -2, d = 1; the rate is kept, it is the speed"
+);
+
+fn formula(structure: &Structure) -> &'static Formula {
+    let [one_gear, gears] = match (structure.method, structure.filter_type) {
+        (Method::One, 2) => &METHOD_1_TYPE_2,
+        (Method::One, _) => &METHOD_1_TYPE_1,
+        (Method::Two, _) => &METHOD_2,
+        (Method::Three, 2) => &METHOD_3_TYPE_2,
+        (Method::Three, _) => &METHOD_3_TYPE_1,
+    };
+    if structure.loop_gears == 0 {
+        one_gear
+    } else {
+        gears
+    }
+}
 
 /// The position increment of this sample, in turns.
 pub fn rate<S: Signal>(e: S, state: &State<S>, k: &Coefficients<S>, structure: &Structure) -> S {
-    e.begin(&FILTER);
+    e.begin(formula(structure));
     let formats = &structure.formats;
     let geared = |product: S::Wide, stride: u32| {
         let widest = (stride * structure.loop_gears) as i32;

@@ -38,13 +38,14 @@ pub fn advance<S: Signal>(
     rate.begin(&POSITION);
     let phase = Quantiser::wrapping(structure.formats.alpha);
     let count = Quantiser::wrapping(structure.formats.count);
-    let turned = (state.alpha_hat + S::select(flip, k.half, k.zero)).named("alpha_hat_turned");
+    let half_turn = S::select(flip, k.half, k.zero).named("half_turn");
+    let turned = (state.alpha_hat + half_turn).named("alpha_hat_turned");
     let sum = (turned + rate).named("alpha_hat_sum");
     let alpha_hat = sum.quantise(&phase);
     let carry = sum
         .quantise(&Quantiser::grid(Format::signed(3, 0)))
         .named("carry");
-    let period = S::select(zero, k.zero, state.count);
+    let period = S::select(zero, k.zero, state.count).named("count_before");
     let counted =
         (period + carry.scale(-(structure.formats.count.fraction as i32))).quantise(&count);
     Position {
@@ -57,7 +58,7 @@ pub fn advance<S: Signal>(
 /// True while the scale runs backwards; keeps its value while the rate is too small to tell.
 pub fn direction<S: Signal>(rate: S, before: S::Bool, k: &Coefficients<S>) -> S::Bool {
     rate.begin(&DIRECTION);
-    let backwards = rate.less_than(-k.direction_rate);
-    let forwards = rate.less_than(k.direction_rate).not();
-    backwards.or(before.and(forwards.not()))
+    let backwards = rate.less_than(-k.direction_rate).named("backwards");
+    let not_forwards = rate.less_than(k.direction_rate).named("not_forwards");
+    backwards.or(before.and(not_forwards))
 }

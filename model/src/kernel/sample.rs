@@ -14,6 +14,12 @@ static FLAGS: Formula = Formula {
     source: "",
 };
 
+static SPEED: Formula = Formula {
+    title: "Speed",
+    equation: "speed = alpha_hat' - alpha_hat (mod 1), without the half turn of a flip",
+    source: "paper section 4.1: the derivative of the position",
+};
+
 /// The registers after the sample and its named internal signals.
 pub fn sample<S: Signal>(
     input: &Input<S>,
@@ -86,7 +92,7 @@ fn advance_of<S: Signal, const PLAIN: bool>(
     // Without a signal the loop coasts at its last rate.
     let e = S::select(weak, k.zero, seen).quantise(&structure.formats.signal);
 
-    let in_window = lock::in_window(e, rho, weak, k);
+    let in_window = lock::in_window(e, rho, weak, k, structure);
     let flip = lock::flip(rho, weak, state, k).named("flip");
     let lock = lock::update(in_window, state, k, structure);
 
@@ -98,7 +104,8 @@ fn advance_of<S: Signal, const PLAIN: bool>(
     let starting = (!PLAIN && structure.calibration.starts()).then(|| start::running(state, k));
     let measure = starting.map(|running| start::measure(e, running, k));
     let travel = travel::travel(counting, measure, state, k, structure);
-    let counted = counting.and(in_window).and(travel.new_sector);
+    let counts = counting.and(in_window).named("sample_counts");
+    let counted = counts.and(travel.new_sector);
     let hold = gears::hold(
         rho,
         counted.named("counted"),
@@ -148,7 +155,7 @@ fn advance_of<S: Signal, const PLAIN: bool>(
         structure.calibration.completed()
     };
     let completed = completion.map(|_| {
-        let open = counting.and(hold.held.not());
+        let open = counting.and(hold.held.not()).named("parameters_free");
         let seen = (updated.w_null, e, rho);
         completion::complete(seen, open, counting, &travel, state, k, structure)
     });
@@ -162,12 +169,12 @@ fn advance_of<S: Signal, const PLAIN: bool>(
         recalled.map(|recall| recall::recall(&mut updated, recall, &gears, state, k, structure));
 
     rate.begin(&FLAGS);
-    let lost = state
-        .lock_lost
-        .and(input.preset.not())
-        .or(state.locked.and(lock.locked.not()));
+    let lost_before = state.lock_lost.and(input.preset.not()).named("lost_before");
+    let lost_now = state.locked.and(lock.locked.not()).named("lock_falls");
+    let lost = lost_before.or(lost_now);
     let one = structure.method == Method::One;
     let speed = if one {
+        rate.begin(&SPEED);
         // Method 1: the derivative of the position estimate.
         let alpha = structure.formats.alpha;
         let difference =

@@ -6,10 +6,21 @@
 use super::{Coefficients, Method, Structure};
 use crate::signal::{Formula, Signal, Wide};
 
-static RECURSION: Formula = Formula {
+static TYPE_2: Formula = Formula {
     title: "Sensitivity of the estimate",
-    equation: "grad' = grad + rate', rate' = p rate + a (e_v - e_v1) + (a + b) e_v1, e_v = w - grad",
+    equation: "grad' = grad + rate', rate' = rate + a (e_v - e_v1) + (a + b) e_v1, e_v = w - grad",
     source: "paper equations (10) and (11), (10) as the difference it is",
+};
+
+static TYPE_1: Formula = Formula {
+    equation: "grad' = grad + rate', rate' = p rate + a (e_v - e_v1) + (a + b) e_v1, e_v = w - grad",
+    ..TYPE_2
+};
+
+static METHOD_2: Formula = Formula {
+    equation: "grad' = grad + rate', rate' = p rate + a e_v, e_v = w - grad",
+    source: "paper equations (10) and (11), (10) as the difference it is, with the filter of section 4.2",
+    ..TYPE_2
 };
 
 /// One scalar of ∇α̂, its increment, and w − ∇α̂.
@@ -32,7 +43,11 @@ pub fn advance<S: Signal>(
     k: &Coefficients<S>,
     structure: &Structure,
 ) -> Sensitivity<S> {
-    w.begin(&RECURSION);
+    w.begin(match (structure.method, structure.filter_type) {
+        (Method::Two, _) => &METHOD_2,
+        (_, 2) => &TYPE_2,
+        _ => &TYPE_1,
+    });
     let formats = &structure.formats;
     let to = &formats.alpha_gradient;
     let error = (w - before.gradient).quantise(&formats.signal).named(name);

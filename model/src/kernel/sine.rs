@@ -55,6 +55,7 @@ pub fn sine<S: Signal>(alpha_hat: S, k: &Coefficients<S>, structure: &Structure)
         ["cos_inside", "cos_value", "cos_slope", "cos_magnitude"],
     );
     let sin_hat = S::select(upper_half, -sin, sin).quantise(&structure.formats.signal);
-    let cos_hat = S::select(upper_half.xor(odd), -cos, cos).quantise(&structure.formats.signal);
+    let cos_negative = upper_half.xor(odd).named("cos_negative");
+    let cos_hat = S::select(cos_negative, -cos, cos).quantise(&structure.formats.signal);
     (sin_hat, cos_hat)
 }

@@ -38,12 +38,25 @@ static POLAR: Formula = Formula {
 
 static SOLVE: Formula = Formula {
     title: "Start by least squares",
-    equation: "delta_1 = 3 m_1 - m_3, delta_3 = 3 m_3 - m_1, delta_2 = 2 m_2, delta_4 = 2 m_4, delta_5 = 8 m_5, \
+    equation: "delta_1 = 3 m_1 - m_3, delta_3 = 3 m_3 - m_1, delta_2 = 2 m_2, delta_4 = 2 m_4, \
                m the mean gradient of a period of travel",
     source: "Newton's step: the inverse of the normal equations of a whole period",
 };
 
+static SOLVE_PHASE: Formula = Formula {
+    equation: "delta_1 = 3 m_1 - m_3, delta_3 = 3 m_3 - m_1, delta_2 = 2 m_2, delta_4 = 2 m_4, delta_5 = 8 m_5, \
+               m the mean gradient of a period of travel",
+    ..SOLVE
+};
+
 static STEP: Formula = Formula {
+    title: "Step of the start",
+    equation: "theta_1 (1 - delta_1), theta_2 (1 - delta_1) - delta_2, theta_3 (1 - delta_3), \
+               theta_4 (1 - delta_3) - delta_4",
+    source: "paper section 5.2",
+};
+
+static STEP_PHASE: Formula = Formula {
     title: "Step of the start",
     equation: "theta_1 (1 - delta_1), theta_2 (1 - delta_1) - delta_2, theta_3 (1 - delta_3), \
                theta_4 (1 - delta_3) - delta_4 and the sine less delta_5 times the new c",
@@ -159,7 +172,8 @@ fn steps<S: Signal>(
     structure: &Structure,
 ) -> [S; 5] {
     let (signal, to) = (&structure.formats.signal, &structure.formats.step);
-    k.zero.begin(&SOLVE);
+    let phase = structure.calibration.has_phase();
+    k.zero.begin(if phase { &SOLVE_PHASE } else { &SOLVE });
     let gain = |own: S, other: S| (own.scale(2) - own - other).quantise(signal);
     let (delta_1, delta_3) = (
         gain(m_1, m_3).named("delta_1"),
@@ -168,7 +182,7 @@ fn steps<S: Signal>(
     let (delta_2, delta_4) = (m_2.scale(1), m_4.scale(1));
     let delta_5 = m_5.scale(3).quantise(signal).named("delta_5");
 
-    k.zero.begin(&STEP);
+    k.zero.begin(if phase { &STEP_PHASE } else { &STEP });
     let [theta_1, theta_2, theta_3, theta_4, theta_5] = theta;
     let short = |offset: S, name: &'static str| offset.quantise(signal).named(name);
     let (offset_c, offset_s) = (short(theta_2, "offset_c"), short(theta_4, "offset_s"));

@@ -89,30 +89,40 @@ pub fn travel<S: Signal>(
         .quantise(&Quantiser::wrapping(SECTOR))
         .named("sector_relative");
     let period = measure.map_or(k.one, |of| of.period);
-    let period_ahead = relative.less_than(period).not();
-    let period_behind = (-period).less_than(relative).not();
-    let whole_period = period_ahead.or(period_behind).and(counting);
+    let period_ahead = relative.less_than(period).not().named("period_ahead");
+    let period_behind = (-period).less_than(relative).not().named("period_behind");
+    let a_period_away = period_ahead.or(period_behind).named("a_period_away");
+    let whole_period = a_period_away.and(counting);
     let near_ahead = relative.less_than(k.quarter).and(state.ahead_used);
     let near_behind = relative.less_than(-k.quarter).not().and(state.behind_used);
+    let reach_ahead = (state.travel_low + k.one).named("reach_ahead");
+    let reach_behind = (state.travel_high - k.one).named("reach_behind");
     let ahead = state
         .travel_high
         .less_than(relative)
-        .and(relative.less_than(state.travel_low + k.one))
-        .and(near_ahead.not())
+        .and(relative.less_than(reach_ahead))
+        .named("unseen_ahead")
+        .and(near_ahead.not().named("may_add_ahead"))
         .named("sector_ahead");
     let behind = relative
         .less_than(state.travel_low)
-        .and((state.travel_high - k.one).less_than(relative))
-        .and(near_behind.not())
+        .and(reach_behind.less_than(relative))
+        .named("unseen_behind")
+        .and(near_behind.not().named("may_add_behind"))
         .named("sector_behind");
     let clear = whole_period.or(counting.not()).named("travel_clear");
     // A side was used where a period on it ends, until a sector there is used or another period ends.
-    let used = |ends: S::Bool, before: S::Bool, again: S::Bool| {
-        counting.and(ends.or(before.and(whole_period.or(again).not())))
+    let used = |ends: S::Bool, before: S::Bool, again: S::Bool, name: [&'static str; 2]| {
+        let still = before.and(whole_period.or(again).not()).named(name[0]);
+        counting.and(ends.or(still).named(name[1]))
     };
     let keep = |x: S| x.quantise(&Quantiser::wrapping(SECTOR));
     Travel {
-        new_sector: ahead.or(behind).or(clear),
+        new_sector: ahead
+            .or(behind)
+            .named("sector_added")
+            .or(clear)
+            .named("new_sector"),
         whole_period,
         clear,
         advance: S::select(
@@ -135,7 +145,17 @@ pub fn travel<S: Signal>(
             k.zero,
             S::select(ahead, relative, state.travel_high),
         )),
-        ahead_used: used(period_behind, state.ahead_used, ahead),
-        behind_used: used(period_ahead, state.behind_used, behind),
+        ahead_used: used(
+            period_behind,
+            state.ahead_used,
+            ahead,
+            ["still_used_ahead", "used_up_ahead"],
+        ),
+        behind_used: used(
+            period_ahead,
+            state.behind_used,
+            behind,
+            ["still_used_behind", "used_up_behind"],
+        ),
     }
 }

@@ -152,7 +152,7 @@ fn share() -> f64 {
 /// `[chip]`
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Chip {
-    /// How many multipliers: 1, 2, … or "all".
+    /// How many multipliers at most: 1, 2, … or "all". The chip has those that its schedule uses.
     #[serde(default)]
     pub multipliers: Multipliers,
     /// Clock, hertz. Default: the slowest that serves the sample rate.
@@ -177,16 +177,16 @@ impl Default for Chip {
     }
 }
 
-/// How many multipliers the chip may use.
+/// How many multipliers the chip may use; those that never have a product are not written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(
     untagged,
     expecting = "multipliers are a whole number from 1, or \"all\""
 )]
 pub enum Multipliers {
-    /// So many.
+    /// So many at most.
     Count(u32),
-    /// One for each product.
+    /// As many as are of use: the fewest with which a sample takes no more clocks than with one for each product.
     All(All),
 }
 
@@ -194,7 +194,7 @@ pub enum Multipliers {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum All {
-    /// One multiplier for each product.
+    /// As many multipliers as are of use.
     All,
 }
 
@@ -205,7 +205,7 @@ impl Default for Multipliers {
 }
 
 impl Multipliers {
-    /// The number, given how many products a sample has.
+    /// Largest number, given how many products a sample has.
     #[must_use]
     pub fn count(self, products: usize) -> usize {
         match self {

@@ -1,0 +1,55 @@
+//! What the head of a chip says it is: no more than it has.
+
+use nonius_model::spec::{CalibrationMethod, Spec};
+
+use crate::units::wrap;
+
+/// The kind of chip.
+pub(crate) fn kind(spec: &Spec) -> &'static str {
+    if spec.calibration.is_on() {
+        "sin/cos interpolation chip that calibrates itself"
+    } else {
+        "sin/cos interpolation chip"
+    }
+}
+
+/// How it works, in lines.
+pub(crate) fn purpose(spec: &Spec) -> Vec<String> {
+    const LOOP: &str = "A digital loop follows the angle alpha of a sin/cos sensor: the corrected pair is turned back \
+                        by the estimate alpha_hat, what is left is the phase error e, and the loop filter turns e into \
+                        the next step of the estimate.";
+    let c = &spec.calibration;
+    let search = match c.method {
+        _ if !c.is_on() => {
+            "Nothing is calibrated: the gains are nominal. The radial residual rho tells the lock detector whether the \
+             estimate is that of the signal."
+                .to_owned()
+        }
+        CalibrationMethod::Final => {
+            "The radial residual rho shows what the correction still misses and moves its parameters".to_owned()
+        }
+        CalibrationMethod::Exact => "The radial residual rho and the phase error e show what the correction still \
+                                     misses and move its parameters"
+            .to_owned(),
+        CalibrationMethod::SumOfSquares | CalibrationMethod::Batch => {
+            "The squared radius of the pair shows what the correction still misses and moves its parameters".to_owned()
+        }
+    };
+    let parameters = match c.parameters {
+        0 => "",
+        4 => " theta_1 to theta_4.",
+        5 => " theta_1 to theta_5.",
+        8 => " theta_1 to theta_4 and theta_6 to theta_9.",
+        _ => " theta_1 to theta_9.",
+    };
+    wrap("", &format!("{LOOP} {search}{parameters}"), 116)
+}
+
+/// What the input `calibrate` does.
+pub(crate) fn calibrate(spec: &Spec) -> &'static str {
+    if spec.calibration.is_on() {
+        "this sample may move the parameters"
+    } else {
+        "does nothing: this chip has no calibration"
+    }
+}
