@@ -5,6 +5,7 @@ use nonius_model::design::Design;
 use nonius_model::spec::Spec;
 
 pub(crate) mod variants;
+pub(crate) mod words;
 
 /// All of them.
 pub(crate) const NAMES: [&str; 3] = ["optical", "magnetic", "interferometer"];
