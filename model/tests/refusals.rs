@@ -84,6 +84,79 @@ fn a_value_of_the_wrong_kind_is_told_without_words_of_rust() {
     }
 }
 
+/// Whatever it was to be: the place, the value and what may be written.
+#[test]
+fn a_number_that_is_too_large_to_be_read_is_told_with_its_limit() {
+    let many = "9".repeat(60);
+    let count = format!("bits = {many}");
+    let real = format!("full_scale = {many} ");
+    for (was, is, expected) in [
+        (
+            "bits = 12",
+            "bits = 5_000_000_000",
+            "d.toml:15:8: bits = 5_000_000_000: out of range (limit: 0 … 4294967295)",
+        ),
+        (
+            "bits = 12",
+            "bits = -99999999999999999999",
+            "d.toml:15:8: bits = -99999999999999999999: out of range (limit: 0 … 4294967295)",
+        ),
+        (
+            "bits = 12",
+            "bits = 0xfffffffffffffffffff",
+            "d.toml:15:8: bits = 0xfffffffffffffffffff: out of range (limit: 0 … 4294967295)",
+        ),
+        (
+            "bits = 12",
+            &count,
+            "d.toml:15:8: bits = 9999999999999999999999999999999999999999…: out of range (limit: 4294967295 where it is a \
+             whole number; others are written with a point or an exponent)",
+        ),
+        (
+            "name = \"optical\"",
+            "formats = { phase_bits = 30, gain_range_log2 = 99999999999999999999 }\nname = \"optical\"",
+            "d.toml:2:48: gain_range_log2 = 99999999999999999999: out of range (limit: -2147483648 … 2147483647)",
+        ),
+        (
+            "multipliers = 1",
+            "multipliers = 99999999999999999999",
+            "d.toml:32:15: multipliers = 99999999999999999999: out of range (limit: 1 … 4294967295, or \"all\")",
+        ),
+        (
+            "multipliers = 1",
+            "multipliers = 4294967296",
+            "d.toml:32:15: multipliers = 4294967296: out of range (limit: 1 … 4294967295, or \"all\")",
+        ),
+        (
+            "full_scale = 1.0 ",
+            "full_scale = 99999999999999999999 ",
+            "d.toml:16:14: full_scale = 99999999999999999999: so many digits are written with a point or an exponent \
+             (limit without: 9223372036854775807)",
+        ),
+        (
+            "full_scale = 1.0 ",
+            &real,
+            "d.toml:16:14: full_scale = 9999999999999999999999999999999999999999…: out of range (limit: 4294967295 where it \
+             is a whole number; others are written with a point or an exponent)",
+        ),
+        (
+            "full_scale = 1.0 ",
+            "full_scale = 1e400 ",
+            "d.toml:16:14: full_scale = 1e400: out of range (limit: -1.797e308 … 1.797e308)",
+        ),
+        (
+            "parameters = 5",
+            "recall = 99999999999999999999",
+            "d.toml:25:10: recall: invalid type: `99999999999999999999`, expected a boolean",
+        ),
+    ] {
+        let message = Spec::from_toml(&text().replacen(was, is, 1), "d.toml")
+            .expect_err("no such number")
+            .to_string();
+        assert_eq!(message.lines().next(), Some(expected));
+    }
+}
+
 #[test]
 fn numbers_in_messages_are_short() {
     let mut spec = optical();

@@ -1,6 +1,7 @@
 //! `design.toml`: what the user asks for, in physical units.
 
 mod correction;
+mod large;
 mod overrides;
 mod place;
 mod read;
