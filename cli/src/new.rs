@@ -51,9 +51,7 @@ pub(crate) fn run(args: &New) -> Result<()> {
         Some(file) => {
             let recording = Recording::read(file, &args.recording_args.overrides())?;
             let survey = Survey::of(&recording);
-            for note in recording.notes.iter().chain(&survey.notes) {
-                eprintln!("note: {note}");
-            }
+            crate::notes(recording.notes.iter().chain(&survey.notes));
             fitted(&args.name, file, &recording, &survey)?
         }
     };
