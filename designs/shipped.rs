@@ -5,15 +5,20 @@ use nonius_model::design::Design;
 use nonius_model::spec::Spec;
 
 pub(crate) mod variants;
+pub(crate) mod words;
 
 /// All of them.
 pub(crate) const NAMES: [&str; 3] = ["optical", "magnetic", "interferometer"];
 
-/// What a shipped design asks for.
-pub(crate) fn spec(name: &str) -> Spec {
+/// The text of a shipped design.
+pub(crate) fn text(name: &str) -> String {
     let path = format!("{}/../designs/{name}.toml", env!("CARGO_MANIFEST_DIR"));
-    let text = std::fs::read_to_string(path).expect("a shipped design");
-    Spec::from_toml(&text, name).expect("a shipped design")
+    std::fs::read_to_string(path).expect("a shipped design")
+}
+
+/// What it asks for.
+pub(crate) fn spec(name: &str) -> Spec {
+    Spec::from_toml(&text(name), name).expect("a shipped design")
 }
 
 /// The optical one, which most tests alter.

@@ -7,6 +7,7 @@ use nonius_model::spec::{
     All, CalibrationMethod, CalibrationStart, Coding, Harmonic, Multipliers, Spec,
 };
 
+use super::words::key;
 use super::{NAMES, optical, spec};
 use CalibrationMethod::{Batch, Exact, Final, SumOfSquares};
 use CalibrationStart::{Gears, LeastSquares};
@@ -110,6 +111,13 @@ pub(crate) fn kinds() -> Vec<Variant> {
     kinds
 }
 
+/// These, a loop of type 1, and chips with known corrections: every word of `[formats]` is in one of them.
+pub(crate) fn with_every_word() -> Vec<Variant> {
+    let more = [poles(), skewed(), harmonics()];
+    let firsts = more.into_iter().flat_map(|list| list.into_iter().take(1));
+    kinds().into_iter().chain(firsts).collect()
+}
+
 /// The searches that only a design without completion has, which is rarely wanted.
 pub(crate) fn radius_alone() -> Vec<Variant> {
     let searches = searches().into_iter();
@@ -194,9 +202,8 @@ pub(crate) fn words() -> Vec<Variant> {
             spec.correction.harmonics = third_and_fifth();
         });
         for word in variant.design().word_lengths() {
-            let key = word.key.trim_start_matches("formats.").to_owned();
             for value in [word.value + by, word.value] {
-                let said = variant.spec.formats.set(&key, Some(value));
+                let said = variant.spec.formats.set(key(&word), Some(value));
                 if said && Design::new(&variant.spec).is_ok() {
                     break;
                 }

@@ -149,9 +149,7 @@ pub(crate) fn run(args: &Calibrate) -> Result<()> {
         );
     }
     let recording = Recording::read(&args.recording, &args.recording_args.overrides())?;
-    for note in &recording.notes {
-        eprintln!("note: {note}");
-    }
+    crate::notes(&recording.notes);
     let options = Options {
         noise_ratio: args.noise_ratio,
     };
@@ -163,9 +161,7 @@ pub(crate) fn run(args: &Calibrate) -> Result<()> {
         Err(why) => bail!("{}: {why}", args.recording.display()),
     };
     if args.json {
-        for remark in &found.remarks {
-            eprintln!("note: {remark}");
-        }
+        crate::notes(&found.remarks);
         say!("{}", serde_json::to_string_pretty(&Json::of(&found))?);
     } else {
         let adc = recording.metadata.adc;

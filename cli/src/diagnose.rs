@@ -58,9 +58,7 @@ pub(crate) fn run(args: &Diagnose) -> Result<bool> {
     let design = given.map(crate::design_file::read).transpose()?;
     let found = diagnose(&recording)
         .map_err(|error| anyhow::anyhow!("{}: {error}", args.recording.display()))?;
-    for note in &found.notes {
-        eprintln!("note: {note}");
-    }
+    crate::notes(&found.notes);
     let hash = hash(&args.recording)?;
     let json = serde_json::to_string_pretty(&Findings {
         schema: "nonius.findings/1",
@@ -100,9 +98,7 @@ pub(crate) fn run(args: &Diagnose) -> Result<bool> {
     };
     if let Some(text) = design {
         let (text, notes) = crate::corrections::switch_on(&text, &found)?;
-        for note in notes {
-            eprintln!("note: {note}");
-        }
+        crate::notes(notes);
         files.push(("design.toml".into(), text.into_bytes()));
     }
     nonius_package::write(&files, &args.output)?;

@@ -30,6 +30,7 @@ mod target;
 mod verify;
 
 use std::ffi::OsString;
+use std::fmt::Display;
 
 use clap::{Parser, Subcommand};
 
@@ -55,6 +56,13 @@ enum Command {
     Diagnose(Box<diagnose::Diagnose>),
     /// Runs the chip in a folder in Icarus and in Verilator against the model.
     Verify(verify::Verify),
+}
+
+/// Sentences that a result is to be read with, on standard error.
+fn notes(sentences: impl IntoIterator<Item = impl Display>) {
+    for sentence in sentences {
+        eprintln!("note: {sentence}");
+    }
 }
 
 /// Runs a command line, the program's name first; its exit code: 0 done and everything held, 1 done and something did

@@ -52,9 +52,7 @@ fn simulated(path: &Path) -> Result<Recording> {
 /// # Errors
 /// A recording to be repeated does not begin where it ends.
 pub(crate) fn check(spec: &Spec, recording: &Recording, path: &Path, repeat: u32) -> Result<()> {
-    for note in &recording.notes {
-        eprintln!("note: {note}");
-    }
+    crate::notes(&recording.notes);
     if repeat > 1 {
         joins(recording, path)?;
     }

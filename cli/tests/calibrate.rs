@@ -1,78 +1,17 @@
-//! `nonius calibrate` through the binary: contract, exit codes, and words where the data cannot tell.
+//! `nonius calibrate` through the binary: what it finds, exit codes, and words where the data cannot tell.
 
 mod support;
 
-use std::fmt::Write;
-use std::fs;
+use std::fmt::Write as _;
 use std::path::Path;
-use std::process::Output;
 
-use rand::SeedableRng;
-use rand::rngs::StdRng;
-use rand_distr::{Distribution, StandardNormal};
 use serde_json::Value;
-
-const METHODS: [&str; 7] = [
-    "unbiased",
-    "heydemann",
-    "extremes",
-    "sumsq4",
-    "sumsq5",
-    "poly8",
-    "poly9",
-];
-
-/// Numbers of unit variance, the same in every run.
-fn noise() -> impl FnMut() -> f64 {
-    let mut random = StdRng::seed_from_u64(1);
-    move || StandardNormal.sample(&mut random)
-}
-
-/// What the recordings below are made with.
-const TRUTH: [(&str, f64); 5] = [
-    ("a_c", 0.75),
-    ("b_c", 0.04),
-    ("a_s", 0.85),
-    ("b_s", -0.03),
-    ("beta", 0.03),
-];
-
-/// A recording of [`TRUTH`] over `periods`, with noise of cosine and sine.
-fn recording(samples: u32, periods: f64, sigma: [f64; 2]) -> String {
-    let mut noise = noise();
-    let mut text = String::from("# sample_rate_hz: 10000\ncos,sin\n");
-    for k in 0..samples {
-        let alpha = 0.4 + std::f64::consts::TAU * periods * f64::from(k) / f64::from(samples);
-        let c = 0.75 * alpha.cos() + 0.04 + sigma[0] * noise();
-        let s = 0.85 * (alpha - 0.03).sin() - 0.03 + sigma[1] * noise();
-        writeln!(text, "{c:.7},{s:.7}").expect("text");
-    }
-    text
-}
-
-fn nonius(dir: &Path, arguments: &[&str]) -> Output {
-    support::nonius(dir, &[&["calibrate"], arguments].concat())
-}
-
-fn json(text: &str, arguments: &[&str]) -> Value {
-    let dir = tempfile::tempdir().expect("scratch");
-    fs::write(dir.path().join("r.csv"), text).expect("recording");
-    let output = nonius(dir.path(), &[&["r.csv", "--json"], arguments].concat());
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{arguments:?}: {said}");
-    serde_json::from_slice(&output.stdout).expect("JSON and nothing else")
-}
+use support::calibration::{METHODS, TRUTH, calibrate, json, noise, recording, sentences};
 
 fn refused(text: &str, arguments: &[&str], words: &[&str]) {
-    let dir = tempfile::tempdir().expect("scratch");
-    fs::write(dir.path().join("r.csv"), text).expect("recording");
-    let output = nonius(dir.path(), &[&["r.csv"], arguments].concat());
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(2), "{said}");
+    let output = calibrate(text, arguments);
+    support::refused(&output, words);
     assert!(output.stdout.is_empty());
-    for word in words {
-        assert!(said.contains(word), "{said}");
-    }
 }
 
 fn parameter<'a>(json: &'a Value, name: &str) -> &'a Value {
@@ -80,146 +19,6 @@ fn parameter<'a>(json: &'a Value, name: &str) -> &'a Value {
     all.iter()
         .find(|p| p["name"] == name)
         .expect("the parameter")
-}
-
-fn sentences(json: &Value) -> Vec<&str> {
-    let all = json["cannot_tell"].as_array().expect("sentences");
-    all.iter()
-        .map(|s| s.as_str().expect("a sentence"))
-        .collect()
-}
-
-#[test]
-fn the_json_is_the_contract() {
-    let text = recording(4000, 7.3, [0.002; 2]);
-    for method in METHODS {
-        let json = json(&text, &["--method", method]);
-        let mut keys: Vec<&String> = json.as_object().expect("an object").keys().collect();
-        keys.sort();
-        let expected = [
-            "bound",
-            "cannot_tell",
-            "correlations",
-            "method",
-            "noise",
-            "parameters",
-            "residual_rms",
-            "samples",
-            "schema",
-        ];
-        assert_eq!(keys, expected);
-        assert_eq!(json["schema"], "nonius.calibration/1");
-        assert_eq!(json["method"], method);
-        assert_eq!(json["samples"], 4000);
-        assert!(
-            json["residual_rms"]
-                .as_f64()
-                .is_some_and(|r| r > 0.002 && r < 0.05)
-        );
-        let all = json["parameters"].as_array().expect("parameters");
-        let names: Vec<&str> = all.iter().filter_map(|p| p["name"].as_str()).collect();
-        let thetas = match method {
-            "sumsq4" => 4,
-            "poly8" => 8,
-            "poly9" => 9,
-            _ => 5,
-        };
-        let theta = (1..=thetas).map(|i| format!("theta_{i}"));
-        let expected: Vec<String> = ["a_c", "b_c", "a_s", "b_s", "beta"]
-            .map(String::from)
-            .into_iter()
-            .chain(theta)
-            .collect();
-        assert_eq!(names, expected);
-        for p in all {
-            let mut keys: Vec<&String> = p.as_object().expect("an object").keys().collect();
-            keys.sort();
-            assert_eq!(keys, ["bound", "name", "std_error", "unit", "value"]);
-            let name = p["name"].as_str().expect("a name");
-            let held = ["extremes", "sumsq4", "poly8"].contains(&method) && name == "beta"
-                || method == "extremes" && name == "theta_5";
-            assert_eq!(p["std_error"].is_null(), held, "{method} {p}");
-            let unit = p["unit"].as_str().expect("a unit");
-            assert_eq!(unit == "rad", name == "beta");
-            assert_eq!(unit == "column", name.len() == 3, "{p}");
-        }
-        let held = sentences(&json).iter().any(|s| s.starts_with("beta: "));
-        assert_eq!(held, ["extremes", "sumsq4", "poly8"].contains(&method));
-        let blind = sentences(&json)
-            .iter()
-            .any(|s| s.contains("changes no radius"));
-        assert_eq!(blind, method.starts_with("poly"));
-    }
-}
-
-/// Beside the parameters: how they hang together, the noise, and what no estimator can beat.
-#[test]
-fn the_json_has_correlations_noise_and_bound() {
-    let text = recording(4000, 7.3, [0.002, 0.003]);
-    for method in METHODS {
-        let json = json(&text, &["--method", method]);
-        let near = |value: &Value, truth: f64| {
-            let value = value.as_f64().expect("a number");
-            assert!(
-                (value / truth - 1.0).abs() < 0.15,
-                "{method}: {value} {truth}"
-            );
-        };
-        near(&json["noise"]["cos_rms"], 0.002);
-        near(&json["noise"]["sin_rms"], 0.003);
-        near(&json["noise"]["ratio"], 1.5);
-        assert!(
-            json["noise"]["ratio_std_error"]
-                .as_f64()
-                .is_some_and(|e| e < 0.1)
-        );
-        // σ/a, rms over the angle.
-        near(&json["bound"]["by_noise_of_a_sample_rad"], 0.0031);
-        assert!(
-            json["bound"]["by_parameters_rad"]
-                .as_f64()
-                .is_some_and(|e| e > 1e-5 && e < 1e-3)
-        );
-        let all = json["parameters"].as_array().expect("parameters");
-        for p in all {
-            let error = p["std_error"].as_f64();
-            // Of five parameters.
-            assert_eq!(
-                p["bound"].is_null(),
-                p["name"].as_str().is_some_and(|n| {
-                    n.starts_with("theta") && ["sumsq4", "poly8", "poly9"].contains(&method)
-                })
-            );
-            if let (Some(error), Some(bound), "unbiased") = (error, p["bound"].as_f64(), method) {
-                assert!((0.9..1.5).contains(&(error / bound)), "{p}");
-            }
-        }
-        let blocks = json["correlations"].as_array().expect("two of them");
-        let mut names = vec![];
-        for block in blocks {
-            let own: Vec<&str> = block["names"]
-                .as_array()
-                .expect("names")
-                .iter()
-                .filter_map(Value::as_str)
-                .collect();
-            let at = |i: usize, j: usize| &block["matrix"][i][j];
-            for i in 0..own.len() {
-                let held = all
-                    .iter()
-                    .any(|p| p["name"] == own[i] && p["std_error"].is_null());
-                assert_eq!(at(i, i).is_null(), held, "{method} {}", own[i]);
-                for j in 0..own.len() {
-                    assert_eq!(at(i, j), at(j, i));
-                    let size = at(i, j).as_f64().map_or(0.0, f64::abs);
-                    assert!(size < 1.0 + 1e-9 && (i != j || held || size == 1.0));
-                }
-            }
-            names.extend(own);
-        }
-        let listed: Vec<&str> = all.iter().filter_map(|p| p["name"].as_str()).collect();
-        assert_eq!(names, listed, "{method}");
-    }
 }
 
 /// What the arc cannot tell has no error bar by any method but the one that says how large it is.
@@ -292,9 +91,7 @@ fn an_ellipse_without_noise_is_found_by_all_that_can() {
 
 #[test]
 fn the_text_gives_parameters_with_their_errors() {
-    let dir = tempfile::tempdir().expect("scratch");
-    fs::write(dir.path().join("r.csv"), recording(4000, 7.3, [0.002; 2])).expect("recording");
-    let output = nonius(dir.path(), &["r.csv"]);
+    let output = calibrate(&recording(4000, 7.3, [0.002; 2]), &[]);
     let said = String::from_utf8_lossy(&output.stdout).into_owned();
     for word in ["[[Statistics]]", "[[Parameters]]", "a_c", "+/-", "bound"] {
         assert!(said.contains(word), "{said}");
@@ -305,9 +102,7 @@ fn the_text_gives_parameters_with_their_errors() {
 fn a_noise_ratio_is_estimated_or_given() {
     let text = recording(4000, 7.3, [0.03, 0.051]);
     let ratio = |arguments: &[&str]| -> String {
-        let dir = tempfile::tempdir().expect("scratch");
-        fs::write(dir.path().join("r.csv"), &text).expect("recording");
-        let output = nonius(dir.path(), &[&["r.csv"], arguments].concat());
+        let output = calibrate(&text, arguments);
         let said = String::from_utf8(output.stdout).expect("text");
         let line = said
             .lines()
@@ -353,14 +148,7 @@ fn a_short_arc_says_which_parameters_it_does_not_tell() {
         all[0].contains("less well known than from whole periods: b_s"),
         "{all:?}"
     );
-    let truth = [
-        ("a_c", 0.75),
-        ("b_c", 0.04),
-        ("a_s", 0.85),
-        ("b_s", -0.03),
-        ("beta", 0.03),
-    ];
-    for (name, truth) in truth {
+    for (name, truth) in TRUTH {
         let p = parameter(&json, name);
         let error = p["std_error"].as_f64().expect("an error");
         assert!(
@@ -441,9 +229,7 @@ fn distortion_drift_and_glitches_are_said() {
         said(&drifting)
     );
     assert_eq!(said(&glitched), "");
-    let dir = tempfile::tempdir().expect("scratch");
-    fs::write(dir.path().join("r.csv"), glitched).expect("recording");
-    let output = nonius(dir.path(), &["r.csv"]);
+    let output = calibrate(&glitched, &[]);
     let text = String::from_utf8_lossy(&output.stdout);
     assert!(
         text.contains("samples          = 6000, 3 of them left out"),
@@ -470,9 +256,8 @@ fn what_is_wrong_is_refused_with_place_and_way_out() {
         .collect();
     refused(&dead, &[], &["dead"]);
     let dir = tempfile::tempdir().expect("scratch");
-    let output = nonius(dir.path(), &["nowhere.csv"]);
-    assert_eq!(output.status.code(), Some(2));
-    assert!(String::from_utf8_lossy(&output.stderr).contains("nowhere.csv"));
+    let nowhere = support::nonius(dir.path(), &["calibrate", "nowhere.csv"]);
+    support::refused(&nowhere, &["nowhere.csv"]);
 }
 
 /// Sixteen encoders in one file: time starts again, and the file is refused whole with the place.
@@ -482,11 +267,6 @@ fn several_records_in_one_file_are_refused() {
     let Some(file) = nonius_kept::recording(check, "optical_servo_tables.csv") else {
         return;
     };
-    let output = nonius(Path::new("."), &[&file.display().to_string()]);
-    assert_eq!(output.status.code(), Some(2));
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert!(
-        said.contains("optical_servo_tables.csv:514") && said.contains("unit"),
-        "{said}"
-    );
+    let output = support::nonius(Path::new("."), &["calibrate", &file.display().to_string()]);
+    support::refused(&output, &["optical_servo_tables.csv:514", "unit"]);
 }

@@ -78,3 +78,40 @@ fn a_line_is_written_once_and_numbers_end_with_their_last_digit() {
         .expect("a number");
     assert!((measured / (1e6 / 61.3) - 1.0).abs() < 1e-2, "{note}");
 }
+
+/// A sine far off its middle, further than any chip is promised to hold: file and terminal say the same of it, and nothing of the
+/// promises that hold.
+#[test]
+fn a_promise_that_does_not_hold_is_told_in_the_file_and_on_the_terminal() {
+    let far: String = recording(8000, 61.3)
+        .replace(
+            "adc_bits: 12\n# full_scale: 1\n",
+            "adc_bits: 14\n# full_scale: 8\n",
+        )
+        .lines()
+        .map(|row| match row.rsplit_once(',') {
+            Some((rest, sin)) if !sin.starts_with('s') => {
+                let sin: f64 = sin.parse().expect("a number");
+                format!("{rest},{}\n", sin + 3.0)
+            }
+            _ => format!("{row}\n"),
+        })
+        .collect();
+    let dir = tempfile::tempdir().expect("scratch");
+    fs::write(dir.path().join("r.csv"), far).expect("a recording");
+    let said = done(dir.path(), &["new", "it", "--from", "r.csv"]);
+    let text = fs::read_to_string(dir.path().join("it.toml")).expect("it.toml");
+    let (most, note) = line(&text, "offset_max");
+    assert_eq!(most, 0.6, "{note}");
+    let why = note.strip_prefix("NOT ENOUGH: ").expect("it is not enough");
+    assert!(
+        why.starts_with("measured 1.8") && why.ends_with("more than 0.6: adjust the sensor"),
+        "{why}"
+    );
+    let told: Vec<&str> = said
+        .lines()
+        .filter(|l| l.contains("does not hold what"))
+        .collect();
+    let expected = format!("note: sensor.offset_max does not hold what the recording shows: {why}");
+    assert_eq!(told, [expected]);
+}

@@ -9,6 +9,17 @@ use support::{design, nonius, recording, refused};
 /// A line of the shipped design.
 const LENGTH: &str = "scale_period_m = 20e-6";
 
+/// A row of a table.
+fn numbers(row: &str) -> Vec<f64> {
+    let cells = row.split(',');
+    cells.map(|cell| cell.parse().expect("a number")).collect()
+}
+
+/// The last row of a table.
+fn last_row(csv: &str) -> Vec<f64> {
+    numbers(csv.lines().last().expect("rows"))
+}
+
 #[test]
 fn simulate_writes_the_contract() {
     let dir = tempfile::tempdir().expect("scratch");
@@ -23,7 +34,6 @@ fn simulate_writes_the_contract() {
         let said = String::from_utf8_lossy(&output.stderr);
         assert!(output.status.success(), "{said}");
         let csv = fs::read_to_string(dir.path().join("out.csv")).expect("out.csv");
-        let numbers = |l: &str| l.split(',').map(|c| c.parse().expect("a number")).collect();
         let rows: Vec<Vec<f64>> = csv.lines().skip(1).map(numbers).collect();
         assert_eq!(
             csv.lines().next(),
@@ -91,13 +101,7 @@ fn positions_have_the_units_that_the_design_knows() {
         header.ends_with("theta_5,position_m,position_rad"),
         "{header}"
     );
-    let last: Vec<f64> = csv
-        .lines()
-        .last()
-        .expect("rows")
-        .split(',')
-        .map(|cell| cell.parse().expect("a number"))
-        .collect();
+    let last = last_row(&csv);
     assert_eq!(last[9], last[1] * 20e-6);
     assert_eq!(last[10], last[1] * (std::f64::consts::TAU / 2500.0));
     let arguments = [
@@ -178,13 +182,7 @@ fn the_start_by_least_squares_is_that_of_chip_and_paper() {
                 .success()
         );
         let csv = fs::read_to_string(dir.path().join("o.csv")).expect("o.csv");
-        let row: Vec<f64> = csv
-            .lines()
-            .last()
-            .expect("rows")
-            .split(',')
-            .map(|cell| cell.parse().expect("a number"))
-            .collect();
+        let row = last_row(&csv);
         let misses = row[4..9]
             .iter()
             .zip(truth)

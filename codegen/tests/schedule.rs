@@ -9,7 +9,8 @@ use nonius_model::design::Design;
 use nonius_model::graph::{Evaluation, Graph};
 use nonius_model::spec::Overrides;
 use rand::{Rng, SeedableRng, rngs::StdRng};
-use shipped::variants::{self, kinds};
+use shipped::variants::{kinds, with_every_word};
+use shipped::words::{key, say};
 
 #[test]
 fn scheduled_graph_equals_recorded_graph() {
@@ -84,14 +85,10 @@ fn all_multipliers_are_those_that_are_of_use() {
 #[test]
 fn chips_of_other_words_are_scheduled_and_written() {
     let mut random = StdRng::seed_from_u64(8);
-    let mut chips = kinds();
-    chips.extend(variants::poles().into_iter().take(1));
-    chips.extend(variants::skewed().into_iter().take(1));
-    chips.extend(variants::harmonics().into_iter().take(1));
     let mut done = std::collections::BTreeSet::new();
-    for chip in chips {
+    for chip in with_every_word() {
         for word in chip.design().word_lengths() {
-            let key = word.key.strip_prefix("formats.").expect("of [formats]");
+            let key = key(&word);
             // Each word in one chip that has it.
             if !done.insert(key.to_owned()) {
                 continue;
@@ -99,7 +96,7 @@ fn chips_of_other_words_are_scheduled_and_written() {
             let mut built = 0;
             for value in [word.lowest, word.highest] {
                 let mut spec = chip.spec.clone();
-                assert!(spec.formats.set(key, Some(value)));
+                say(&mut spec, key, value);
                 let Ok(design) = Design::new(&spec) else {
                     continue;
                 };

@@ -8,7 +8,10 @@ use std::f64::consts::TAU;
 use std::fmt::Write;
 use std::path::Path;
 
-use chip_support::shipped::variants::{harmonics, third_and_fifth};
+use chip_support::shipped::{
+    self,
+    variants::{harmonics, third_and_fifth},
+};
 use chip_support::{Bench, optical, rms};
 use nonius_model::bits::Bits;
 use nonius_model::chip::Chip;
@@ -262,11 +265,7 @@ fn what_is_built_follows_from_the_promise() {
     };
     // Two to read the table; tan β is three, and two to use it.
     assert_eq!([0, 4, 5, 8, 9].map(more), [2, 2, 7, 2, 4]);
-    let text = std::fs::read_to_string(concat!(
-        env!("CARGO_MANIFEST_DIR"),
-        "/../designs/optical.toml"
-    ))
-    .expect("designs/optical.toml");
+    let text = shipped::text("optical");
     let read = |text: &str| {
         let spec = Spec::from_toml(text, "optical.toml").expect("a design");
         Design::new(&spec).expect("a design")

@@ -5,12 +5,11 @@ mod support;
 use nonius_model::design::{Design, DesignError, ORDER_MAX};
 use nonius_model::spec::{Harmonic, Place, Spec};
 use proptest::prelude::*;
-use support::optical;
 use support::shipped::variants::third_and_fifth;
+use support::{optical, shipped};
 
 fn text() -> String {
-    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../designs/optical.toml");
-    std::fs::read_to_string(file).expect("designs/optical.toml")
+    shipped::text("optical")
 }
 
 const ENTRY: &str = "[[correction.harmonics]]\norder = 3\namplitude_cos = 0.01\nphase_cos = 0.5\namplitude_sin = 0.02\nphase_sin = -1.0\n";

@@ -1,4 +1,4 @@
-//! Designs that cannot work are refused with the field and the way out; no text makes the reader panic.
+//! Designs that cannot work are refused with the field and the way out.
 
 mod support;
 
@@ -8,81 +8,6 @@ use nonius_model::spec::{
 };
 use proptest::prelude::*;
 use support::{Encoder, optical, shipped, wrapped};
-
-fn text() -> String {
-    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../designs/optical.toml");
-    std::fs::read_to_string(file).expect("designs/optical.toml")
-}
-
-#[test]
-fn an_unknown_key_is_named_with_its_line_and_the_nearest_known_one() {
-    let wrong = text().replace("bandwidth_hz", "bandwith_hz");
-    let message = Spec::from_toml(&wrong, "d.toml")
-        .expect_err("a misspelt key")
-        .to_string();
-    assert!(
-        message.starts_with("d.toml:22:1: unknown key `loop.bandwith_hz`"),
-        "{message}"
-    );
-    assert!(
-        message.contains("did you mean `bandwidth_hz`?"),
-        "{message}"
-    );
-}
-
-/// Wherever it stands: indented, dotted, in a table on one line, in a list; and nowhere.
-#[test]
-fn a_field_is_found_where_it_is_given() {
-    let text = "loop.type = 2\nadc = { bits = 12, middle = 0.5 }\n[sensor]\n  noise_rms = 1\n[correction]\n\
-                harmonics = [{ order = 3 },\n  { order = 4 }]\n";
-    for (field, place) in [
-        ("loop.type", "1:6"),
-        ("adc.middle", "2:20"),
-        ("sensor.noise_rms", "4:3"),
-        ("correction.harmonics", "6:1"),
-        ("correction.harmonics[2].order", "7:5"),
-    ] {
-        let found = Place::of_field(text, field).map(|place| place.to_string());
-        assert_eq!(found.as_deref(), Some(place), "{field}");
-    }
-    for field in [
-        "loop.pole",
-        "chip.clock_hz",
-        "correction.harmonics[3].order",
-        "",
-    ] {
-        assert_eq!(Place::of_field(text, field), None, "{field}");
-    }
-    let unknown = Spec::from_toml("adc = { bits = 12, bitz = 1 }\n", "d.toml");
-    let message = unknown.expect_err("an unknown key").to_string();
-    assert!(message.starts_with("d.toml:1:20: unknown key"), "{message}");
-}
-
-#[test]
-fn a_value_of_the_wrong_kind_is_told_without_words_of_rust() {
-    for (was, is, expected) in [
-        (
-            "bits = 12",
-            "bits = \"many\"",
-            "d.toml:15:8: bits: invalid type: string \"many\", expected a whole number, 0 or more",
-        ),
-        (
-            "bits = 12",
-            "bits = -12",
-            "d.toml:15:8: bits: invalid value: `-12`, expected a whole number, 0 or more",
-        ),
-        (
-            "full_scale = 1.0 ",
-            "full_scale = true ",
-            "d.toml:16:14: full_scale: invalid type: boolean `true`, expected a number",
-        ),
-    ] {
-        let message = Spec::from_toml(&text().replace(was, is), "d.toml")
-            .expect_err("a wrong kind")
-            .to_string();
-        assert_eq!(message.lines().next(), Some(expected));
-    }
-}
 
 #[test]
 fn numbers_in_messages_are_short() {
@@ -252,11 +177,6 @@ fn an_override_that_misses_the_budget_is_built() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(300))]
 
-    #[test]
-    fn no_text_makes_the_reader_panic(garbage in ".{0,200}") {
-        let _ = Spec::from_toml(&garbage, "d.toml");
-    }
-
     /// Anything in any field, of those too that the shipped design leaves out, is either a design or a refusal.
     #[test]
     fn no_value_makes_the_design_panic(
@@ -273,7 +193,7 @@ proptest! {
         ],
     ) {
         let (section, key) = keys().nth(field).expect("a field");
-        let mut design: toml::Table = text().parse().expect("a shipped design");
+        let mut design: toml::Table = shipped::text("optical").parse().expect("a shipped design");
         let value: toml::Table = format!("it = {value}").parse().expect("a value");
         let fields = match section.split_once('.') {
             // One entry of a list, sound but for this field.
@@ -361,7 +281,7 @@ fn a_hold_that_noise_would_never_leave_is_widened_and_one_out_of_range_refused()
 /// Without calibration its keys are refused, each with its own name; as they stand by themselves they may be written.
 #[test]
 fn keys_of_no_calibration_are_refused() {
-    let fixed = text().replace("parameters = 5", "parameters = 0");
+    let fixed = shipped::text("optical").replace("parameters = 5", "parameters = 0");
     let with = |line: &str| {
         let text = fixed.replace("parameters = 0", &format!("parameters = 0\n{line}"));
         let spec = Spec::from_toml(&text, "d.toml").expect("well formed");

@@ -4,7 +4,7 @@ mod chip_support;
 
 use std::f64::consts::TAU;
 
-use chip_support::{Bench, optical, rms};
+use chip_support::{Bench, optical, rms, shipped};
 use nonius_model::bits::Bits;
 use nonius_model::chip::Chip;
 use nonius_model::design::{Design, PHASE_MAX};
@@ -250,11 +250,7 @@ fn no_delay_is_no_correction() {
 /// What is absent or 0 is no correction: the same design.
 #[test]
 fn a_delay_of_zero_is_the_design_without_it() {
-    let text = std::fs::read_to_string(concat!(
-        env!("CARGO_MANIFEST_DIR"),
-        "/../designs/optical.toml"
-    ))
-    .expect("designs/optical.toml");
+    let text = shipped::text("optical");
     let read = |text: &str| Spec::from_toml(text, "optical.toml").expect("a design");
     let absent = Design::new(&read(&text)).expect("a design");
     let zero = format!("{text}\n[correction]\nchannel_skew_s = 0.0\n");

@@ -7,40 +7,13 @@ use std::collections::BTreeSet;
 
 use graph_support::graph_equals_chip;
 use nonius_model::chip::Chip;
-use nonius_model::design::{Design, DesignError, Word};
+use nonius_model::design::{Design, DesignError};
 use nonius_model::kernel::Input;
 use nonius_model::spec::{CalibrationMethod, Coding, Overrides, Spec};
 use proptest::prelude::*;
-use support::shipped::variants::{self, Variant};
+use support::shipped::variants::{self, with_every_word};
+use support::shipped::words::{all_said, key, say};
 use support::{Encoder, optical, wrapped};
-
-/// One chip of each kind, a loop of type 1, and chips with known corrections: every word is in one of them.
-fn chips() -> Vec<Variant> {
-    let mut list = variants::kinds();
-    list.extend(variants::poles().into_iter().take(1));
-    list.extend(variants::skewed().into_iter().take(1));
-    list.extend(variants::harmonics().into_iter().take(1));
-    list
-}
-
-fn key(word: &Word) -> &str {
-    word.key
-        .strip_prefix("formats.")
-        .expect("a word of [formats]")
-}
-
-fn set(spec: &mut Spec, key: &str, value: i64) {
-    assert!(spec.formats.set(key, Some(value)), "{key}");
-}
-
-/// The same chip, with every word said.
-fn all_said(design: &Design) -> Spec {
-    let mut spec = design.spec.clone();
-    for word in design.word_lengths() {
-        set(&mut spec, key(&word), word.value);
-    }
-    spec
-}
 
 /// Codes of a slow sweep of the sensor that the design is for.
 fn codes(spec: &Spec) -> impl Fn(u32) -> [i64; 2] {
@@ -59,7 +32,7 @@ fn codes(spec: &Spec) -> impl Fn(u32) -> [i64; 2] {
 #[test]
 fn what_the_analysis_chooses_may_be_said() {
     let mut seen = BTreeSet::new();
-    for chip in chips() {
+    for chip in with_every_word() {
         let chosen = chip.design();
         let said = Design::new(&all_said(&chosen)).expect("the same words");
         assert_eq!(said.structure, chosen.structure, "{}", chip.what);
@@ -82,7 +55,7 @@ fn what_the_analysis_chooses_may_be_said() {
 /// Another value makes another chip, whose graph is the chip in every bit.
 #[test]
 fn each_key_changes_its_word() {
-    for chip in chips() {
+    for chip in with_every_word() {
         let chosen = chip.design();
         let said = all_said(&chosen);
         for word in chosen.word_lengths() {
@@ -92,7 +65,7 @@ fn each_key_changes_its_word() {
                     continue;
                 }
                 let mut spec = said.clone();
-                set(&mut spec, key(&word), value);
+                say(&mut spec, key(&word), value);
                 // Other words may stand on this one.
                 let Ok(design) = Design::new(&spec) else {
                     continue;
@@ -152,7 +125,7 @@ fn a_shorter_word_costs_what_the_budget_says() {
             let value = (word.value - 3).max(word.lowest);
             let with = |spec: &Spec| {
                 let mut spec = spec.clone();
-                set(&mut spec, key(&word), value);
+                say(&mut spec, key(&word), value);
                 Design::new(&spec)
             };
             // Where the others may not stay as they are, they follow.
@@ -176,13 +149,13 @@ fn a_shorter_word_costs_what_the_budget_says() {
 /// Refused at its ends, with both of them.
 #[test]
 fn what_cannot_be_is_refused_with_its_limits() {
-    for chip in chips() {
+    for chip in with_every_word() {
         let chosen = chip.design();
         let said = all_said(&chosen);
         for word in chosen.word_lengths() {
             for value in [word.lowest - 1, word.highest + 1] {
                 let mut spec = said.clone();
-                set(&mut spec, key(&word), value);
+                say(&mut spec, key(&word), value);
                 let refused = Design::new(&spec).expect_err("outside its limits");
                 let message = refused.to_string();
                 let DesignError::Field { field, limit, .. } = refused else {
@@ -228,7 +201,7 @@ fn a_word_without_effect_is_refused() {
         }
         absent += 1;
         let mut spec = optical();
-        set(&mut spec, name, 9);
+        say(&mut spec, name, 9);
         let message = Design::new(&spec).expect_err("no such word").to_string();
         let said = format!("formats.{name} = 9: this chip has no such word: ");
         assert!(message.starts_with(&said), "{message}");
@@ -270,7 +243,7 @@ proptest! {
             1 => (-70..70i64).prop_map(|value| (false, value)),
         ]), 0..10),
     ) {
-        let chips = chips();
+        let chips = with_every_word();
         let chosen = chips[chip % chips.len()].design();
         let held = chosen.word_lengths();
         let mut spec = chosen.spec.clone();

@@ -42,14 +42,15 @@ pub fn signals(design: &Design) -> Vec<Signal> {
             _ if graph.probes.iter().any(|(n, _)| n == name) => "probe",
             _ => "value",
         };
+        let (why, set_by) = reason(design, name, node);
         list.push(Signal {
             name: name.clone(),
             kind,
             format: node.format.to_string(),
             range: [node.range.0 as f64 * lsb, node.range.1 as f64 * lsb],
             resolution: lsb,
-            why: why(design, name, node).unwrap_or_default().into(),
-            set_by: set_by(design, name, node),
+            why: why.into(),
+            set_by,
         });
     }
     list
@@ -199,54 +200,59 @@ const REASONS: &[(&[&str], &str, &[&str])] = &[
     ),
 ];
 
-/// Why a named signal is as wide as it is; `None`: nobody has said.
-fn why(design: &Design, name: &str, node: &Entry) -> Option<&'static str> {
-    match node.op {
-        Op::Lookup { .. } => {
-            return Some(if name.starts_with("harmonic") {
-                "word of the table of harmonics: two bits finer than a signal, with its slope"
-            } else {
-                "word of the sine table: the budget's rounding of the table"
-            });
+/// Why a signal is as wide as it is, and the keys that set it before those of its parameter.
+type Reason = (&'static str, &'static [&'static str]);
+
+/// Why a named signal is as wide as it is, empty where nobody has said, and the keys that set it.
+fn reason(design: &Design, name: &str, node: &Entry) -> (&'static str, Vec<String>) {
+    let (why, keys) = match node.op {
+        Op::Lookup { .. } => table_word(name),
+        Op::Input | Op::Quantise(..) | Op::QuantiseGeared { .. } => {
+            let stem = stem(name);
+            match REASONS.iter().find(|r| r.0.contains(&stem.as_str())) {
+                Some(&(_, why, keys)) => (why, keys),
+                None => as_signal(design, node),
+            }
         }
-        Op::Input | Op::Quantise(..) | Op::QuantiseGeared { .. } => {}
-        _ => return Some("exact: every bit of the operation, range by interval analysis"),
+        _ => {
+            let why = "exact: every bit of the operation, range by interval analysis";
+            return (why, vec![]);
+        }
+    };
+    let own = keys.iter().chain(by_parameter(name));
+    let held = design.word_lengths();
+    let has = |key: &&&str| !key.starts_with("formats.") || held.iter().any(|w| w.key == **key);
+    (why, own.filter(has).map(ToString::to_string).collect())
+}
+
+/// The reason and the keys of a word that is read from a table.
+fn table_word(name: &str) -> Reason {
+    const SINE: &str = "word of the sine table: the budget's rounding of the table";
+    const HARMONICS: &str =
+        "word of the table of harmonics: two bits finer than a signal, with its slope";
+    match (name.starts_with("harmonic"), name.ends_with("slope")) {
+        (false, false) => (SINE, &["formats.sine_value_fraction"]),
+        (false, true) => (SINE, &["formats.sine_slope_fraction"]),
+        (true, false) => (HARMONICS, &["formats.harmonic_value_fraction"]),
+        (true, true) => (HARMONICS, &["formats.harmonic_slope_fraction"]),
     }
-    if let Some((_, why, _)) = REASONS.iter().find(|r| r.0.contains(&stem(name).as_str())) {
-        return Some(why);
-    }
-    let signal = design.structure.formats.signal.format;
-    (node.format == signal).then_some("signals: the budget's rounding of signals")
+}
+
+/// The reason and the keys of what has no reason of its own.
+fn as_signal(design: &Design, node: &Entry) -> Reason {
+    let is_signal = node.format == design.structure.formats.signal.format;
+    let why = if is_signal {
+        "signals: the budget's rounding of signals"
+    } else {
+        ""
+    };
+    (why, &["formats.signal_fraction"])
 }
 
 /// A name without its numbers.
 fn stem(name: &str) -> String {
     let words = name.split('_').filter(|w| w.parse::<u32>().is_err());
     words.collect::<Vec<_>>().join("_")
-}
-
-/// The keys that set the format of a named signal.
-fn set_by(design: &Design, name: &str, node: &Entry) -> Vec<String> {
-    let keys: &[&str] = match node.op {
-        Op::Lookup { .. } => match (name.starts_with("harmonic"), name.ends_with("slope")) {
-            (false, false) => &["formats.sine_value_fraction"],
-            (false, true) => &["formats.sine_slope_fraction"],
-            (true, false) => &["formats.harmonic_value_fraction"],
-            (true, true) => &["formats.harmonic_slope_fraction"],
-        },
-        Op::Input | Op::Quantise(..) | Op::QuantiseGeared { .. } => {
-            let stem = stem(name);
-            match REASONS.iter().find(|r| r.0.contains(&stem.as_str())) {
-                Some((_, _, keys)) => keys,
-                None => &["formats.signal_fraction"],
-            }
-        }
-        _ => return vec![],
-    };
-    let own = keys.iter().chain(by_parameter(name));
-    let held = design.word_lengths();
-    let has = |key: &&&str| !key.starts_with("formats.") || held.iter().any(|w| w.key == **key);
-    own.filter(has).map(ToString::to_string).collect()
 }
 
 /// Words and ranges that differ from parameter to parameter.

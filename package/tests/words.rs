@@ -7,10 +7,11 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::Path;
 
-use nonius_model::design::{Design, Word};
-use nonius_model::spec::{CalibrationMethod, Overrides, Spec};
+use nonius_model::design::Design;
+use nonius_model::spec::{CalibrationMethod, Overrides};
 use nonius_package::{Signal, signals};
 use shipped::variants::{self, type_1};
+use shipped::words::{all_said, key, say};
 
 /// A chip that has every word: a loop of type 1, nine parameters that gather and are completed, a sine that is sampled later,
 /// stored harmonics.
@@ -22,21 +23,6 @@ fn everything() -> Design {
     spec.correction.channel_skew_s = 3e-7;
     spec.correction.harmonics = variants::third_and_fifth();
     Design::new(&spec).expect("a design that works")
-}
-
-/// The same chip, with every word said.
-fn all_said(design: &Design) -> Spec {
-    let mut spec = design.spec.clone();
-    for word in design.word_lengths() {
-        assert!(spec.formats.set(key(&word), Some(word.value)));
-    }
-    spec
-}
-
-fn key(word: &Word) -> &str {
-    word.key
-        .strip_prefix("formats.")
-        .expect("a word of [formats]")
 }
 
 /// What is rounded or cut says the key, what is exact follows from its operands.
@@ -60,7 +46,7 @@ fn check(what: &str, chosen: &Design) {
     for word in chosen.word_lengths() {
         for value in [word.value - 1, word.value + 1] {
             let mut spec = said.clone();
-            assert!(spec.formats.set(key(&word), Some(value)));
+            say(&mut spec, key(&word), value);
             // Outside its limits, or other words stand on it.
             let Ok(design) = Design::new(&spec) else {
                 continue;

@@ -4,7 +4,8 @@ use serde::Serialize;
 
 use crate::adc::AdcPair;
 use crate::columns::nearest;
-use crate::error::{Error, ErrorKind, Place};
+use crate::error::{Error, ErrorKind, Place, shorten};
+use crate::table::LARGEST;
 
 /// Keys that have a meaning.
 const KEYS: [&str; 7] = [
@@ -114,8 +115,8 @@ impl Lines {
             place: Place::command_line(),
             text: None,
         };
-        let rate = from("sample_rate_hz")?.positive("a rate in hertz above 0")?;
-        let file_bits = from("adc_bits")?.whole(&BITS, "a whole number from 2 to 32")?;
+        let rate = from("sample_rate_hz")?.positive(RATE)?;
+        let file_bits = from("adc_bits")?.whole(&BITS, BITS_EXPECTED)?;
         let bits = given("--adc-bits", overrides.adc_bits.map(f64::from));
         let file_ppr = from("periods_per_revolution")?.whole(&PERIODS, PERIODS_EXPECTED)?;
         let ppr = overrides.periods_per_revolution.map(f64::from);
@@ -125,12 +126,10 @@ impl Lines {
         let file_span = span(full_scale, &min, &max)?;
         let full_scale = given("--full-scale", overrides.full_scale).positive(FULL_SCALE)?;
         let option = given("--sample-rate", overrides.sample_rate_hz);
-        let period = from("scale_period_m")?.positive("a length in metres above 0")?;
+        let period = from("scale_period_m")?.positive("a length in metres above 0, up to 1e30")?;
         Ok(Declared {
-            sample_rate_hz: option.positive("a rate in hertz above 0")?.or(rate),
-            adc_bits: bits
-                .whole(&BITS, "a whole number from 2 to 32")?
-                .or(file_bits),
+            sample_rate_hz: option.positive(RATE)?.or(rate),
+            adc_bits: bits.whole(&BITS, BITS_EXPECTED)?.or(file_bits),
             span: full_scale.map(|f| Span { min: -f, max: f }).or(file_span),
             scale_period_m: period,
             periods_per_revolution: ppr.or(file_ppr),
@@ -139,9 +138,11 @@ impl Lines {
     }
 }
 
-const FULL_SCALE: &str = "a number above 0, in the unit of the columns";
+const BITS_EXPECTED: &str = "a whole number from 2 to 32";
+const RATE: &str = "a rate in hertz above 0, up to 1e30";
+const FULL_SCALE: &str = "a number above 0, up to 1e30, in the unit of the columns";
 const PERIODS: std::ops::RangeInclusive<u32> = 1..=u32::MAX;
-const PERIODS_EXPECTED: &str = "a whole number, 1 or more";
+const PERIODS_EXPECTED: &str = "a whole number from 1 to 4294967295";
 
 /// A number with what is needed to complain about it.
 struct Value {
@@ -170,16 +171,18 @@ impl Value {
             place,
             text,
         };
-        if value.is_finite() && value.abs() <= 1e30 {
-            Ok(this)
-        } else {
+        if value.is_nan() {
             Err(this.error("a number"))
+        } else if value.abs() > LARGEST {
+            Err(this.error("a number from -1e30 to 1e30"))
+        } else {
+            Ok(this)
         }
     }
 
     fn positive(&self, expected: &'static str) -> Result<Option<f64>, Error> {
         match self.value {
-            Some(v) if !(1e-30..=1e30).contains(&v) => Err(self.error(expected)),
+            Some(v) if !(1e-30..=LARGEST).contains(&v) => Err(self.error(expected)),
             v => Ok(v),
         }
     }
@@ -198,7 +201,7 @@ impl Value {
 
     fn error(&self, expected: &'static str) -> Error {
         let number = || self.value.map_or_else(String::new, |v| v.to_string());
-        let value = self.text.clone().unwrap_or_else(number);
+        let value = self.text.as_deref().map_or_else(number, shorten);
         let kind = ErrorKind::Metadata {
             key: self.key,
             value,

@@ -7,7 +7,7 @@ use crate::recording::{Columns, OtherColumn};
 use crate::time::Clock;
 
 /// Magnitude beyond which a number is no measurement.
-const LARGEST: f64 = 1e30;
+pub(crate) const LARGEST: f64 = 1e30;
 
 /// The rows read so far.
 pub(crate) struct Table {

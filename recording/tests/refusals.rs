@@ -203,6 +203,23 @@ fn metadata() {
             "periods_per_revolution is '1e12'",
         ),
         ("scale_period_m: 0", "scale_period_m is '0'"),
+        // Too large to be counted, too large for any number, more digits than fill a line.
+        (
+            "periods_per_revolution: 99999999999999999999",
+            "periods_per_revolution is '99999999999999999999'; expected a whole number from 1 to 4294967295",
+        ),
+        (
+            "adc_bits: 99999999999999999999",
+            "adc_bits is '99999999999999999999'; expected a whole number from 2 to 32",
+        ),
+        (
+            "sample_rate_hz: 1e999",
+            "sample_rate_hz is '1e999'; expected a number from -1e30 to 1e30",
+        ),
+        (
+            &format!("full_scale: {}", "9".repeat(60)),
+            "full_scale is '9999999999999999999999999999999999999999…'; expected a number from -1e30 to 1e30",
+        ),
         (
             "adc_min: 0",
             "the range of the ADC is not clear: adc_max is missing",
@@ -249,6 +266,14 @@ fn the_command_line() {
         ..none.clone()
     };
     assert!(refused(scale).starts_with("command line: --full-scale is '-1'"));
+    let scale = Overrides {
+        full_scale: Some(1e31),
+        ..none.clone()
+    };
+    assert!(
+        refused(scale)
+            .ends_with("expected a number above 0, up to 1e30, in the unit of the columns")
+    );
     let column = Overrides {
         cos_column: Some("coz".into()),
         ..none

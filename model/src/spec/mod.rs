@@ -2,6 +2,7 @@
 
 mod calibration;
 mod correction;
+mod large;
 mod overrides;
 mod place;
 mod read;

@@ -3,6 +3,7 @@
 use thiserror::Error;
 use toml::de::{DeTable, DeValue};
 
+use super::large::too_large;
 use super::place::Place;
 use super::{Overrides, Spec};
 
@@ -136,6 +137,9 @@ fn place(text: &str, error: &toml::de::Error) -> String {
     match error.span() {
         Some(span) => {
             let place = Place::of_byte(text, span.start);
+            if let Some(large) = too_large(text, span, message) {
+                return format!("{place}: {large}");
+            }
             let here = text.lines().nth(place.line - 1).unwrap_or_default();
             let key = here.split_once('=').map_or("", |(key, _)| key.trim());
             let named =
@@ -159,6 +163,8 @@ fn plain(message: &str) -> String {
         .replace("expected f64", "expected a number")
         .replace("floating point `", "`")
         .replace("integer `", "`")
+        .replace("` as i128", "`")
+        .replace("` as u128", "`")
 }
 
 fn unknown_keys(table: &DeTable, text: &str, file: &str) -> Result<(), SpecError> {

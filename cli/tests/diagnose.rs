@@ -1,0 +1,96 @@
+//! `nonius diagnose` through the binary: what it writes, and that the other commands take it.
+
+mod support;
+
+use std::fs;
+
+use support::{nonius, refused};
+
+#[test]
+fn diagnose_writes_the_contract() {
+    let dir = tempfile::tempdir().expect("scratch");
+    let mut text = String::from("# adc_bits: 14\n# full_scale: 1\ntime_s,cos,sin\n");
+    let mut state = 1u64;
+    for k in 0..8000 {
+        let t = f64::from(k) * 2e-5;
+        let alpha = 90.0 * (30.0 * t).sin() + 200.0 * t;
+        // A line at 150 Hz in the cosine channel; and noise.
+        let mut dither = || {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1);
+            ((state >> 40) as f64 / f64::from(1 << 24) - 0.5) * 1e-3
+        };
+        let cos = 0.8 * alpha.cos() + 0.004 * (942.477_796 * t).cos() + dither();
+        let sin = 0.7 * alpha.sin() + dither();
+        let code = |v: f64| (v * 8192.0).round() / 8192.0;
+        text += &format!("{t:.6},{},{}\n", code(cos), code(sin));
+    }
+    fs::write(dir.path().join("r.csv"), text).expect("recording");
+    let output = nonius(dir.path(), &["diagnose", "r.csv", "-o", "out", "--json"]);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{said}");
+    let json: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert_eq!(json["schema"], "nonius.findings/1");
+    assert_eq!(json["recording"]["samples"], 8000);
+    assert_eq!(json["recording"]["has_reference"], false);
+    let first = &json["findings"][0];
+    assert_eq!(first["cause"], "interference", "{json:#}");
+    let frequency = first["parameters"][0]["value"].as_f64().expect("a number");
+    assert!((frequency - 150.0).abs() < 0.5, "{frequency}");
+    for key in ["confounded_with", "p_value", "gain", "evidence", "chip"] {
+        assert!(!first[key].is_null(), "{key}");
+    }
+    assert!(json["unexplained"]["significant"].is_boolean());
+    assert!(json["simulation"]["position_error_rms_rad"].is_null());
+    let positions = fs::read_to_string(dir.path().join("out/positions.csv")).expect("positions");
+    assert_eq!(positions.lines().count(), 8001);
+    assert_eq!(positions.lines().next(), Some("time_s,position_periods"));
+    for file in ["findings.json", "sensor.toml", "design.toml", "report.html"] {
+        assert!(dir.path().join("out").join(file).is_file(), "{file}");
+    }
+    let built = nonius(dir.path(), &["build", "out/design.toml", "-o", "chip"]);
+    assert!(
+        built.status.success(),
+        "{}",
+        String::from_utf8_lossy(&built.stderr)
+    );
+    // The extended simulation runs, and goes into the Verilog's vectors.
+    let sensor = ["--sensor", "out/sensor.toml", "-o"];
+    for call in [
+        [
+            &["simulate", "out/design.toml"],
+            &sensor[..],
+            &["sensor.csv"],
+        ]
+        .concat(),
+        [&["build", "out/design.toml"], &sensor[..], &["played"]].concat(),
+    ] {
+        let output = nonius(dir.path(), &call);
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{said}");
+    }
+    let simulated = fs::read_to_string(dir.path().join("sensor.csv")).expect("simulated");
+    assert!(simulated.lines().count() > 2000);
+    assert!(dir.path().join("played/vectors/sensor.vec").is_file());
+    assert!(dir.path().join("played/waves/sensor.vcd").is_file());
+    fs::write(dir.path().join("bad.toml"), "[signals]\na_c = true\n").expect("a file");
+    refused(
+        &nonius(
+            dir.path(),
+            &[
+                "simulate",
+                "out/design.toml",
+                "--sensor",
+                "bad.toml",
+                "-o",
+                "x.csv",
+            ],
+        ),
+        &["bad.toml:2:7"],
+    );
+    refused(
+        &nonius(dir.path(), &["diagnose", "none.csv", "-o", "out"]),
+        &["none.csv"],
+    );
+}
