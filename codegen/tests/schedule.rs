@@ -59,7 +59,7 @@ fn all_multipliers_are_those_that_are_of_use() {
     for kind in kinds() {
         let design = kind.design();
         let graph = &design.graph;
-        let all = schedule_for(graph, variants::ALL);
+        let all = schedule_for(graph, shipped::variants::ALL);
         let few = 1..=graph.products().min(6);
         let clocks: Vec<usize> = few
             .chain([graph.products()])

@@ -113,7 +113,13 @@ module chip_tb;
         end
     endtask
 
-    task play(input [8*64-1:0] path, input [8*32-1:0] name, input integer rows);
+    // The stimulus that is played
+    integer stimulus;
+    reg [8*64-1:0] path;
+    reg [8*32-1:0] name;
+    integer rows;
+
+    task play;
         begin
             bad = 1'b0;
             played = 0;
@@ -228,23 +234,30 @@ module chip_tb;
         end
     endtask
 
-    // With +stop_at_first nothing is played after a stimulus that failed.
-    task play_next(input [8*64-1:0] path, input [8*32-1:0] name, input integer rows);
-        if (!any_bad || !$test$plusargs("stop_at_first")) play(path, name, rows);
-    endtask
-
+    // Played in one place: Verilator compiles a task, or the inside of a loop that it can count, once for each time.
+    reg finished = 1'b0;
     initial begin
-        play_next("vectors/standstill.vec", "standstill", 24);
-        play_next("vectors/forwards.vec", "forwards", 24);
-        play_next("vectors/backwards.vec", "backwards", 24);
-        play_next("vectors/sweep.vec", "sweep", 24);
-        play_next("vectors/creep.vec", "creep", 24);
-        play_next("vectors/loss.vec", "loss", 24);
-        play_next("vectors/step.vec", "step", 24);
-        play_next("vectors/corners.vec", "corners", 24);
-        play_next("vectors/bounds.vec", "bounds", 24);
-        play_next("vectors/ties.vec", "ties", 24);
-        play_next("vectors/random.vec", "random", 24);
+        stimulus = 0;
+        while (!finished) begin
+            case (stimulus)
+                0: begin path = "vectors/standstill.vec"; name = "standstill"; rows = 24; end
+                1: begin path = "vectors/forwards.vec"; name = "forwards"; rows = 24; end
+                2: begin path = "vectors/backwards.vec"; name = "backwards"; rows = 24; end
+                3: begin path = "vectors/sweep.vec"; name = "sweep"; rows = 24; end
+                4: begin path = "vectors/creep.vec"; name = "creep"; rows = 24; end
+                5: begin path = "vectors/loss.vec"; name = "loss"; rows = 24; end
+                6: begin path = "vectors/step.vec"; name = "step"; rows = 24; end
+                7: begin path = "vectors/corners.vec"; name = "corners"; rows = 24; end
+                8: begin path = "vectors/bounds.vec"; name = "bounds"; rows = 24; end
+                9: begin path = "vectors/ties.vec"; name = "ties"; rows = 24; end
+                10: begin path = "vectors/random.vec"; name = "random"; rows = 24; end
+                default: finished = 1'b1;
+            endcase
+            // With +stop_at_first nothing is played after a stimulus that failed.
+            if (any_bad && $test$plusargs("stop_at_first")) finished = 1'b1;
+            if (!finished) play;
+            stimulus = stimulus + 1;
+        end
         if (any_bad) $display("FAIL");
         else $display("PASS");
         $finish(0);
