@@ -79,7 +79,7 @@ impl Interpolator for BitTrue<'_> {
         Estimate {
             position: exact(
                 self.chip.position_raw(),
-                self.design.structure.formats.alpha.fraction,
+                self.design.structure.formats.alpha.format.fraction,
             ),
             speed_per_sample: self.speed,
             locked: self.chip.state.locked,

@@ -184,13 +184,13 @@ fn ports(
         (
             format!(
                 "output wire signed [{}:0] ",
-                f.count.width + f.alpha.width - 1
+                f.count.format.width + f.alpha.format.width - 1
             ),
             "position,".into(),
             format!(
                 "periods, s{}.{}: whole periods and alpha_hat for the next sample",
-                f.count.width + f.alpha.width,
-                f.alpha.width
+                f.count.format.width + f.alpha.format.width,
+                f.alpha.format.width
             ),
         ),
     ];
@@ -293,7 +293,7 @@ pub fn generate(
         commits: &netlist.commits,
         clocks,
         step_bits: crate::units::step_bits(&writer),
-        alpha_bits: f.alpha.width,
+        alpha_bits: f.alpha.format.width,
         unread: writer.unread(),
     };
     let signals: Vec<Signal> = columns
@@ -309,8 +309,8 @@ pub fn generate(
         name,
         clocks,
         adc_msb,
-        count_bits: f.count.width,
-        alpha_bits: f.alpha.width,
+        count_bits: f.count.format.width,
+        alpha_bits: f.alpha.format.width,
         outputs: &outputs,
         flow: flow(graph, &columns),
         columns: &signals,
@@ -325,8 +325,8 @@ pub fn generate(
         rate,
         clock,
         adc_msb,
-        count_bits: f.count.width,
-        alpha_bits: f.alpha.width,
+        count_bits: f.count.format.width,
+        alpha_bits: f.alpha.format.width,
         outputs: &outputs,
         idle: outputs
             .iter()

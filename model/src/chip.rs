@@ -42,7 +42,10 @@ impl Chip<Bits> {
     /// Whole periods and phase: α̂ for the next sample, in units of 2^-(phase bits) of a period.
     #[must_use]
     pub fn position_raw(&self) -> i128 {
-        let (count, alpha) = (self.structure.formats.count, self.structure.formats.alpha);
+        let (count, alpha) = (
+            self.structure.formats.count.format,
+            self.structure.formats.alpha.format,
+        );
         (i128::from(self.state.count.raw(count.fraction)) << alpha.fraction)
             + i128::from(self.state.alpha_hat.raw(alpha.fraction))
     }
@@ -63,7 +66,10 @@ impl Chip<Bits> {
     /// The position in periods.
     #[must_use]
     pub fn position(&self) -> f64 {
-        let count = self.state.count.raw(self.structure.formats.count.fraction);
+        let count = self
+            .state
+            .count
+            .raw(self.structure.formats.count.format.fraction);
         count as f64 + self.state.alpha_hat.to_f64()
     }
 }
@@ -83,7 +89,7 @@ impl Chip<f64> {
     /// The position in periods.
     #[must_use]
     pub fn position(&self) -> f64 {
-        self.state.count * crate::format::exp2(self.structure.formats.count.fraction.into())
+        self.state.count * crate::format::exp2(self.structure.formats.count.format.fraction.into())
             + self.state.alpha_hat
     }
 }
@@ -248,8 +254,8 @@ pub fn record(
 pub fn register_format(name: &str, structure: &Structure) -> crate::format::Format {
     let f = &structure.formats;
     match remembered(name).unwrap_or(name) {
-        "alpha_hat" | "alpha_hat_previous" => f.alpha,
-        "count" => f.count,
+        "alpha_hat" | "alpha_hat_previous" => f.alpha.format,
+        "count" => f.count.format,
         "rate" => f.rate.format,
         "theta_1_deviation" => f.deviation[0].format,
         "theta_2_deviation" => f.deviation[1].format,
@@ -261,11 +267,11 @@ pub fn register_format(name: &str, structure: &Structure) -> crate::format::Form
         "theta_8_deviation" => f.deviation[7].format,
         "theta_9_deviation" => f.deviation[8].format,
         "lock_level" => f.level.format,
-        "loop_gear" => f.loop_gear,
-        "gamma_gear" => f.gamma_gear,
-        "gear_periods" => f.gear_periods,
-        "travel_samples" => f.travel_samples,
-        "start_periods" => f.start_periods,
+        "loop_gear" => f.loop_gear.format,
+        "gamma_gear" => f.gamma_gear.format,
+        "gear_periods" => f.gear_periods.format,
+        "travel_samples" => f.travel_samples.format,
+        "start_periods" => f.start_periods.format,
         name if name.contains("gradient_error") => f.signal.format,
         name if name.contains("_gradient") => f.alpha_gradient.format,
         name if name.starts_with("gathered") => f.gathered.format,

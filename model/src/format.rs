@@ -299,8 +299,13 @@ impl InContainer {
     /// The container's integer of what the integer `rounded` (half a bit added already) becomes.
     #[inline(always)]
     pub(crate) fn settle(&self, rounded: i64) -> i64 {
-        let kept = ((rounded & self.mask) << self.spare) >> self.spare;
-        kept.clamp(self.low, self.high)
+        let kept = rounded & self.mask;
+        // What wraps does not saturate: each place in a kernel does always the one or always the other.
+        if self.spare > 0 {
+            (kept << self.spare) >> self.spare
+        } else {
+            kept.clamp(self.low, self.high)
+        }
     }
 }
 

@@ -100,6 +100,11 @@ pub trait Logic: Copy + std::fmt::Debug {
     fn named(self, _name: &'static str) -> Self {
         self
     }
+    /// True where this is known not to hold, and what only counts where it holds need not be worked out. Leaving that out saves
+    /// time and changes nothing; a recording never knows.
+    fn is_known_false(self) -> bool {
+        false
+    }
 }
 
 impl Logic for bool {
@@ -117,6 +122,10 @@ impl Logic for bool {
     }
     #[inline(always)]
     fn not(self) -> Self {
+        !self
+    }
+    #[inline(always)]
+    fn is_known_false(self) -> bool {
         !self
     }
 }

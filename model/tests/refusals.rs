@@ -79,6 +79,30 @@ fn what_cannot_work_names_the_field() {
     }
 }
 
+/// An accuracy that the sensor does not allow, or a share that leaves it nothing, names what would be accepted.
+#[test]
+fn the_limit_of_the_accuracy_is_accepted() {
+    for (rms, share) in [(1e-9, 0.05), (1e-6, 0.9), (55e-6, 0.999), (1e-6, 1.0)] {
+        let mut spec = optical();
+        (spec.accuracy.rms_periods, spec.accuracy.arithmetic_share) = (rms, share);
+        let mut refused = vec![];
+        while let Err(DesignError::Field { field, limit, .. }) = Design::new(&spec) {
+            let ends: Vec<f64> = limit.split(" … ").flat_map(str::parse).collect();
+            let [least, most] = ends[..] else {
+                panic!("{limit}");
+            };
+            match &*field {
+                "accuracy.rms_periods" => spec.accuracy.rms_periods = least,
+                "accuracy.arithmetic_share" => spec.accuracy.arithmetic_share = most,
+                other => panic!("{other}"),
+            }
+            assert!(!refused.contains(&field), "{field}: {limit}");
+            refused.push(field);
+        }
+        assert!(!refused.is_empty() && Design::new(&spec).is_ok(), "{rms}");
+    }
+}
+
 /// Asking for more accuracy takes longer words, of twice the accuracy those that count most, of sixteen times all.
 #[test]
 fn words_follow_from_the_accuracy() {

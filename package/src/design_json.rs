@@ -93,14 +93,14 @@ pub struct Position {
 impl Position {
     fn of(design: &Design) -> Self {
         let (f, spec) = (&design.structure.formats, &design.spec);
-        let step = f.alpha.lsb();
+        let step = f.alpha.format.lsb();
         Self {
-            period_bits: f.count.width,
-            fraction_bits: f.alpha.width,
+            period_bits: f.count.format.width,
+            fraction_bits: f.alpha.format.width,
             step_periods: step,
             metres_per_period: metres(spec, 1.0),
             step_m: metres(spec, step),
-            range_m: metres(spec, 2f64.powi(f.count.width as i32 - 1)),
+            range_m: metres(spec, 2f64.powi(f.count.format.width as i32 - 1)),
             radians_per_period: radians_of_revolution(spec, 1.0),
         }
     }

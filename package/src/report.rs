@@ -71,7 +71,7 @@ fn said(design: &Design, j: &DesignJson) -> Vec<(&'static str, String, String)> 
         let units = [Some(format!("{periods:.2e} periods")), metres, radians];
         units.into_iter().flatten().collect::<Vec<_>>().join(", ")
     };
-    let phase = &design.structure.formats.alpha;
+    let phase = &design.structure.formats.alpha.format;
     let skew = j.channel_skew.as_ref().map(|skew| {
         (
             "Channel skew corrected",

@@ -62,7 +62,7 @@ impl<W: Write> Waves<W> {
             }
         };
         let f = &design.structure.formats;
-        let position_bits = f.count.width + f.alpha.width;
+        let position_bits = f.count.format.width + f.alpha.format.width;
         out.add_module("chip_tb")?;
         let reals = [
             out.add_var(VarType::Real, 64, "alpha_hat_turns", None)?,
@@ -103,7 +103,7 @@ impl<W: Write> Waves<W> {
             last: HashMap::new(),
             clocks: clocks as u64,
             samples: 0,
-            phase_fraction: f.alpha.fraction,
+            phase_fraction: f.alpha.format.fraction,
         };
         waves.out.begin(vcd::SimulationCommand::Dumpvars)?;
         for (id, bits) in waves.inputs {
@@ -258,7 +258,7 @@ pub fn gtkw(name: &str, design: &Design, columns: &[Column], clocks: usize) -> S
     let f = &design.structure.formats;
     out += &format!(
         "{TITLE}\n-outputs\n{FLAG}\nchip_tb.chip.valid\n{HEX}\nchip_tb.chip.position[{}:0]\n",
-        f.count.width + f.alpha.width - 1
+        f.count.format.width + f.alpha.format.width - 1
     );
     let group = |title: &str, member: &dyn Fn(&str) -> bool| {
         let mut text = format!("{TITLE}\n-{title}\n");

@@ -203,7 +203,7 @@ fn waves_read_back(kind: &str, design: &Design) {
             "{kind}: {k}"
         );
         let f = &design.structure.formats;
-        let all = (1u128 << (f.count.width + f.alpha.width)) - 1;
+        let all = (1u128 << (f.count.format.width + f.alpha.format.width)) - 1;
         let position = replay.position_raw() as u128 & all;
         assert_eq!(values[&path("position")], position, "{kind}: {k}");
     }

@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 
 use super::followers::Followers;
 use super::formats::multiplied;
+use super::refuse::between;
 use super::{DesignError, Loop, harmonics, normalisation, word};
 use crate::format::exp2;
 use crate::spec::{Overrides, Spec};
@@ -185,6 +186,43 @@ fn accumulator(words: &Words, spec: &Spec) -> f64 {
     exp2(spec.calibration.gamma_last.into()) * dead_band(words.accumulator_fraction)
 }
 
+/// Largest error that may be asked for, periods rms.
+pub(super) const RMS_MOST: f64 = 0.1;
+/// Smallest part of it that arithmetic may have.
+pub(super) const SHARE_LEAST: f64 = 1e-3;
+
+/// Refuses an accuracy that ADC and noise leave no room for, in periods rms.
+fn reachable(spec: &Spec, adc: f64, noise: f64) -> Result<(), DesignError> {
+    let (rms, share) = (spec.accuracy.rms_periods, spec.accuracy.arithmetic_share);
+    let floor = adc.hypot(noise);
+    let made = format!(
+        "the ADC alone makes {adc:.3e} and the sensor's noise through this loop {noise:.3e} periods rms"
+    );
+    // What is left of it for arithmetic.
+    let most = (1.0 - (floor / rms).powi(2)).max(0.0).sqrt();
+    if share <= most {
+        return Ok(());
+    }
+    if rms > floor && most >= SHARE_LEAST {
+        return between(
+            "accuracy.arithmetic_share",
+            share,
+            SHARE_LEAST,
+            most,
+            &format!("{made}: arithmetic has what they leave of accuracy.rms_periods"),
+        );
+    }
+    // A share that is too large for that is refused next.
+    let share = share.min(0.5);
+    between(
+        "accuracy.rms_periods",
+        rms,
+        floor / (1.0 - share * share).sqrt(),
+        RMS_MOST,
+        &format!("{made}; more ADC bits, a larger amplitude or a narrower loop would help"),
+    )
+}
+
 /// Where a word of the user's misses the budget, the others add no more than this.
 const MUCH_AS_GOOD: f64 = 1.05;
 
@@ -195,18 +233,7 @@ pub(super) fn choose(spec: &Spec, tracking: &Loop) -> Result<(Words, Budget), De
     let adc = rounding(spec.adc.bits - 1 - power) / amplitude / TAU;
     let noise = spec.sensor.noise_rms / TAU * tracking.noise_gain.sqrt();
     let allowed = spec.accuracy.rms_periods * spec.accuracy.arithmetic_share;
-    let unavoidable = (adc * adc + noise * noise + allowed * allowed).sqrt();
-    if unavoidable > spec.accuracy.rms_periods {
-        return Err(DesignError::Field {
-            field: "accuracy.rms_periods".into(),
-            value: spec.accuracy.rms_periods.to_string(),
-            limit: format!("{unavoidable:.3e}"),
-            reason: format!(
-                "the ADC alone makes {adc:.3e} and the sensor's noise through this loop {noise:.3e} periods rms; \
-                 more ADC bits, a larger amplitude or a narrower loop would help"
-            ),
-        });
-    }
+    reachable(spec, adc, noise)?;
     let budget = |words: &Words| Budget {
         adc,
         noise,

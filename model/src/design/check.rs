@@ -1,6 +1,7 @@
 //! Every field of a design checked for sense, before anything is derived from it.
 
 use super::DesignError;
+use super::budget::{RMS_MOST, SHARE_LEAST};
 use super::keywords::{KEYWORDS, SYSTEM_KEYWORDS};
 use super::refuse::{between, number, refuse};
 use crate::graph::Graph;
@@ -110,13 +111,13 @@ pub(super) fn check(spec: &Spec) -> Result<(), DesignError> {
         "accuracy.rms_periods",
         spec.accuracy.rms_periods,
         1e-9,
-        0.1,
+        RMS_MOST,
         "accuracy in scale periods",
     )?;
     between(
         "accuracy.arithmetic_share",
         spec.accuracy.arithmetic_share,
-        1e-3,
+        SHARE_LEAST,
         1.0,
         "a part of the accuracy",
     )?;

@@ -39,9 +39,9 @@ fn travel_samples(spec: &Spec) -> u32 {
     (5.0 * spec.adc.sample_rate_hz / spec.tracking.bandwidth_hz) as u32
 }
 
-/// Format of a counter from 0 to `last`.
-fn counting_to(last: u32) -> Format {
-    Format::unsigned((32 - last.leading_zeros()).max(1), 0)
+/// A counter from 0 to `last`.
+fn counting_to(last: u32) -> Quantiser {
+    Quantiser::wrapping(Format::unsigned((32 - last.leading_zeros()).max(1), 0))
 }
 
 /// Saturating, so wide or as `finest` fraction bits need, for values up to `largest` in magnitude.
@@ -115,6 +115,7 @@ pub(super) fn structure(
 ) -> Result<Structure, DesignError> {
     let f = words.signal_fraction;
     let width = f + 2;
+    let signal = Quantiser::saturating(Format::signed(width, f));
     let r = ranges(spec);
     let power = normalisation(spec).1;
     let adc_bits = spec.adc.bits;
@@ -124,7 +125,8 @@ pub(super) fn structure(
         let facc = words.accumulator_fraction;
         Quantiser::saturating(Format::signed(bits(1 + power + facc as i32), facc))
     };
-    let fp = words.phase_bits;
+    let (fp, sp) = (words.phase_bits, words.sine_phase_bits);
+    let step = accumulator(r.deviation.into_iter().max().unwrap_or(0));
     let fast = spec.sensor.speed_max_periods_per_s > 0.2 * spec.adc.sample_rate_hz;
     let multiplied = multiplied(spec, follow);
     let formats = Formats {
@@ -134,9 +136,11 @@ pub(super) fn structure(
             Format::signed(adc_bits, adc_bits)
         },
         y,
-        signal: Quantiser::saturating(Format::signed(width, f)),
+        signal,
+        signal_rounded: signal.rounded_before(),
         residual: quarter(follow.residual_fraction),
-        alpha: Format::unsigned(fp, fp),
+        alpha: Quantiser::wrapping(Format::unsigned(fp, fp)),
+        phase_difference: Quantiser::wrapping(Format::signed(fp, fp)),
         // A quarter of a turn each way, and twice that where the design comes near it.
         rate: Quantiser::saturating(Format::signed(if fast { fp } else { fp - 1 }, fp)),
         rate_high: {
@@ -146,11 +150,11 @@ pub(super) fn structure(
         harmonic: quarter(follow.harmonic_fraction),
         skew_rate: held(speed_top(spec), follow.skew_rate_bits, fp),
         skew: held(skew_top(spec), follow.skew_bits, f + 6),
-        sine_phase: Quantiser::truncating(Format::unsigned(
-            words.sine_phase_bits,
-            words.sine_phase_bits,
-        )),
-        count: Format::signed(spec.chip.count_bits, spec.chip.count_bits),
+        sine_phase: Quantiser::truncating(Format::unsigned(sp, sp)),
+        sine_modulo: [1, 2, words.sine_rows_log2 + 2]
+            .map(|bits| Quantiser::wrapping(Format::unsigned(sp - bits, sp))),
+        count: Quantiser::wrapping(Format::signed(spec.chip.count_bits, spec.chip.count_bits)),
+        count_of_four: Quantiser::wrapping(Format::signed(2, spec.chip.count_bits)),
         theta: multiplied.theta,
         theta_bend: multiplied.bend,
         theta_cubic: multiplied.cubic,
@@ -165,7 +169,8 @@ pub(super) fn structure(
         },
         start_periods: counting_to(START_PERIODS),
         travel_samples: counting_to(travel_samples(spec)),
-        step: accumulator(r.deviation.into_iter().max().unwrap_or(0)),
+        step,
+        step_cut: Quantiser::truncating(step.format),
         level: Quantiser::saturating(Format::unsigned(follow.lock_level_bits, 0)),
         // Two bits even where one would do.
         loop_gear: counting_to(acquisition.gears.max(3)),

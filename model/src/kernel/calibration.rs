@@ -6,7 +6,6 @@
 use super::gradient::{self, Bent, Seen};
 use super::sensitivity::Sensitivity;
 use super::{Coefficients, State, Structure, gather, gears, start};
-use crate::format::Quantiser;
 use crate::signal::{Formula, Logic, Signal, Wide};
 use crate::spec::CalibrationMethod;
 
@@ -127,6 +126,7 @@ pub struct Update<S: Signal> {
 }
 
 /// Accumulator `i` after a step; at its nominal value where nothing is known of it.
+#[inline(always)]
 pub fn moved<S: Signal>(
     old: S,
     step: S,
@@ -261,6 +261,9 @@ pub fn update<S: Signal, const PLAIN: bool>(
         .phase_settles()
         .then(|| gears::settled(state, k, structure));
     let step = |gradient: S::Wide, i: usize, equaliser: i32| {
+        if due.is_known_false() {
+            return moved(old[i], k.zero, i, nominal, k, structure);
+        }
         let geared = gradient
             .scale(equaliser - structure.calibration.gamma_first as i32)
             .named(GRADIENT[i])
@@ -274,8 +277,7 @@ pub fn update<S: Signal, const PLAIN: bool>(
             // What is cut off is less than the last bit of the steps.
             Some(settled) => {
                 let half = geared.scale(-1);
-                let cut = Quantiser::truncating(structure.formats.step.format);
-                S::select(settled, half.quantise(&cut), geared)
+                S::select(settled, half.quantise(&structure.formats.step_cut), geared)
             }
             None => geared,
         };
@@ -289,18 +291,23 @@ pub fn update<S: Signal, const PLAIN: bool>(
         let step = S::select(due, geared, k.zero).named(STEP[i]);
         moved(old[i], step, i, nominal, k, structure)
     };
+    // θ5 first: its product is the last of the paper's.
     let by = Equaliser::of(structure);
-    if structure.calibration.has_phase() {
-        this.theta[4] = step(gradient[4], 4, by.phase);
+    let [first, second, third, fourth, fifth] = gradient;
+    let plain = [
+        (4, fifth, by.phase),
+        (0, first, by.gain),
+        (1, second, by.offset),
+        (2, third, by.gain),
+        (3, fourth, by.offset),
+    ];
+    for (i, gradient, equaliser) in plain.into_iter().skip(5 - linear) {
+        this.theta[i] = step(gradient, i, equaliser);
     }
-    this.theta[0] = step(gradient[0], 0, by.gain);
-    this.theta[1] = step(gradient[1], 1, by.offset);
-    this.theta[2] = step(gradient[2], 2, by.gain);
-    this.theta[3] = step(gradient[3], 3, by.offset);
     if let Some(Bent { second, third, .. }) = bent {
-        this.theta[5] = step(second[0], 5, by.bend);
-        this.theta[6] = step(second[1], 6, by.bend);
-        this.theta[7] = step(third, 7, by.bend);
+        for (i, gradient) in [(5, second[0]), (6, second[1]), (7, third)] {
+            this.theta[i] = step(gradient, i, by.bend);
+        }
     }
     this
 }

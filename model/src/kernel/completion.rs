@@ -9,7 +9,6 @@ use super::detector::within;
 use super::sensitivity::{self, Sensitivity};
 use super::travel::Travel;
 use super::{Coefficients, State, Structure};
-use crate::format::Quantiser;
 use crate::signal::{Formula, Logic, Signal, Wide};
 
 static COMPLETION: Formula = Formula {
@@ -62,7 +61,7 @@ pub fn complete<S: Signal>(
     let moving = fast.and(travel.whole_period.or(state.moving));
     let clear = travel.whole_period.or(counting.not());
     let samples = (state.travel_samples + S::select(late, k.zero, k.one))
-        .quantise(&Quantiser::wrapping(structure.formats.travel_samples));
+        .quantise(&structure.formats.travel_samples);
     e.begin(&COMPLETION);
     let gamma = structure.calibration.completed().unwrap_or(0) as i32;
     let step = (sensitivity.error * e)
@@ -74,8 +73,7 @@ pub fn complete<S: Signal>(
     Completion {
         step: S::select(allowed, step, k.zero).named("step_9"),
         sensitivity,
-        samples: S::select(clear, k.zero, samples)
-            .quantise(&Quantiser::wrapping(structure.formats.travel_samples)),
+        samples: S::select(clear, k.zero, samples).quantise(&structure.formats.travel_samples),
         moving,
     }
 }

@@ -66,6 +66,7 @@ fn formula(structure: &Structure) -> &'static Formula {
 }
 
 /// An ADC code, given as a fraction of the ADC's range, as a signal: `y` has the nominal amplitude between ½ and 1.
+#[inline(always)]
 pub fn normalise<S: Signal>(code: S, k: &Coefficients<S>, structure: &Structure) -> S {
     code.begin(&NORMALISE);
     let centred = if structure.offset_binary {
@@ -77,6 +78,7 @@ pub fn normalise<S: Signal>(code: S, k: &Coefficients<S>, structure: &Structure)
 }
 
 /// θ1 … θ5 as they are applied. The offsets θ2 and θ4 are not multiplied and keep every bit.
+#[inline(always)]
 pub fn parameters<S: Signal>(
     state: &State<S>,
     k: &Coefficients<S>,
@@ -84,11 +86,11 @@ pub fn parameters<S: Signal>(
 ) -> [S; 5] {
     let fixed = !structure.calibration.is_on();
     state.alpha_hat.begin(if fixed { &NOMINAL } else { &THETA });
-    let [first, third, fifth] = structure.formats.theta;
-    let theta_1 = (k.theta_1_nominal + state.theta_1_deviation).quantise(&first);
-    let theta_3 = (k.theta_3_nominal + state.theta_3_deviation).quantise(&third);
+    let [first, third, fifth] = &structure.formats.theta;
+    let theta_1 = (k.theta_1_nominal + state.theta_1_deviation).quantise(first);
+    let theta_3 = (k.theta_3_nominal + state.theta_3_deviation).quantise(third);
     let theta_5 = if structure.calibration.has_phase() {
-        state.theta_5_deviation.quantise(&fifth)
+        state.theta_5_deviation.quantise(fifth)
     } else {
         k.zero
     };
@@ -129,6 +131,7 @@ pub fn correct_bent<S: Signal>(
 }
 
 /// The corrected pair (c, s).
+#[inline(always)]
 pub fn correct<S: Signal>(y_c: S, y_s: S, theta: [S; 5], structure: &Structure) -> (S, S) {
     y_c.begin(formula(structure));
     let [theta_1, theta_2, theta_3, theta_4, theta_5] = theta;

@@ -22,6 +22,7 @@ static WEAK: Formula = Formula {
 };
 
 /// e ≈ α − α̂ in radians.
+#[inline(always)]
 pub fn phase_error<S: Signal>(c: S, s: S, cos_hat: S, sin_hat: S, structure: &Structure) -> S {
     c.begin(&PHASE);
     (s * cos_hat - c * sin_hat)
@@ -31,6 +32,7 @@ pub fn phase_error<S: Signal>(c: S, s: S, cos_hat: S, sin_hat: S, structure: &St
 
 /// ρ: projection of the corrected pair on the estimate's direction, less one. The 1 is half a bit short, which rounds
 /// the result without an adder of its own.
+#[inline(always)]
 pub fn radial_residual<S: Signal>(
     c: S,
     s: S,
@@ -42,7 +44,7 @@ pub fn radial_residual<S: Signal>(
     c.begin(&RADIUS);
     (c * cos_hat - k.unit_radius.widen() + s * sin_hat)
         .named("rho_exact")
-        .quantise(&structure.formats.signal.rounded_before())
+        .quantise(&structure.formats.signal_rounded)
 }
 
 /// Whether −`limit` ≤ x < `limit`: both comparisons need only the bits above the last one of `limit`.
@@ -51,6 +53,7 @@ pub fn within<S: Signal>(x: S, limit: S) -> S::Bool {
 }
 
 /// Both corrected signals are too small to tell an angle.
+#[inline(always)]
 pub fn weak<S: Signal>(c: S, s: S, k: &Coefficients<S>) -> S::Bool {
     c.begin(&WEAK);
     let (c, s) = (within(c, k.weak_signal), within(s, k.weak_signal));

@@ -10,7 +10,6 @@
 use super::calibration::Gate;
 use super::detector::within;
 use super::{Coefficients, State, Structure};
-use crate::format::Quantiser;
 use crate::signal::{Formula, Logic, Signal};
 
 /// Periods of travel that parameters are held before the search begins again, less one.
@@ -61,6 +60,7 @@ pub struct Hold<S: Signal> {
 
 /// Whether the parameters are held; `counted`: the sample counts, `follows`: neither it nor the last ones were out of the
 /// lock window.
+#[inline(always)]
 pub fn hold<S: Signal>(
     rho: S,
     counted: S::Bool,
@@ -103,12 +103,14 @@ pub fn hold<S: Signal>(
 }
 
 /// γ is as small as it becomes.
+#[inline(always)]
 fn last_gear<S: Signal>(state: &State<S>, k: &Coefficients<S>) -> S::Bool {
     let before = state.gamma_gear.less_than(k.gamma_gear_last);
     before.not().named("last_gamma_gear")
 }
 
 /// γ has settled. With fewer gears it never has.
+#[inline(always)]
 pub fn settled<S: Signal>(state: &State<S>, k: &Coefficients<S>, structure: &Structure) -> S::Bool {
     if !structure.calibration.settles() {
         return k.never();
@@ -118,6 +120,7 @@ pub fn settled<S: Signal>(state: &State<S>, k: &Coefficients<S>, structure: &Str
 }
 
 /// The signal is lost in the first gear: the parameters are nominal.
+#[inline(always)]
 pub fn nominal<S: Signal>(state: &State<S>, k: &Coefficients<S>) -> S::Bool {
     let lost = state.signal_lost.and(state.locked.not());
     let first = state.gamma_gear.less_than(k.one);
@@ -125,12 +128,14 @@ pub fn nominal<S: Signal>(state: &State<S>, k: &Coefficients<S>) -> S::Bool {
 }
 
 /// A period of travel ends in which the residual was large.
+#[inline(always)]
 fn disturbed_period<S: Signal>(gate: Gate<S>, state: &State<S>) -> S::Bool {
     gate.tick.and(state.disturbed).named("disturbed_period")
 }
 
 /// The search begins again: the residual was large before γ had settled, or the radius too large, or the residual large for
 /// so long that the signal must have changed.
+#[inline(always)]
 pub fn restart<S: Signal>(
     gate: Gate<S>,
     state: &State<S>,
@@ -147,6 +152,7 @@ pub fn restart<S: Signal>(
 }
 
 /// The γ gear after this sample. A period that was solved by least squares (`starting`) is worth a whole gear.
+#[inline(always)]
 pub fn gears<S: Signal>(
     hold: Hold<S>,
     gate: Gate<S>,
@@ -156,8 +162,6 @@ pub fn gears<S: Signal>(
     structure: &Structure,
 ) -> Gears<S> {
     state.gamma_gear.begin(&GEARS);
-    let gear_format = Quantiser::wrapping(structure.formats.gamma_gear);
-    let period_format = Quantiser::wrapping(structure.formats.gear_periods);
     let tick = gate.tick;
     let restart = restart(gate, state, k, structure);
     let last = last_gear(state, k);
@@ -168,9 +172,9 @@ pub fn gears<S: Signal>(
     let passed = tick.and(done).named("gear_passed");
     let shift = passed.and(last.not()).named("gamma_shift");
     let up = S::select(shift, k.one, k.zero).named("gamma_gear_up");
-    let gear = (state.gamma_gear + up).quantise(&gear_format);
+    let gear = (state.gamma_gear + up).quantise(&structure.formats.gamma_gear);
     let one_more = S::select(tick, k.one, k.zero).named("gear_periods_up");
-    let counted = (state.gear_periods + one_more).quantise(&period_format);
+    let counted = (state.gear_periods + one_more).quantise(&structure.formats.gear_periods);
     // Periods held are counted from the first, and those of a gear from the first after them.
     let begins = state.disturbed.and(state.held.not()).named("hold_begins");
     let ends = state.held.and(state.disturbed.not()).named("hold_ends");
@@ -188,8 +192,8 @@ pub fn gears<S: Signal>(
         .or(still_held)
         .named("holding");
     Gears {
-        gear: S::select(restart, k.zero, gear).quantise(&gear_format),
-        periods: S::select(again, k.zero, counted).quantise(&period_format),
+        gear: S::select(restart, k.zero, gear).quantise(&structure.formats.gamma_gear),
+        periods: S::select(again, k.zero, counted).quantise(&structure.formats.gear_periods),
         passed,
         restart,
         // Where nothing counts, a new period begins without suspicion.

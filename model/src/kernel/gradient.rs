@@ -56,6 +56,7 @@ pub struct Seen<S: Signal> {
 
 /// ρ as it moves the parameters. More than a quarter of the radius is no measurement: the word holds it there, and every
 /// step after it is short.
+#[inline(always)]
 pub fn limited<S: Signal>(rho: S, structure: &Structure) -> S {
     rho.begin(if structure.calibration.squares() {
         &ALONG
@@ -67,6 +68,7 @@ pub fn limited<S: Signal>(rho: S, structure: &Structure) -> S {
 }
 
 /// n ρ, or for the sum of squares (c, s) ε.
+#[inline(always)]
 pub fn along<S: Signal>(rho: S, (cos, sin): (S, S), structure: &Structure) -> (S, S) {
     let signal = &structure.formats.signal;
     ((cos * rho).quantise(signal), (sin * rho).quantise(signal))
@@ -74,6 +76,7 @@ pub fn along<S: Signal>(rho: S, (cos, sin): (S, S), structure: &Structure) -> (S
 
 /// By θ1 … θ5 in the final form: Mᵀ n ρ. The last is 0 without phase. While the start runs, by δ1 … δ5 of a pair of
 /// amplitude 1.
+#[inline(always)]
 pub fn linear<S: Signal>(
     seen: &Seen<S>,
     k: &Coefficients<S>,

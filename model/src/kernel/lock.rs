@@ -46,6 +46,7 @@ pub struct Lock<S: Signal> {
 
 /// Whether this sample looks as in lock. A radius that is too large does not speak against it: parameters of a signal that had
 /// faded make one, and only in lock do they find back.
+#[inline(always)]
 pub fn in_window<S: Signal>(
     e: S,
     rho: S,
@@ -65,12 +66,14 @@ pub fn in_window<S: Signal>(
 }
 
 /// Whether the estimate points away from the signal and may be turned round.
+#[inline(always)]
 pub fn flip<S: Signal>(rho: S, weak: S::Bool, state: &State<S>, k: &Coefficients<S>) -> S::Bool {
     let may = state.locked.or(weak).not().named("may_flip");
     rho.less_than(-k.one).and(may)
 }
 
 /// Next level, gear and lock.
+#[inline(always)]
 pub fn update<S: Signal>(
     good: S::Bool,
     state: &State<S>,
@@ -108,14 +111,14 @@ pub fn update<S: Signal>(
     let gear = S::select(
         empty,
         k.zero,
-        (state.loop_gear + up).quantise(&crate::format::Quantiser::wrapping(formats.loop_gear)),
+        (state.loop_gear + up).quantise(&formats.loop_gear),
     );
     let level = S::select(narrower, k.lock_restart, level);
     let full_in_last = full.and(last).named("full_in_last_gear");
     let locked = state.locked.or(full_in_last).and(empty.not());
     Lock {
         level: level.quantise(&formats.level),
-        gear: gear.quantise(&crate::format::Quantiser::wrapping(formats.loop_gear)),
+        gear: gear.quantise(&formats.loop_gear),
         full,
         locked,
     }

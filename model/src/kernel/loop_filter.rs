@@ -7,7 +7,6 @@
 //! the bandwidth by that factor.
 
 use super::{Coefficients, Method, State, Structure};
-use crate::format::Quantiser;
 use crate::signal::{Formula, Signal, Wide};
 
 /// The filter with one gear, and with more.
@@ -74,22 +73,10 @@ fn formula(structure: &Structure) -> &'static Formula {
 }
 
 /// The position increment of this sample, in turns.
+#[inline(always)]
 pub fn rate<S: Signal>(e: S, state: &State<S>, k: &Coefficients<S>, structure: &Structure) -> S {
     e.begin(formula(structure));
     let formats = &structure.formats;
-    let geared = |product: S::Wide, stride: u32| {
-        let widest = (stride * structure.loop_gears) as i32;
-        if widest == 0 {
-            product.quantise(&formats.rate)
-        } else {
-            product.scale(widest).quantise_geared(
-                state.loop_gear,
-                stride,
-                structure.loop_gears,
-                &formats.rate,
-            )
-        }
-    };
     let before = rate_before(state, structure);
     let kept = if structure.filter_type == 2 {
         before
@@ -97,31 +84,38 @@ pub fn rate<S: Signal>(e: S, state: &State<S>, k: &Coefficients<S>, structure: &
         leak(before, k, structure)
     };
     if structure.method == Method::Two {
-        return (kept + geared(k.loop_a * e, 1)).quantise(&formats.rate);
+        return (kept + geared(k.loop_a * e, 1, state, structure)).quantise(&formats.rate);
     }
     let change = (e - state.error_previous)
         .quantise(&formats.signal)
         .named("e_change");
-    let kick = geared(k.loop_a * change, 1).named("kick");
-    let drift = geared(k.loop_ab * state.error_previous, 2).named("drift");
+    let kick = geared(k.loop_a * change, 1, state, structure).named("kick");
+    let drift = geared(k.loop_ab * state.error_previous, 2, state, structure).named("drift");
     // The drift is there long before the kick.
     (kept + drift + kick).quantise(&formats.rate)
+}
+
+/// What a coefficient adds to the rate in the present gear of the loop, each gear narrower by 2^`stride`.
+#[inline(always)]
+fn geared<S: Signal>(product: S::Wide, stride: u32, state: &State<S>, structure: &Structure) -> S {
+    let to = &structure.formats.rate;
+    let widest = (stride * structure.loop_gears) as i32;
+    if widest == 0 {
+        return product.quantise(to);
+    }
+    product
+        .scale(widest)
+        .quantise_geared(state.loop_gear, stride, structure.loop_gears, to)
 }
 
 /// The position increment of the sample before, in turns: the speed as it is known before this sample.
 pub fn rate_before<S: Signal>(state: &State<S>, structure: &Structure) -> S {
     match structure.method {
         Method::One => (state.alpha_hat - state.alpha_hat_previous)
-            .quantise(&wrapped(structure))
+            .quantise(&structure.formats.phase_difference)
             .named("rate_before"),
         Method::Two | Method::Three => state.rate,
     }
-}
-
-/// A difference of two phases is known modulo one turn.
-fn wrapped(structure: &Structure) -> Quantiser {
-    let alpha = structure.formats.alpha;
-    Quantiser::wrapping(crate::format::Format::signed(alpha.width, alpha.fraction))
 }
 
 /// p · rate as rate − (1 − p) · rate, in two products so that the multiplier need not be wider for it.

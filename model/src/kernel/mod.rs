@@ -90,10 +90,14 @@ pub struct Formats {
     pub y: Format,
     /// Every signal of the sample: corrected pair, sine pair, phase error, radial residual.
     pub signal: Quantiser,
+    /// The same where half a bit was added before.
+    pub signal_rounded: Quantiser,
     /// ρ as it moves the parameters.
     pub residual: Quantiser,
-    /// Phase and its increments.
-    pub alpha: Format,
+    /// Phase, modulo one turn.
+    pub alpha: Quantiser,
+    /// Difference of two phases, modulo one turn.
+    pub phase_difference: Quantiser,
     /// Phase increment per sample, turns.
     pub rate: Quantiser,
     /// Upper part of the rate, where it is multiplied in two parts (type 1).
@@ -106,8 +110,12 @@ pub struct Formats {
     pub harmonic: Quantiser,
     /// Phase that addresses the sine table.
     pub sine_phase: Quantiser,
+    /// The same modulo half a turn, a quarter, and a segment of the table.
+    pub sine_modulo: [Quantiser; 3],
     /// Count of whole periods; the unit is the whole range of the counter.
-    pub count: Format,
+    pub count: Quantiser,
+    /// The same modulo four periods.
+    pub count_of_four: Quantiser,
     /// θ1, θ3 and θ5 as they are multiplied.
     pub theta: [Quantiser; 3],
     /// θ6 and θ7 as they are multiplied.
@@ -121,17 +129,19 @@ pub struct Formats {
     /// Gathered gradient of the sum of squares, or of the start.
     pub gathered: Quantiser,
     /// Samples in a period of travel.
-    pub travel_samples: Format,
+    pub travel_samples: Quantiser,
     /// Periods solved by least squares.
-    pub start_periods: Format,
+    pub start_periods: Quantiser,
     /// One step of any parameter: one format, so that one shifter serves all.
     pub step: Quantiser,
+    /// Half of it, what is behind its last bit cut off.
+    pub step_cut: Quantiser,
     /// Lock level.
     pub level: Quantiser,
     /// Loop gear.
-    pub loop_gear: Format,
+    pub loop_gear: Quantiser,
     /// γ gear.
-    pub gamma_gear: Format,
+    pub gamma_gear: Quantiser,
     /// Periods travelled in this γ gear.
-    pub gear_periods: Format,
+    pub gear_periods: Quantiser,
 }

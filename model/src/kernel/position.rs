@@ -1,6 +1,6 @@
 //! Position: a phase that wraps at one turn and a count of whole periods.
 
-use super::{Coefficients, State, Structure};
+use super::{Coefficients, Formats, State, Structure};
 use crate::format::{Format, Quantiser};
 use crate::signal::{Formula, Logic, Signal};
 
@@ -27,6 +27,7 @@ pub struct Position<S> {
 }
 
 /// Advances the position by `rate`. `flip` turns the estimate by half a period, `zero` presets the count.
+#[inline(always)]
 pub fn advance<S: Signal>(
     rate: S,
     flip: S::Bool,
@@ -36,26 +37,29 @@ pub fn advance<S: Signal>(
     structure: &Structure,
 ) -> Position<S> {
     rate.begin(&POSITION);
-    let phase = Quantiser::wrapping(structure.formats.alpha);
-    let count = Quantiser::wrapping(structure.formats.count);
+    let Formats {
+        alpha: phase,
+        count,
+        ..
+    } = &structure.formats;
     let half_turn = S::select(flip, k.half, k.zero).named("half_turn");
     let turned = (state.alpha_hat + half_turn).named("alpha_hat_turned");
     let sum = (turned + rate).named("alpha_hat_sum");
-    let alpha_hat = sum.quantise(&phase);
+    let alpha_hat = sum.quantise(phase);
     let carry = sum
         .quantise(&Quantiser::grid(Format::signed(3, 0)))
         .named("carry");
     let period = S::select(zero, k.zero, state.count).named("count_before");
-    let counted =
-        (period + carry.scale(-(structure.formats.count.fraction as i32))).quantise(&count);
+    let counted = (period + carry.scale(-(count.format.fraction as i32))).quantise(count);
     Position {
         alpha_hat,
         count: counted,
-        from: turned.quantise(&phase),
+        from: turned.quantise(phase),
     }
 }
 
 /// True while the scale runs backwards; keeps its value while the rate is too small to tell.
+#[inline(always)]
 pub fn direction<S: Signal>(rate: S, before: S::Bool, k: &Coefficients<S>) -> S::Bool {
     rate.begin(&DIRECTION);
     let backwards = rate.less_than(-k.direction_rate).named("backwards");

@@ -5,7 +5,6 @@ use super::{
     bend, calibration, completion, correction, detector, gears, gradient, harmonics, lock,
     loop_filter, position, recall, sine, skew, start, sum_of_squares, travel,
 };
-use crate::format::Quantiser;
 use crate::signal::{Formula, Logic, Signal};
 
 static FLAGS: Formula = Formula {
@@ -176,10 +175,7 @@ fn advance_of<S: Signal, const PLAIN: bool>(
     let speed = if one {
         rate.begin(&SPEED);
         // Method 1: the derivative of the position estimate.
-        let alpha = structure.formats.alpha;
-        let difference =
-            Quantiser::wrapping(crate::format::Format::signed(alpha.width, alpha.fraction));
-        (position.alpha_hat - position.from).quantise(&difference)
+        (position.alpha_hat - position.from).quantise(&structure.formats.phase_difference)
     } else {
         rate
     };

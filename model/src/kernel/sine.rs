@@ -4,7 +4,6 @@
 //! phase is inverting its bits, and truncation is no bias. Each segment is expanded about its centre.
 
 use super::{Coefficients, Structure};
-use crate::format::{Format, Quantiser};
 use crate::signal::{Formula, Logic, Signal, Wide};
 
 /// Column of the table that holds values.
@@ -19,43 +18,55 @@ static SINE: Formula = Formula {
 };
 
 /// (sin α̂, cos α̂) of a phase in turns.
+#[inline(always)]
 pub fn sine<S: Signal>(alpha_hat: S, k: &Coefficients<S>, structure: &Structure) -> (S, S) {
     alpha_hat.begin(&SINE);
-    let fraction = structure.formats.sine_phase.format.fraction;
-    let modulo = |bits: u32| Quantiser::wrapping(Format::unsigned(fraction - bits, fraction));
+    let [half, quarter, _] = &structure.formats.sine_modulo;
     let phase = alpha_hat
         .quantise(&structure.formats.sine_phase)
         .named("sine_phase");
     let upper_half = phase.less_than(k.half).not().named("upper_half");
     let odd = phase
-        .quantise(&modulo(1))
+        .quantise(half)
         .less_than(k.quarter)
         .not()
         .named("odd_quadrant");
-    let rising = phase.quantise(&modulo(2)).named("quarter_phase");
+    let rising = phase.quantise(quarter).named("quarter_phase");
     let falling = (k.quarter_turn - rising).named("quarter_phase_mirrored");
 
-    let quarter = |address: S, name: [&'static str; 4]| {
-        let rom = &structure.sine;
-        let inside = (address.quantise(&modulo(rom.index_fraction)) + k.half_bit - k.half_segment)
-            .named(name[0]);
-        let value = S::lookup(rom, VALUE, address).named(name[1]);
-        let slope = S::lookup(rom, SLOPE, address).named(name[2]);
-        // The table's value carries the half bit of rounding.
-        (slope * inside + value.widen())
-            .quantise(&structure.formats.signal.rounded_before())
-            .named(name[3])
-    };
-    let sin = quarter(
+    let sin = of_quarter(
         S::select(odd, falling, rising).named("sin_address"),
         ["sin_inside", "sin_value", "sin_slope", "sin_magnitude"],
+        k,
+        structure,
     );
-    let cos = quarter(
+    let cos = of_quarter(
         S::select(odd, rising, falling).named("cos_address"),
         ["cos_inside", "cos_value", "cos_slope", "cos_magnitude"],
+        k,
+        structure,
     );
     let sin_hat = S::select(upper_half, -sin, sin).quantise(&structure.formats.signal);
     let cos_negative = upper_half.xor(odd).named("cos_negative");
     let cos_hat = S::select(cos_negative, -cos, cos).quantise(&structure.formats.signal);
     (sin_hat, cos_hat)
+}
+
+/// The first quarter of the wave.
+#[inline(always)]
+fn of_quarter<S: Signal>(
+    address: S,
+    name: [&'static str; 4],
+    k: &Coefficients<S>,
+    structure: &Structure,
+) -> S {
+    let [_, _, segment] = &structure.formats.sine_modulo;
+    let rom = &structure.sine;
+    let inside = (address.quantise(segment) + k.half_bit - k.half_segment).named(name[0]);
+    let value = S::lookup(rom, VALUE, address).named(name[1]);
+    let slope = S::lookup(rom, SLOPE, address).named(name[2]);
+    // The table's value carries the half bit of rounding.
+    (slope * inside + value.widen())
+        .quantise(&structure.formats.signal_rounded)
+        .named(name[3])
 }

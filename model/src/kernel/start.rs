@@ -156,12 +156,12 @@ pub fn start<S: Signal>(
     let steps = steps(mean, theta, k, structure);
     let solved = gate.fresh.and(gate.whole_period).and(running(state, k));
     let periods = (state.start_periods + S::select(solved, k.one, k.zero))
-        .quantise(&Quantiser::wrapping(structure.formats.start_periods));
+        .quantise(&structure.formats.start_periods);
     Start {
         steps,
         gathered,
         periods: S::select(gears::restart(gate, state, k, structure), k.zero, periods)
-            .quantise(&Quantiser::wrapping(structure.formats.start_periods)),
+            .quantise(&structure.formats.start_periods),
     }
 }
 

@@ -33,6 +33,7 @@ pub struct Measure<S> {
 }
 
 /// Calibration is allowed, from outside and by the lock.
+#[inline(always)]
 pub fn counting<S: Signal>(input: &Input<S>, state: &State<S>) -> S::Bool {
     state.alpha_hat.begin(&TRAVEL);
     state.locked.and(input.calibrate).named("counting")
@@ -62,6 +63,7 @@ pub struct Travel<S: Signal> {
 
 /// Whether this sample's sector is fresh, and the map after it. Not counting (`counting` false) clears the map. `measure`: where
 /// travel is measured otherwise than in whole periods of α̂.
+#[inline(always)]
 pub fn travel<S: Signal>(
     counting: S::Bool,
     measure: Option<Measure<S>>,
@@ -70,12 +72,11 @@ pub fn travel<S: Signal>(
     structure: &Structure,
 ) -> Travel<S> {
     state.alpha_hat.begin(&TRAVEL);
-    let count = structure.formats.count;
-    let low_bits = Quantiser::wrapping(Format::signed(2, count.fraction));
+    let of_four = &structure.formats.count_of_four;
     let periods = state
         .count
-        .quantise(&low_bits)
-        .scale(count.fraction as i32)
+        .quantise(of_four)
+        .scale(of_four.format.fraction as i32)
         .named("periods_modulo_4");
     let sector = match measure {
         None => {
