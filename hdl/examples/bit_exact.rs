@@ -66,7 +66,8 @@ fn run(docs: Option<&Path>) -> Result<bool, Box<dyn Error>> {
     let file = docs.join("bit-exact.md");
     let known = fs::read_to_string(&file).unwrap_or_default();
     let variants = everything();
-    let lines: Mutex<Vec<Option<String>>> = Mutex::new(vec![None; variants.len()]);
+    let before = variants.iter().map(|variant| earlier(variant, &known));
+    let lines: Mutex<Vec<Option<String>>> = Mutex::new(before.collect());
     let all: Result<(), String> = variants
         .par_iter()
         .enumerate()
@@ -88,6 +89,14 @@ fn run(docs: Option<&Path>) -> Result<bool, Box<dyn Error>> {
     all?;
     let lines = lines.into_inner()?;
     Ok(!page(&lines).contains(FAIL))
+}
+
+/// The row that the page has of this variant, as one of a chip that has changed since.
+fn earlier(variant: &Variant, known: &str) -> Option<String> {
+    let begins = format!("| {} | ", described(variant));
+    let row = known.lines().find_map(|line| line.strip_prefix(&begins))?;
+    let (_, results) = row.split_once(" | ")?;
+    Some(format!("{begins}earlier | {results}\n")).filter(|row| !row.contains(FAIL))
 }
 
 /// What a row says where something differs.
@@ -200,7 +209,7 @@ const HEAD: &str = "\
 Written by `cargo run --release -p nonius-hdl --example bit_exact -- docs`; do not edit. Samples of mixed stimuli
 (standstill, both directions, sweep, creep, loss of signal, step, corners, bounds, ties, random codes) in which every probe and register of the
 Verilog equals the model. A variant that is missing was not run. *Chip* is a fingerprint of its Verilog, tables, testbench and
-stimuli: run again, the command takes only those whose files have changed since.
+stimuli: run again, the command takes only those whose files have changed since; *earlier* stands where it has not come to them yet.
 
 | design | method | type | parameters | multipliers | ADC bits | chip | Verilator | Icarus |
 |---|---|---|---|---|---|---|---|---|

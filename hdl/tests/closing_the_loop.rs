@@ -18,7 +18,7 @@ use nonius_sensor::{Motion, Sensor};
 const KEPT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/closing-the-loop.md");
 const ROWS: u32 = 120_000;
 /// Rows of the recording that become vectors.
-const PLAYED: usize = 2_000;
+const PLAYED: usize = 1_000;
 
 const HEAD: &str = "# sample_rate_hz: 50000\n# adc_bits: 14\n# full_scale: 1\n# periods_per_revolution: 64\ntime_s,cos,sin,reference_rad\n";
 
@@ -175,7 +175,7 @@ fn closed(recording: &str, simulated: bool) -> Closed {
         // The named stimuli have tests of their own.
         let (from, to) = (dir.join(design), dir.join("chip"));
         done(&[
-            &"build", &from, &"-o", &to, &"--play", &head, &"--rows", &"100",
+            &"build", &from, &"-o", &to, &"--play", &head, &"--rows", &"20",
         ]);
         let report = verify(dir.join("chip"), &Options::PATIENT, &silent);
         let report = report.unwrap_or_else(|e| panic!("{e}"));
@@ -214,7 +214,7 @@ fn what_is_found_is_corrected_by_the_chip() {
          Written by `NONIUS_BLESS=1 cargo test -p nonius-hdl --test closing_the_loop`; do not edit. An encoder is simulated with its\n\
          true angle, diagnosed, and the chip of the emitted design run over the same recording. Angle error in mrad of a scale\n\
          period, rms over the last third. In the first row of each table the chip of the diagnosis is also built with the first\n\
-         2000 samples of the recording as vectors, and its Verilog equals the model in every bit, in Icarus and in Verilator\n\
+         1000 samples of the recording as vectors, and its Verilog equals the model in every bit, in Icarus and in Verilator\n\
          (`nonius verify`).\n\n\
          ## Bent channels\n\n\
          | bends y + k y³ (cos, sin) | named | chip of `new --from` | chip of the diagnosis |\n|---|---|---|---|\n",

@@ -23,6 +23,7 @@ pub mod sine;
 pub mod skew;
 pub mod start;
 pub mod state;
+pub mod step;
 pub mod sum_of_squares;
 pub mod travel;
 

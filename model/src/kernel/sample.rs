@@ -3,7 +3,7 @@
 use super::{Coefficients, Input, Method, Probes, State, Structure};
 use super::{
     bend, calibration, completion, correction, detector, gears, gradient, harmonics, lock,
-    loop_filter, position, recall, sine, skew, start, sum_of_squares, travel,
+    loop_filter, position, recall, sine, skew, start, step, sum_of_squares, travel,
 };
 use crate::signal::{Formula, Logic, Signal};
 
@@ -160,7 +160,7 @@ fn advance_of<S: Signal, const PLAIN: bool>(
     });
     if let Some(completed) = &completed {
         let (old, nominal) = (state.theta_9_deviation, gears::nominal(state, k));
-        updated.theta[8] = calibration::moved(old, completed.step, 8, nominal, k, structure);
+        updated.theta[8] = step::moved(old, completed.step, 8, nominal, k, structure);
     }
     let gears = gears::gears(hold, gate, (counting, starting), state, k, structure);
     let recalled = hold.recall.filter(|_| !PLAIN);
