@@ -101,11 +101,9 @@ fn shipped_designs_as_netlists() {
 /// Yosys 0.23 gets this wrong, and the vectors see it at the ports.
 #[test]
 fn a_comparison_that_is_synthesised_wrong_is_seen() {
-    // The smallest chip that has it.
-    let mut spec = shipped::variants::fixed().spec;
-    spec.name = "fixed".into();
+    let spec = shipped::optical();
     let run = synthesised(&spec, |dir| {
-        let file = dir.join("rtl/fixed.v");
+        let file = dir.join("rtl/optical.v");
         let text = fs::read_to_string(&file).expect("the chip");
         let wrong = text.replace(
             "$signed(~rho_now[17:15]) < 3'sd1",

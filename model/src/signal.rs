@@ -4,7 +4,8 @@
 //! [`Bits`](crate::bits::Bits) it is the chip, bit by bit; read with [`Node`](crate::graph::Node) it records itself as
 //! a graph, from which the Verilog is written. Sums, differences, products and scalings by powers of two are exact;
 //! the only lossy step is [`Signal::quantise`]. There is no `if` on data in a kernel: a decision is a [`Logic`] value
-//! and a [`Signal::select`].
+//! and a [`Signal::select`]. What counts only where a decision holds may be left out where it is
+//! [known not to](Logic::is_known_false).
 
 use std::ops::{Add, Mul, Neg, Sub};
 
