@@ -47,8 +47,10 @@ pub fn rows(
         let words = line
             .split_whitespace()
             .map(|word| {
-                u64::from_str_radix(word, 16)
-                    .map_err(|_| wrong(format!("{word:?} is no hexadecimal number")))
+                // The standard library takes a sign too, `$readmemh` and the testbench do not.
+                let digits = word.bytes().all(|byte| byte.is_ascii_hexdigit());
+                let number = u64::from_str_radix(word, 16).ok().filter(|_| digits);
+                number.ok_or_else(|| wrong(format!("{word:?} is no hexadecimal number")))
             })
             .collect::<Result<Vec<u64>, VectorError>>()?;
         if words.len() != columns + 5 {
@@ -61,6 +63,11 @@ pub fn rows(
         for word in &words[1..3] {
             if adc_bits < 64 && word >> adc_bits != 0 {
                 return Err(wrong(format!("{word:x} is no code of {adc_bits} bits")));
+            }
+        }
+        for (word, pin) in words[3..5].iter().zip(["preset", "calibrate"]) {
+            if *word > 1 {
+                return Err(wrong(format!("{word:x} is no level of {pin}: 0 or 1")));
             }
         }
         if words[0] != index as u64 {
