@@ -28,7 +28,7 @@ impl Chip<Bits> {
     }
 
     /// One sample of ADC codes; `zero` and `calibrate` as the pins.
-    #[inline]
+    #[cfg_attr(not(debug_assertions), inline)]
     pub fn step_codes(&mut self, cos: i64, sin: i64, zero: bool, calibrate: bool) -> Probes<Bits> {
         let bits = self.structure.formats.adc.fraction;
         self.step(&Input {
@@ -37,6 +37,13 @@ impl Chip<Bits> {
             preset: zero,
             calibrate,
         })
+    }
+
+    /// One sample.
+    // A sample is one long function: forty test programs take it from here instead of compiling it again.
+    #[cfg_attr(not(debug_assertions), inline)]
+    pub fn step(&mut self, input: &Input<Bits>) -> Probes<Bits> {
+        advance(input, &mut self.state, &self.coefficients, &self.structure)
     }
 
     /// Whole periods and phase: α̂ for the next sample, in units of 2^-(phase bits) of a period.
@@ -86,19 +93,18 @@ impl Chip<f64> {
         }
     }
 
+    /// One sample.
+    // As above.
+    #[cfg_attr(not(debug_assertions), inline)]
+    pub fn step(&mut self, input: &Input<f64>) -> Probes<f64> {
+        advance(input, &mut self.state, &self.coefficients, &self.structure)
+    }
+
     /// The position in periods.
     #[must_use]
     pub fn position(&self) -> f64 {
         self.state.count * crate::format::exp2(self.structure.formats.count.format.fraction.into())
             + self.state.alpha_hat
-    }
-}
-
-impl<S: Signal> Chip<S> {
-    /// One sample.
-    #[inline]
-    pub fn step(&mut self, input: &Input<S>) -> Probes<S> {
-        advance(input, &mut self.state, &self.coefficients, &self.structure)
     }
 }
 
