@@ -138,7 +138,9 @@ impl Netlist {
         let (mut state, mut commits, mut held) = (vec![], vec![], vec![]);
         for (name, id) in &graph.inputs {
             let sampled = SAMPLED.contains(&name.as_str());
-            let form = if sampled {
+            // A pin that no formula reads needs no register: `calibrate` of a chip without calibration.
+            let read = w.is_read(*id);
+            let form = if sampled && read {
                 format!("{name}_held")
             } else {
                 name.clone()
@@ -150,7 +152,7 @@ impl Netlist {
                 meaning: meaning(name),
             };
             if sampled {
-                held.push(register);
+                held.extend(read.then_some(register));
                 continue;
             }
             state.push(register);

@@ -84,7 +84,11 @@ impl Draft {
             "the finest that sensor, ADC and loop allow",
         );
         out += "\n[chip]\n";
-        out += &line("multipliers", "1".into(), "1, 2, ... or \"all\"");
+        out += &line(
+            "multipliers",
+            "1".into(),
+            "1, 2, ... or \"all\": as many as save clocks",
+        );
         out += "\n# [formats]                             # any word length in place of the chosen one: see\n";
         out += "# signal_fraction = 16                  # budget.words of design.json for keys, values and limits\n";
         out
