@@ -84,6 +84,8 @@ pub(crate) struct Candidate {
     pub motion: bool,
     /// What the amounts can be.
     pub sign: Sign,
+    /// A drift may be the same: it is named alone only where no drift explains nearly as much, and never without it.
+    pub as_drift: bool,
     /// What the chip can do.
     pub chip: Chip,
     /// How the shapes depend on numbers that are no amounts, where they do.
@@ -106,6 +108,7 @@ impl Candidate {
             id: 0,
             motion: false,
             sign: Sign::Any,
+            as_drift: false,
             chip: Chip::CannotCorrect,
             exact: None,
             parameters: Rc::new(|_| vec![]),

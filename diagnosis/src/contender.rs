@@ -8,7 +8,7 @@ use crate::context::Context;
 use crate::exact;
 use crate::generic::{self, HOLDS};
 use crate::library::Shape;
-use crate::model::{Fit, System, atoms_of};
+use crate::model::{Fit, System, amounts, atoms_of};
 use crate::select::{KINDS, RIVALS, SHOWN, Scored, both, score};
 use crate::selection::{Accepted, Unnamed};
 use crate::statistics::{after_trials, log_tail};
@@ -22,6 +22,10 @@ const LARGE: f64 = 45_000.0;
 const OTHERS: usize = 3;
 /// Share of the best gain from which on another cause may stand in for one that does not hold.
 const NEARLY: f64 = 0.8;
+/// Share from which on a drift explains as much as what may be one.
+const AS_WELL: f64 = 0.95;
+/// A drift of the offsets.
+const DRIFT: &str = "offset_drift";
 /// Most causes that stand beside another.
 const MOST_BESIDE: usize = 3;
 /// A cause that adds less than this probability says nothing new.
@@ -54,6 +58,10 @@ pub(crate) fn contender(
         if tried.contains(&one) || best.gain < NEARLY * most {
             continue;
         }
+        let drifts = |s: &Scored| s.candidate.name == DRIFT && s.gain > AS_WELL * best.gain;
+        if best.candidate.as_drift && scored.iter().any(drifts) {
+            continue;
+        }
         // What stands in for steps has to explain as much as the drift did that they are taken for.
         let less = |s: &&Scored| best.gain + (s.freedom as f64) < s.gain;
         if stepped.is_some_and(|i: usize| less(&&scored[i])) {
@@ -70,7 +78,11 @@ pub(crate) fn contender(
             ..*best
         };
         let rest: Vec<&Scored> = scored[..i].iter().chain(&scored[i + 1..]).collect();
-        let rivals = rivals(&beside, &own, &rest);
+        let mut rivals = rivals(&beside, &own, &rest);
+        if own.candidate.as_drift {
+            rivals.retain(|name| name != DRIFT);
+            rivals.push(DRIFT.to_owned());
+        }
         let mark = system.samples.library.atoms.len();
         let held = holds(system, catalogue, fit, &own, &rest);
         let least = if own.candidate.domain == Domain::Time {
@@ -149,21 +161,25 @@ pub(crate) fn contender(
     }
 }
 
-/// A number that shows twice, as an amount and by the shapes, stands on a grid that is coarse for them: the best such cause
-/// is compared with the others where its number is fitted.
+/// A number that shows twice, as an amount and by the shapes, stands on a grid that is coarse for them, and so does one that
+/// drifts are compared with: the best such cause is compared with the others where its number is fitted.
 fn off_the_grid(system: &mut System, fit: &Fit, scored: &mut [Scored]) {
-    let most = scored.iter().map(|s| s.gain).fold(0.0, f64::max);
-    let coarse =
-        |s: &&mut Scored| matches!(s.candidate.sign, Sign::Known(_)) && s.gain > RIVALS * most;
-    let all = scored.iter_mut().filter(coarse);
-    let Some(best) = all.max_by(|a, b| a.gain.total_cmp(&b.gain)) else {
-        return;
-    };
-    let mut cause = Accepted::new(best.candidate.clone());
-    exact::tuned(system, &fit.shapes, &mut cause, best.gain);
-    let beside = Beside::new(&system.total, &fit.shapes);
-    if let Some(fitted) = score(&beside, cause.candidate) {
-        *best = fitted;
+    let twice = |c: &Candidate| matches!(c.sign, Sign::Known(_));
+    let as_drift = |c: &Candidate| c.as_drift;
+    for coarse in [&twice as &dyn Fn(&Candidate) -> bool, &as_drift] {
+        let most = scored.iter().map(|s| s.gain).fold(0.0, f64::max);
+        let all = scored
+            .iter_mut()
+            .filter(|s| coarse(&s.candidate) && s.gain > RIVALS * most);
+        let Some(best) = all.max_by(|a, b| a.gain.total_cmp(&b.gain)) else {
+            continue;
+        };
+        let mut cause = Accepted::new(best.candidate.clone());
+        exact::tuned(system, &fit.shapes, &mut cause, best.gain);
+        let beside = Beside::new(&system.total, &fit.shapes);
+        if let Some(fitted) = score(&beside, cause.candidate) {
+            *best = fitted;
+        }
     }
     scored.sort_by(|a, b| a.log_p.total_cmp(&b.log_p));
 }
@@ -227,8 +243,11 @@ fn steps_instead(system: &System, fit: &Fit, drift: &Scored) -> Option<f64> {
     } else {
         Change::Offsets
     };
-    let left = system.residual(fit);
-    steps::instead(system.context, &left.radial, system.noise(), change)
+    // The five parameters and other causes as they are beside the drift: without it they are off by what they take of it.
+    let with = system.fit(both(&fit.shapes, &drift.candidate.shapes));
+    let others = amounts(&fit.shapes, &with.solution.x);
+    let [radial, ..] = system.samples.left(&others);
+    steps::instead(system.context, &radial, system.noise(), change)
 }
 
 /// How far a name holds, and the generic shapes that tell.

@@ -29,6 +29,8 @@ const CLEAR: f64 = 1000.0;
 const LARGEST: f64 = 0.1;
 /// Share of the power of what it does that is little.
 const SEEN: f64 = 0.05;
+/// Gain in log-likelihood (an SNR of 4) that a cause has to have beyond how it was when the recording began.
+const ITSELF: f64 = 8.0;
 /// Share of the best gain below which another cause is no rival.
 pub(crate) const RIVALS: f64 = 0.6;
 
@@ -69,13 +71,18 @@ fn possible(candidate: &Candidate, solution: &Solution) -> bool {
     }
 }
 
+/// Whether more of a cause is seen than how it was when the recording began.
+fn shows(beside: &Beside, candidate: &Candidate, gain: f64) -> bool {
+    candidate.given() == 0 || gain - beside.gain(&candidate.shapes[1..]).0 > ITSELF
+}
+
 pub(crate) fn score(beside: &Beside, candidate: Candidate) -> Option<Scored> {
     let solution = beside.solve(&candidate.shapes);
     let (gain, freedom) = (solution.gain(), solution.rank);
     if freedom == 0 || !gain.is_finite() {
         return None;
     }
-    if !possible(&candidate, &solution) {
+    if !possible(&candidate, &solution) || !shows(beside, &candidate, gain) {
         return None;
     }
     if candidate.domain != Domain::Motion

@@ -1,5 +1,7 @@
 //! The time base: samples that are missing from it or doubled in it, whether its clock shows them or not.
 
+use std::f64::consts::PI;
+
 use nonius_calibration::{Method, Options, calibrate};
 use nonius_recording::Recording;
 
@@ -20,6 +22,9 @@ const MOST: f64 = 32.0;
 const AROUND: usize = 8;
 /// Most samples that the ellipse is fitted to.
 const ENOUGH: usize = 8192;
+
+/// Repeated samples that chance may make of a recording.
+const BY_CHANCE: f64 = 0.01;
 
 /// The smallest step between two values of a channel, at least a code.
 fn step(values: &[f64], lsb: f64) -> f64 {
@@ -48,21 +53,21 @@ pub(crate) fn repeated(recording: &Recording, checked: &mut Checked) {
         recording.cos[k] == recording.cos[k - 1] && recording.sin[k] == recording.sin[k - 1]
     };
     let adc = recording.metadata.adc;
-    let least = [
-        (8.0 * step(&recording.cos, adc.cos.lsb)).max(8.0 * noise(&recording.cos)),
-        (8.0 * step(&recording.sin, adc.sin.lsb)).max(8.0 * noise(&recording.sin)),
-    ];
+    let channels = [(&recording.cos, adc.cos.lsb), (&recording.sin, adc.sin.lsb)];
+    let channels = channels.map(|(values, lsb)| (values, step(values, lsb), noise(values)));
+    // How likely noise alone takes both channels back to the code before, over what the scale moves: a Gaussian of both
+    // samples' noise, no narrower than a step.
+    let chance = |k: usize| -> f64 {
+        let of = channels.iter().map(|(values, step, noise)| {
+            let moves = ((values[k + 1] - values[k - 2]).abs() / 3.0 - noise).max(0.0);
+            let wide = noise.hypot(*step);
+            (step / (wide * (4.0 * PI).sqrt())).min(1.0) * (-(moves / (2.0 * wide)).powi(2)).exp()
+        });
+        of.product()
+    };
     let twins: Vec<usize> = (2..n.saturating_sub(1))
         .filter(|&k| same(k) && !same(k - 1) && !same(k + 1))
-        .filter(|&k| {
-            // The scale moves by far more than noise and codes around it.
-            let step = |a: usize, b: usize| {
-                let dc = (recording.cos[a] - recording.cos[b]).abs() / least[0];
-                let ds = (recording.sin[a] - recording.sin[b]).abs() / least[1];
-                dc.max(ds)
-            };
-            step(k - 2, k - 1) > 1.0 && step(k, k + 1) > 1.0
-        })
+        .filter(|&k| chance(k) * (n as f64) < BY_CHANCE)
         .collect();
     if twins.is_empty() || twins.len() >= n / 10 {
         return;

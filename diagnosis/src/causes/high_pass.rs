@@ -7,7 +7,7 @@ use std::rc::Rc;
 use super::Catalogue;
 use super::speed::follows;
 use crate::block::Block;
-use crate::cause::{Candidate, Domain, Exact, Sign};
+use crate::cause::{Candidate, Domain, Estimate, Exact, Sign};
 use crate::context::Context;
 use crate::finding::Parameter;
 use crate::library::{Library, Shape};
@@ -47,19 +47,35 @@ fn high_pass(sample_rate: f64) -> impl Fn(f64, &mut Library) -> Vec<Shape> + 'st
             block.raw(&cos, &sin, c, s);
         })];
         // The charge of either capacitor when the recording begins is anything; it leaks away.
-        shapes.extend([0, 1].map(|which| {
-            library.pair(move |block: &Block, c, s| {
-                let left = |t: &f64| {
-                    let x = TAU * corner * t;
-                    // Smaller than any rounding, and slow to compute.
-                    if x < 40.0 { (-x).exp() } else { 0.0 }
-                };
-                let change: Vec<f64> = block.time.iter().map(left).collect();
-                block.channel(which, &change, c, s);
-            })
-        }));
+        shapes.extend(charges(corner, library));
         shapes
     }
+}
+
+/// The charge of either capacitor, leaking away from the beginning of the recording on.
+fn charges(corner: f64, library: &mut Library) -> [Shape; 2] {
+    [0, 1].map(|which| {
+        library.pair(move |block: &Block, c, s| {
+            let left = |t: &f64| {
+                let x = TAU * corner * t;
+                // Smaller than any rounding, and slow to compute.
+                if x < 40.0 { (-x).exp() } else { 0.0 }
+            };
+            let change: Vec<f64> = block.time.iter().map(left).collect();
+            block.channel(which, &change, c, s);
+        })
+    })
+}
+
+fn corner_hz(e: &Estimate) -> Vec<Parameter> {
+    let fitted = e.inner_error.map(|error| (e.inner[0], error[0]));
+    // Not fitted: the amount of a high pass is its corner, what leaks away knows it as it stands on the grid.
+    let (value, error) = fitted.unwrap_or(if e.x.len() > 2 {
+        (e.x[0], e.error[0])
+    } else {
+        (e.inner[0], e.inner[0])
+    });
+    vec![Parameter::measured("corner_hz", value, error, "Hz")]
 }
 
 pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
@@ -74,6 +90,7 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
     while corner < context.rate / 30.0 {
         let make = high_pass(context.rate);
         let shapes = make(corner, &mut catalogue.library);
+        let leaking = shapes[1..].to_vec();
         catalogue.candidates.push(Candidate {
             trials: corners,
             exact: follows(corner, make).map(|e| Exact {
@@ -81,13 +98,7 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
                 ..e
             }),
             sign: Sign::Known(least),
-            parameters: Rc::new(move |e| {
-                let (value, error) = match e.inner_error {
-                    Some(error) => (e.inner[0], error[0]),
-                    None => (e.x[0], e.error[0]),
-                };
-                vec![Parameter::measured("corner_hz", value, error, "Hz")]
-            }),
+            parameters: Rc::new(corner_hz),
             evidence: Rc::new(|p| {
                 format!(
                     "slow parts of the signals are missing, as behind a high pass of {:.3e} Hz",
@@ -95,6 +106,25 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
                 )
             }),
             ..Candidate::new("ac_coupling", Domain::Speed, shapes)
+        });
+        // At constant speed nothing else of a high pass is seen.
+        catalogue.candidates.push(Candidate {
+            trials: corners,
+            exact: Some(Exact {
+                make: Rc::new(|inner, library| charges(inner[0], library).into()),
+                inner: vec![corner],
+                steps: vec![0.01 * corner],
+                follows: false,
+            }),
+            as_drift: true,
+            parameters: Rc::new(corner_hz),
+            evidence: Rc::new(|p| {
+                format!(
+                    "offsets leak away from the beginning on, as charges do behind a high pass of {:.3e} Hz",
+                    p[0].value
+                )
+            }),
+            ..Candidate::new("ac_coupling", Domain::Time, leaking)
         });
         least = corner;
         corner *= 3.0;

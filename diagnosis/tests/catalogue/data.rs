@@ -1,6 +1,6 @@
 //! Causes in the data: samples that are off, lost or doubled, and noise with the signal.
 
-use crate::harness::{Case, NOISE, PLAIN, finds, near, shows};
+use crate::harness::{Case, NOISE, PLAIN, finds, near, shows, shows_in};
 
 #[test]
 fn samples() {
@@ -16,6 +16,29 @@ fn samples() {
     });
     shows("repeated_samples", |rows| {
         for k in [500, 4321, 9000, 12_000, 15_000, 17_000] {
+            let before = rows[k - 1];
+            rows[k][1] = before[1];
+            rows[k][2] = before[2];
+        }
+    });
+}
+
+/// Even where the scale moves by little more than the noise from sample to sample: chance hardly brings both codes back.
+#[test]
+fn samples_repeated_in_noise() {
+    let noisy = Case {
+        noise: |_, _, _, n| 4.0 * NOISE * n[0],
+        ..PLAIN
+    };
+    shows_in(&noisy, "repeated_samples", |rows| {
+        // Where it moves by six times the noise, not by more.
+        let moves = |k: usize| (rows[k + 1][3] - rows[k - 1][3]).abs() / 2.0;
+        let fast: Vec<usize> = (1000..19_000)
+            .step_by(700)
+            .filter(|k| (0.025..0.03).contains(&moves(*k)))
+            .collect();
+        assert!(fast.len() > 2);
+        for k in fast {
             let before = rows[k - 1];
             rows[k][1] = before[1];
             rows[k][2] = before[2];

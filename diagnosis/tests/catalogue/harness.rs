@@ -251,11 +251,16 @@ pub(crate) fn alone(name: &str, case: &Case) -> Diagnosis {
 
 /// A plain recording that is `damaged` shows the cause of that name and nothing else, and keeps its length.
 pub(crate) fn shows(name: &str, damage: impl Fn(&mut Rows)) {
+    shows_in(&PLAIN, name, damage);
+}
+
+/// The same of any recording.
+pub(crate) fn shows_in(case: &Case, name: &str, damage: impl Fn(&mut Rows)) {
     let mut random = StdRng::seed_from_u64(3);
     let drive = Drive::drawn(&mut random);
-    let mut rows = simulated(&PLAIN, &drive, SAMPLES, &mut random);
+    let mut rows = simulated(case, &drive, SAMPLES, &mut random);
     damage(&mut rows);
-    let found = of_rows(&PLAIN, &rows);
+    let found = of_rows(case, &rows);
     assert_eq!(names(&found), [name], "{}", found.unexplained.signature);
     assert_eq!(found.positions.len(), rows.len());
 }

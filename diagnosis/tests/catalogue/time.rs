@@ -51,6 +51,26 @@ fn slow_changes() {
     );
 }
 
+/// A machine that warms up: a capacitor that is discharged looks the same, and says so. It is no high pass of which
+/// nothing else is seen.
+#[test]
+fn warming_up_is_a_drift() {
+    let slow = Case {
+        channels: |c, s, t, _, _| (c + 0.01 * (-t / 0.6).exp(), s - 0.008 * (-t / 0.6).exp()),
+        ..PLAIN
+    };
+    let fast = Case {
+        channels: |c, s, t, _, _| (c + 0.01 * (-t / 0.15).exp(), s - 0.008 * (-t / 0.15).exp()),
+        ..PLAIN
+    };
+    for case in [slow, fast] {
+        let found = finds("offset_drift", &case);
+        let first = &found.findings[0];
+        assert_eq!(first.cause, "offset_drift");
+        assert_eq!(first.confounded_with, ["ac_coupling"]);
+    }
+}
+
 #[test]
 fn large() {
     let found = alone(
