@@ -21,7 +21,7 @@ const RTL: &str = "rtl/optical.v";
 const TABLE: &str = "coefficients/sine_table.mem";
 
 /// What most faults stumble over, first: the same vectors in another order.
-const FIRST: [&str; 4] = ["loss", "bounds", "ties", "random"];
+const FIRST: [&str; 5] = ["loss", "bounds", "ties", "random", "fade"];
 
 /// The files of a chip, which has no fault.
 fn files(spec: &Spec) -> Files {

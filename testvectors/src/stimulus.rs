@@ -123,6 +123,13 @@ pub fn named(design: &Design, rows: usize) -> Vec<Stimulus> {
             let within = |code: i64| faded(code).clamp(low, full);
             (within(cos), within(sin))
         }),
+        // At top speed the signal fades once gamma has settled, and stays so until the search begins again.
+        motion("fade", &|k| {
+            let gain = if 3 * k < rows { 1.0 } else { 0.88 };
+            let (cos, sin) = pair(top * k as f64, 1.0, 0.0);
+            let faded = |code: i64| middle + ((code - middle) as f64 * gain).round() as i64;
+            (faded(cos), faded(sin))
+        }),
         motion("step", &|k| {
             let stepped = if k > rows / 2 {
                 (0.9, 0.04 * a)

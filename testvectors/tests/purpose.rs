@@ -52,6 +52,30 @@ fn the_loss_is_remembered_until_the_preset() {
     }
 }
 
+/// The parameters are held while the signal has faded, until that has lasted 32 periods: then the search begins again. Where
+/// the rows do not hold as many, this is seen in longer vectors.
+#[test]
+fn the_fade_is_held_and_then_followed() {
+    let mut seen = vec![];
+    for name in shipped::NAMES {
+        let design = shipped::design(name);
+        let (sensor, adc) = (&design.spec.sensor, &design.spec.adc);
+        let travels = sensor.speed_max_periods_per_s / adc.sample_rate_hz * (ROWS * 2 / 3) as f64;
+        if travels < 50.0 {
+            continue;
+        }
+        let states = played(&design, "fade");
+        let held: Vec<usize> = (1..ROWS).filter(|k| states[*k].held).collect();
+        let (begins, ends) = (held[0], held[held.len() - 1] + 1);
+        let gear = |k: usize| states[k].gamma_gear.to_f64();
+        let settled = design.constants.gamma_gear_settled.value();
+        assert!(gear(begins) >= settled, "{name}: held before");
+        assert_eq!((gear(ends - 1) > 0.0, gear(ends)), (true, 0.0), "{name}");
+        seen.push(name);
+    }
+    assert!(seen.contains(&"optical"), "{seen:?}");
+}
+
 /// The direction turns once, at speeds so small that its dead band counts.
 #[test]
 fn the_creep_turns_the_direction() {

@@ -67,6 +67,12 @@ fn swap(
 pub(crate) fn faults() -> Vec<Fault> {
     vec![
         swap(
+            "periods that the parameters are held: one less",
+            &["wire held_long ="],
+            "6'sh1f",
+            "6'sh1e",
+        ),
+        swap(
             "rounding of the phase error: by the wrong bit",
             &["wire", " e_seen_rounded ="],
             "e_exact[15]}",
