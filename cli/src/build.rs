@@ -8,7 +8,8 @@ use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use nonius_model::spec::Multipliers;
 use nonius_package::{
-    DesignJson, Event, PullIn, ROWS, engineering, package_followed, periods_per_second, write,
+    DesignJson, Event, PackageError, PullIn, ROWS, engineering, package_followed,
+    periods_per_second, write,
 };
 use nonius_testvectors::stimulus;
 
@@ -57,8 +58,15 @@ pub(crate) fn run(args: &Build) -> Result<bool> {
         stimuli.push(play::stimulus(shown, spec, &recording, args.repeat));
     }
     let bar = Bar::new();
-    let package = package_followed(&design, stimuli, shown, &|event| bar.follow(event))?;
+    let package = package_followed(&design, stimuli, shown, &|event| bar.follow(event));
     drop(bar);
+    let package = match package {
+        Err(error @ PackageError::Name(_)) => {
+            let place = crate::design_file::place(&args.design, &text, "name");
+            bail!("{place}: {error}");
+        }
+        other => other?,
+    };
     let needed = package.json.latency.clock_hz_min;
     if let Some(clock) = spec.chip.clock_hz.filter(|clock| *clock < needed) {
         bail!(
@@ -184,7 +192,8 @@ fn summary(j: &DesignJson, output: &Path, shown: &str) {
         let why = if !j.simulated.locked {
             "the loop does not lock on the sensor that the design promises"
         } else if j.simulated.rms_periods > 2.0 * j.budget.total {
-            "worse than the budget: the calibration has not converged at this speed, or the signals clip"
+            "worse than the budget: the calibration has not converged at this speed, the loop lags behind the \
+             acceleration of the run (a wider one lags less), or the signals clip"
         } else {
             "calibration noise and loop noise add up; a smaller last gamma or a narrower loop would help"
         };

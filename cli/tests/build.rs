@@ -91,7 +91,18 @@ fn build_refuses_before_anything_is_written() {
                 "limit: 79.578 … 159150 Hz",
             ][..],
         ),
+        (
+            "bandwidth_hz = 10e3",
+            "bandwidth_hz = 1e300",
+            &["loop.bandwidth_hz = 1e300:"],
+        ),
         ("method = 3", "method = 2", &["Method 2", "type 2"]),
+        // A register of the chip that is no value of its graph.
+        (
+            "name = \"optical\"",
+            "name = \"product_0\"",
+            &["d.toml:2:1: name = \"product_0\"", "no signal of the chip"],
+        ),
         (
             "bits = 12",
             "bitz = 12",

@@ -7,6 +7,7 @@
 mod about;
 mod condition;
 mod constants;
+mod declared;
 pub mod evaluate;
 mod expression;
 mod names;
@@ -20,6 +21,7 @@ mod templates;
 mod units;
 mod writer;
 
+pub use declared::declared;
 pub use templates::{Files, generate};
 
 use nonius_model::design::Design;

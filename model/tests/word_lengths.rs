@@ -38,6 +38,7 @@ fn what_the_analysis_chooses_may_be_said() {
         assert_eq!(said.structure, chosen.structure, "{}", chip.what);
         assert_eq!(said.constants, chosen.constants, "{}", chip.what);
         assert_eq!(said.graph, chosen.graph, "{}", chip.what);
+        assert_eq!(said.budget, chosen.budget, "{}", chip.what);
         for word in chosen.word_lengths() {
             assert!(
                 (word.lowest..=word.highest).contains(&word.value),

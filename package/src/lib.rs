@@ -41,12 +41,17 @@ pub struct Package {
     pub json: DesignJson,
 }
 
-/// Why a package cannot be made: a defect, not a design.
+/// Why a package cannot be made: but for a name, a defect and not a design.
 #[derive(Debug, thiserror::Error)]
 pub enum PackageError {
     /// A template does not render.
     #[error("a template does not render: {0}")]
     Template(#[from] askama::Error),
+    /// The module is called like one of its signals: linters would say that one hides the other.
+    #[error(
+        "name = {0:?}: it names the Verilog module, and a signal in it has this name (limit: no signal of the chip)"
+    )]
+    Name(String),
     /// JSON cannot be written.
     #[error("JSON cannot be written: {0}")]
     Json(#[from] serde_json::Error),
@@ -61,7 +66,7 @@ pub const ROWS: usize = 2000;
 /// Makes the package of a design with `rows` samples of each named stimulus.
 ///
 /// # Errors
-/// Only defects of the generator.
+/// A name that a signal has, and defects of the generator.
 pub fn package(design: &Design, rows: usize) -> Result<Package, PackageError> {
     package_with(design, stimulus::named(design, rows), "sweep")
 }
@@ -69,7 +74,7 @@ pub fn package(design: &Design, rows: usize) -> Result<Package, PackageError> {
 /// The same with other stimuli; `shown` is the one whose waves are written.
 ///
 /// # Errors
-/// Only defects of the generator.
+/// A name that a signal has, and defects of the generator.
 pub fn package_with(
     design: &Design,
     stimuli: Vec<Stimulus>,
@@ -81,7 +86,7 @@ pub fn package_with(
 /// The same; `progress` hears what is being done.
 ///
 /// # Errors
-/// Only defects of the generator.
+/// A name that a signal has, and defects of the generator.
 pub fn package_followed(
     design: &Design,
     stimuli: Vec<Stimulus>,
@@ -95,6 +100,11 @@ pub fn package_followed(
         .collect();
     let hash = nonius_codegen::hash(design);
     let chip = nonius_codegen::generate(design, &hash, &names)?;
+    let name = &design.spec.name;
+    let rtl = chip.files.iter().find(|f| f.0 == format!("rtl/{name}.v"));
+    if rtl.is_some_and(|(_, text)| nonius_codegen::declared(text).contains(name.as_str())) {
+        return Err(PackageError::Name(name.clone()));
+    }
     progress(Event::Simulating);
     let simulation = simulate(design);
     let pull_in = pull_in_followed(design, &BOTH_WAYS, progress);

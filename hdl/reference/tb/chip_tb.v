@@ -246,11 +246,12 @@ module chip_tb;
                 3: begin path = "vectors/sweep.vec"; name = "sweep"; rows = 24; end
                 4: begin path = "vectors/creep.vec"; name = "creep"; rows = 24; end
                 5: begin path = "vectors/loss.vec"; name = "loss"; rows = 24; end
-                6: begin path = "vectors/step.vec"; name = "step"; rows = 24; end
-                7: begin path = "vectors/corners.vec"; name = "corners"; rows = 24; end
-                8: begin path = "vectors/bounds.vec"; name = "bounds"; rows = 24; end
-                9: begin path = "vectors/ties.vec"; name = "ties"; rows = 24; end
-                10: begin path = "vectors/random.vec"; name = "random"; rows = 24; end
+                6: begin path = "vectors/fade.vec"; name = "fade"; rows = 24; end
+                7: begin path = "vectors/step.vec"; name = "step"; rows = 24; end
+                8: begin path = "vectors/corners.vec"; name = "corners"; rows = 24; end
+                9: begin path = "vectors/bounds.vec"; name = "bounds"; rows = 24; end
+                10: begin path = "vectors/ties.vec"; name = "ties"; rows = 24; end
+                11: begin path = "vectors/random.vec"; name = "random"; rows = 24; end
                 default: finished = 1'b1;
             endcase
             // With +stop_at_first nothing is played after a stimulus that failed.

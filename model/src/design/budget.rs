@@ -130,15 +130,21 @@ fn terms(words: &Words, spec: &Spec, tracking: &Loop) -> Vec<Term> {
     let f = words.signal_fraction;
     let amplitude = normalisation(spec).0;
     let follow = Followers::of(words, spec, tracking);
-    let o = &spec.formats;
+    // As the analysis would choose the words that the user says.
+    let free = Spec {
+        formats: Overrides::default(),
+        ..spec.clone()
+    };
+    let chosen = Followers::of(words, &free, tracking);
     let [theta_1, _, theta_5] = multiplied(spec, &follow).theta;
-    let gain = if o.gain_bits.is_some() || o.gain_range_log2.is_some() {
+    let [fine_1, _, fine_5] = multiplied(&free, &chosen).theta;
+    let gain = if theta_1.format.fraction < fine_1.format.fraction {
         rounding(theta_1.format.fraction)
     } else {
         // θ1 and θ3 need at least one integer bit beside the sign.
         rounding(f) * 2.0
     };
-    let cross = if o.cross_bits.is_some() || o.cross_range_log2.is_some() {
+    let cross = if theta_5.format.fraction < fine_5.format.fraction {
         rounding(theta_5.format.fraction)
     } else {
         rounding(f)
@@ -169,7 +175,7 @@ fn terms(words: &Words, spec: &Spec, tracking: &Loop) -> Vec<Term> {
         list.push(("channel skew", skew));
     }
     list.extend(harmonics::terms(words, &follow, spec));
-    list.extend(follow.terms(words, spec));
+    list.extend(follow.terms((&free, &chosen), words, spec));
     list.into_iter()
         .map(|(source, radians)| Term {
             source,

@@ -73,16 +73,21 @@ impl Followers {
         }
     }
 
-    /// What these words add to the angle where the user chose them, radians rms. Those that the analysis chooses are so fine
-    /// that the terms of the budget hold them.
-    pub(super) fn terms(&self, words: &Words, spec: &Spec) -> Vec<(&'static str, f64)> {
-        let (o, c) = (&spec.formats, &spec.calibration);
+    /// What these words add to the angle where the user wants them coarser than `chosen` for a `free` design, radians rms. Those that the analysis
+    /// chooses are so fine that the terms of the budget hold them.
+    pub(super) fn terms(
+        &self,
+        (free, chosen): (&Spec, &Self),
+        words: &Words,
+        spec: &Spec,
+    ) -> Vec<(&'static str, f64)> {
+        let c = &spec.calibration;
         // Over a segment, in turns.
         let slope =
             |fraction: u32, half_segment: f64| rounding(fraction) * half_segment / 3f64.sqrt();
         let half_sine = exp2(-i64::from(words.sine_rows_log2) - 3);
         let half_harmonic = exp2(-i64::from(words.harmonic_rows_log2) - 1);
-        let m = multiplied(spec, self);
+        let (m, fine) = (multiplied(spec, self), multiplied(free, chosen));
         let skew = held(skew_top(spec), self.skew_bits, words.signal_fraction + 6);
         let speed = held(speed_top(spec), self.skew_rate_bits, words.phase_bits);
         // Below half the last bit nothing is gathered.
@@ -93,54 +98,54 @@ impl Followers {
         };
         [
             (
-                o.sine_value_fraction.is_some(),
+                self.sine_value_fraction < chosen.sine_value_fraction,
                 "sine table values",
                 rounding(self.sine_value_fraction),
             ),
             (
-                o.sine_slope_fraction.is_some(),
+                self.sine_slope_fraction < chosen.sine_slope_fraction,
                 "sine table slopes",
                 slope(self.sine_slope_fraction, half_sine),
             ),
             (
-                o.harmonic_slope_fraction.is_some(),
+                self.harmonic_slope_fraction < chosen.harmonic_slope_fraction,
                 "harmonic table slopes",
                 slope(self.harmonic_slope_fraction, half_harmonic),
             ),
             // As multiplied by u, of which a half is left on average.
             (
-                o.bend_bits.is_some(),
+                m.bend.format.fraction < fine.bend.format.fraction,
                 "even bends as multiplied",
                 rounding(m.bend.format.fraction) / 2.0,
             ),
             (
-                o.cubic_bits.is_some(),
+                m.cubic.format.fraction < fine.cubic.format.fraction,
                 "odd bends as multiplied",
                 rounding(m.cubic.format.fraction) / 2.0,
             ),
             (
-                o.residual_fraction.is_some(),
+                self.residual_fraction < chosen.residual_fraction,
                 "residual as it moves the parameters",
                 dead_band(self.residual_fraction),
             ),
             (
-                o.gathered_fraction.is_some(),
+                self.gathered_fraction < chosen.gathered_fraction,
                 "gathered gradients",
                 gathered,
             ),
             (
-                o.skew_rate_bits.is_some(),
+                self.skew_rate_bits < chosen.skew_rate_bits,
                 "speed in the channel skew",
                 (super::skew::delay(spec) * rounding(speed.format.fraction)).abs() / 2.0,
             ),
             (
-                o.skew_bits.is_some(),
+                self.skew_bits < chosen.skew_bits,
                 "phase of the channel skew",
                 rounding(skew.format.fraction) / 2.0,
             ),
         ]
         .into_iter()
-        .filter(|(given, ..)| *given)
+        .filter(|(coarser, ..)| *coarser)
         .map(|(_, source, radians)| (source, radians))
         .collect()
     }

@@ -4,6 +4,9 @@ use std::borrow::Cow;
 
 use super::DesignError;
 
+/// Characters from which on a number is shown in short.
+const LONG: usize = 20;
+
 /// A refusal of what `field` says.
 pub(super) fn refuse<T>(
     field: impl Into<Cow<'static, str>>,
@@ -13,6 +16,9 @@ pub(super) fn refuse<T>(
 ) -> Result<T, DesignError> {
     let field = field.into();
     let (value, limit, reason) = (value.to_string(), limit.to_string(), reason.to_string());
+    // 1e300 has no use for its digits.
+    let long = value.parse().ok().filter(|_| value.len() > LONG);
+    let value = long.map_or(value, number);
     Err(DesignError::Field {
         field,
         value,
