@@ -20,10 +20,8 @@ fn of_line(line: &str) -> Option<&str> {
     let outside = rest
         .split(']')
         .map(|part| part.split('[').next().unwrap_or(""));
-    let words = outside.flat_map(str::split_whitespace);
-    words
-        .filter(|word| !["reg", "wire", "signed"].contains(word))
-        .next_back()
+    let mut words = outside.flat_map(str::split_whitespace);
+    words.rfind(|word| !["reg", "wire", "signed"].contains(word))
 }
 
 #[test]
