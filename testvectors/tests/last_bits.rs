@@ -4,7 +4,7 @@
 mod shipped;
 
 use std::collections::BTreeSet;
-use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::panic::{self, AssertUnwindSafe, catch_unwind};
 
 use nonius_codegen::generate;
 use nonius_model::design::Design;
@@ -56,7 +56,11 @@ const NEVER_MET: [&str; 1] = ["direction_rate"];
 #[test]
 fn every_last_bit_is_seen() {
     let design = shipped::design("optical");
+    // A table that is left says so at length, which is no news here.
+    let hook = panic::take_hook();
+    panic::set_hook(Box::new(|_| ()));
     let unseen = unseen(&design);
+    panic::set_hook(hook);
     let names: BTreeSet<&str> = unseen.iter().map(|(name, _)| name.as_str()).collect();
     assert_eq!(names, BTreeSet::from(NEVER_MET), "{unseen:?}");
 }
