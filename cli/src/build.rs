@@ -61,9 +61,8 @@ pub(crate) fn run(args: &Build) -> Result<bool> {
     let package = package_followed(&design, stimuli, shown, &|event| bar.follow(event));
     drop(bar);
     let package = match package {
-        Err(error @ PackageError::Name(_)) => {
-            let place = crate::design_file::place(&args.design, &text, "name");
-            bail!("{place}: {error}");
+        Err(PackageError::Design(error)) => {
+            return Err(crate::design_file::placed(&args.design, &text, &error));
         }
         other => other?,
     };

@@ -4,8 +4,8 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-use anyhow::{Context, Result, anyhow, bail};
-use nonius_model::design::Design;
+use anyhow::{Context, Error, Result, anyhow, bail};
+use nonius_model::design::{Design, DesignError};
 use nonius_model::spec::{Place, Spec};
 
 /// A design is a page of text; what is longer is something else.
@@ -15,11 +15,14 @@ const LONGEST: u64 = 1 << 20;
 pub(crate) fn read(path: &Path) -> Result<(Design, String)> {
     let file = path.display().to_string();
     let text = text(path, &file)?;
-    let design = Design::new(&Spec::from_toml(&text, &file)?).map_err(|error| {
-        let place = place(path, &text, error.field());
-        anyhow!("{place}: {error}")
-    })?;
+    let spec = Spec::from_toml(&text, &file)?;
+    let design = Design::new(&spec).map_err(|error| placed(path, &text, &error))?;
     Ok((design, text))
+}
+
+/// A refusal with the place of its field.
+pub(crate) fn placed(path: &Path, text: &str, error: &DesignError) -> Error {
+    anyhow!("{}: {error}", place(path, text, error.field()))
 }
 
 /// Where a field stands: file:line:column, or the file where it is left out.

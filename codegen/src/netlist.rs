@@ -139,7 +139,7 @@ impl Netlist {
         for (name, id) in &graph.inputs {
             let sampled = SAMPLED.contains(&name.as_str());
             // A pin that no formula reads needs no register: `calibrate` of a chip without calibration.
-            let read = w.is_read(*id);
+            let read = graph.is_read(*id);
             let form = if sampled && read {
                 format!("{name}_held")
             } else {

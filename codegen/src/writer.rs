@@ -185,11 +185,6 @@ impl<'a> Writer<'a> {
         self.declared.borrow_mut().push((name.to_owned(), bits));
     }
 
-    /// Whether any formula or probe reads the node.
-    pub(crate) fn is_read(&self, id: NodeId) -> bool {
-        self.uses[id.index()] > 0
-    }
-
     /// Notes that the bits from `high` to `low` are read.
     pub(crate) fn read(&self, name: &str, high: u32, low: u32) {
         let mut read = self.read.borrow_mut();

@@ -28,7 +28,7 @@ pub use sine::{SineError, sine_error};
 pub use write::{WriteError, write};
 
 use nonius_model::chip::Chip;
-use nonius_model::design::Design;
+use nonius_model::design::{Design, DesignError};
 use nonius_testvectors::stimulus::{self, Stimulus};
 use nonius_testvectors::vectors;
 use nonius_testvectors::waves::{Waves, gtkw};
@@ -48,10 +48,8 @@ pub enum PackageError {
     #[error("a template does not render: {0}")]
     Template(#[from] askama::Error),
     /// The module is called like one of its signals: linters would say that one hides the other.
-    #[error(
-        "name = {0:?}: it names the Verilog module, and a signal in it has this name (limit: no signal of the chip)"
-    )]
-    Name(String),
+    #[error(transparent)]
+    Design(#[from] DesignError),
     /// JSON cannot be written.
     #[error("JSON cannot be written: {0}")]
     Json(#[from] serde_json::Error),
@@ -103,7 +101,7 @@ pub fn package_followed(
     let name = &design.spec.name;
     let rtl = chip.files.iter().find(|f| f.0 == format!("rtl/{name}.v"));
     if rtl.is_some_and(|(_, text)| nonius_codegen::declared(text).contains(name.as_str())) {
-        return Err(PackageError::Name(name.clone()));
+        return Err(DesignError::name_of_a_signal(name).into());
     }
     progress(Event::Simulating);
     let simulation = simulate(design);

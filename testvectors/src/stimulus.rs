@@ -80,6 +80,10 @@ pub fn named(design: &Design, rows: usize) -> Vec<Stimulus> {
     };
     let full = (1i64 << (spec.adc.bits - 1)) - 1 + middle;
     let low = -(1i64 << (spec.adc.bits - 1)) + middle;
+    let faded = |(cos, sin): (i64, i64), gain: f64| {
+        let of = |code: i64| middle + ((code - middle) as f64 * gain).round() as i64;
+        (of(cos).clamp(low, full), of(sin).clamp(low, full))
+    };
     let mut random = StdRng::seed_from_u64(1);
     let noise: Vec<(i64, i64)> = (0..rows)
         .map(|_| {
@@ -118,17 +122,12 @@ pub fn named(design: &Design, rows: usize) -> Vec<Stimulus> {
                 t if t < 0.9 => 0.7,
                 t => 0.7 + 4.0 * (t - 0.9),
             };
-            let (cos, sin) = pair(0.02 * k as f64 * (top / 0.1), 1.0, 0.0);
-            let faded = |code: i64| middle + ((code - middle) as f64 * gain).round() as i64;
-            let within = |code: i64| faded(code).clamp(low, full);
-            (within(cos), within(sin))
+            faded(pair(0.02 * k as f64 * (top / 0.1), 1.0, 0.0), gain)
         }),
         // At top speed the signal fades once gamma has settled, and stays so until the search begins again.
         motion("fade", &|k| {
             let gain = if 3 * k < rows { 1.0 } else { 0.88 };
-            let (cos, sin) = pair(top * k as f64, 1.0, 0.0);
-            let faded = |code: i64| middle + ((code - middle) as f64 * gain).round() as i64;
-            (faded(cos), faded(sin))
+            faded(pair(top * k as f64, 1.0, 0.0), gain)
         }),
         motion("step", &|k| {
             let stepped = if k > rows / 2 {

@@ -67,14 +67,10 @@ fn charges(corner: f64, library: &mut Library) -> [Shape; 2] {
     })
 }
 
-fn corner_hz(e: &Estimate) -> Vec<Parameter> {
+/// The corner, and its error, as fitted or else as it is `known`.
+fn corner_hz(e: &Estimate, known: (f64, f64)) -> Vec<Parameter> {
     let fitted = e.inner_error.map(|error| (e.inner[0], error[0]));
-    // Not fitted: the amount of a high pass is its corner, what leaks away knows it as it stands on the grid.
-    let (value, error) = fitted.unwrap_or(if e.x.len() > 2 {
-        (e.x[0], e.error[0])
-    } else {
-        (e.inner[0], e.inner[0])
-    });
+    let (value, error) = fitted.unwrap_or(known);
     vec![Parameter::measured("corner_hz", value, error, "Hz")]
 }
 
@@ -98,7 +94,7 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
                 ..e
             }),
             sign: Sign::Known(least),
-            parameters: Rc::new(corner_hz),
+            parameters: Rc::new(|e| corner_hz(e, (e.x[0], e.error[0]))),
             evidence: Rc::new(|p| {
                 format!(
                     "slow parts of the signals are missing, as behind a high pass of {:.3e} Hz",
@@ -117,7 +113,8 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
                 follows: false,
             }),
             as_drift: true,
-            parameters: Rc::new(corner_hz),
+            // As it stands on the grid.
+            parameters: Rc::new(|e| corner_hz(e, (e.inner[0], e.inner[0]))),
             evidence: Rc::new(|p| {
                 format!(
                     "offsets leak away from the beginning on, as charges do behind a high pass of {:.3e} Hz",

@@ -346,12 +346,7 @@ pub(super) fn apart(name: &str, graph: &Graph) -> Result<(), DesignError> {
         )
     };
     if nodes.chain(tables).chain(PINS).any(hides) {
-        return refuse(
-            "name",
-            format!("{name:?}"),
-            "no signal of the chip",
-            "it names the Verilog module, and a signal in it has this name",
-        );
+        return Err(DesignError::name_of_a_signal(name));
     }
     Ok(())
 }

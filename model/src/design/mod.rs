@@ -59,6 +59,17 @@ pub enum DesignError {
 }
 
 impl DesignError {
+    /// A chip that is called like one of its signals.
+    #[must_use]
+    pub fn name_of_a_signal(name: &str) -> Self {
+        Self::Field {
+            field: "name".into(),
+            value: format!("{name:?}"),
+            limit: "no signal of the chip".into(),
+            reason: "it names the Verilog module, and a signal in it has this name".into(),
+        }
+    }
+
     /// The key in `design.toml` that it is about, with its section.
     #[must_use]
     pub fn field(&self) -> &str {
