@@ -136,22 +136,29 @@ impl Wide for WideBits {
     #[inline(always)]
     fn scale(self, power: i32) -> Self {
         let bits = self.0.to_bits();
+        // The container has no room for more places; said so, a shift takes two instructions and not eight.
+        let places = |n: i32| {
+            debug_assert!(n < 64, "a shift by {n} places");
+            n as u32 & 63
+        };
         Self(I32F96::from_bits(if power >= 0 {
-            bits << power
+            bits << places(power)
         } else {
-            bits >> -power
+            bits >> places(-power)
         }))
     }
     #[inline(always)]
     fn quantise(self, to: &Quantiser) -> Bits {
         let to = &to.in_container;
-        let rounded = (self.0.to_bits() + to.wide_half) >> CONTAINER_FRACTION;
-        Bits(I16F48::from_bits(to.settle(rounded as i64)))
+        let kept = (self.0.to_bits() >> CONTAINER_FRACTION) as i64;
+        Bits(I16F48::from_bits(to.settle(kept + to.half)))
     }
     #[inline(always)]
     fn quantise_geared(self, gear: Bits, stride: u32, _last: u32, to: &Quantiser) -> Bits {
         // Cutting off before the rounding changes nothing: half a bit is a whole number of what is left.
-        let slower = self.0.to_bits() >> (stride * gear.raw(0) as u32);
-        Self(I32F96::from_bits(slower)).quantise(to)
+        let to = &to.in_container;
+        let slower =
+            (self.0.to_bits() >> CONTAINER_FRACTION) as i64 >> (stride * gear.raw(0) as u32);
+        Bits(I16F48::from_bits(to.settle(slower + to.half)))
     }
 }

@@ -73,13 +73,18 @@ impl Format {
     /// Smallest value.
     #[must_use]
     pub fn min(self) -> f64 {
-        self.min_raw() as f64 * self.lsb()
+        if self.signed {
+            -exp2(i64::from(self.width) - 1 - i64::from(self.fraction))
+        } else {
+            0.0
+        }
     }
 
     /// Largest value.
     #[must_use]
     pub fn max(self) -> f64 {
-        self.max_raw() as f64 * self.lsb()
+        let bits = self.width - u32::from(self.signed);
+        exp2(i64::from(bits) - i64::from(self.fraction)) - self.lsb()
     }
 
     /// Signed format with the fewest bits that holds every integer from `low` to `high`.
@@ -174,7 +179,6 @@ impl Quantiser {
             rounding: Rounding::Floor,
             in_container: InContainer {
                 half: 0,
-                wide_half: 0,
                 ..self.in_container
             },
             ..self
@@ -243,8 +247,6 @@ impl Quantiser {
 pub(crate) struct InContainer {
     /// Half a last bit of the format, 0 where nothing is rounded.
     pub(crate) half: i64,
-    /// The same for an exact product, which has twice the fraction bits.
-    pub(crate) wide_half: i128,
     /// The bits that the format has; without an end above where it is signed or does not wrap.
     pub(crate) mask: i64,
     /// Bits above the sign of a format that wraps.
@@ -260,9 +262,10 @@ impl InContainer {
     const fn new(format: Format, rounding: Rounding, overflow: Overflow) -> Self {
         // A format that is too fine for the container is refused when the chip is recorded.
         let drop = CONTAINER_FRACTION.saturating_sub(format.fraction);
-        let wide_half = match rounding {
-            Rounding::Nearest => 1i128 << (drop + CONTAINER_FRACTION - 1),
-            Rounding::Floor | Rounding::Grid => 0,
+        // Where the last bits are the container's own nothing is left to round, but of a product; that is refused too.
+        let half = match rounding {
+            Rounding::Nearest if drop > 0 => 1i64 << (drop - 1),
+            Rounding::Nearest | Rounding::Floor | Rounding::Grid => 0,
         };
         let wraps = matches!(overflow, Overflow::Wrap);
         let saturates = matches!(overflow, Overflow::Saturate);
@@ -279,8 +282,7 @@ impl InContainer {
             0
         };
         Self {
-            half: (wide_half >> CONTAINER_FRACTION) as i64,
-            wide_half,
+            half,
             mask: !last_bits & !above,
             spare,
             low: if saturates {
@@ -304,7 +306,8 @@ impl InContainer {
         if self.spare > 0 {
             (kept << self.spare) >> self.spare
         } else {
-            kept.clamp(self.low, self.high)
+            // Not `clamp`, which checks its bounds every time.
+            kept.max(self.low).min(self.high)
         }
     }
 }
@@ -319,7 +322,8 @@ const fn in_i64(value: i128) -> i64 {
     }
 }
 
-/// 2^`exponent` as an exact `f64`.
+/// 2^`exponent` as an exact `f64`; 0 below its normal numbers, infinity above.
+#[inline]
 pub(crate) fn exp2(exponent: i64) -> f64 {
-    2f64.powi(exponent as i32)
+    f64::from_bits(((exponent.clamp(-1023, 1024) + 1023) as u64) << 52)
 }

@@ -3,7 +3,7 @@
 use thiserror::Error;
 
 use super::{Entry, Kind, NodeId, Op};
-use crate::format::{CONTAINER_FRACTION, CONTAINER_INTEGER, Format, Overflow, Quantiser};
+use crate::format::{CONTAINER_FRACTION, CONTAINER_INTEGER, Format, Overflow, Quantiser, Rounding};
 use crate::rom::Rom;
 
 /// A value that does not fit, with the operands that lead there.
@@ -201,9 +201,17 @@ pub(super) fn input_fits(name: &str, format: Format) -> Result<(), RangeError> {
 /// Refuses what the container of the bit-true reading cannot hold.
 fn in_container(op: &Op, nodes: &[Entry], reached: Reach) -> Result<Reach, RangeError> {
     let scale = if reached.kind == Kind::Wide { 2 } else { 1 };
+    // A product is cut off at the container's last bit, so what it is rounded to ends before that.
+    let rounds_product = match op {
+        Op::Quantise(value, to) | Op::QuantiseGeared { value, to, .. } => {
+            nodes[value.index()].kind == Kind::Wide && to.rounding == Rounding::Nearest
+        }
+        _ => false,
+    };
     // One integer bit fewer than there is, so that rounding up stays inside. A product's sum ends in a value, so it
     // may have no more of them either.
-    let (fraction, integer) = (scale * CONTAINER_FRACTION, CONTAINER_INTEGER - 1);
+    let integer = CONTAINER_INTEGER - 1;
+    let fraction = scale * CONTAINER_FRACTION - u32::from(rounds_product);
     let limit = Format::signed(fraction + integer, fraction);
     let format = Format::covering(reached.range.0, reached.range.1, reached.format.fraction);
     let too_fine = format.fraction > fraction;

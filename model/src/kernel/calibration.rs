@@ -5,7 +5,7 @@
 
 use super::gradient::{self, Bent, Seen};
 use super::sensitivity::Sensitivity;
-use super::step::{Equaliser, Step, stepped};
+use super::step::{Equaliser, Mover};
 use super::{Coefficients, State, Structure, gather, gears, start};
 use crate::signal::{Formula, Logic, Signal, Wide};
 use crate::spec::CalibrationMethod;
@@ -169,38 +169,27 @@ pub fn update<S: Signal, const PLAIN: bool>(
         .calibration
         .phase_settles()
         .then(|| gears::settled(state, k, structure));
-    let step = |gradient: S::Wide, i: usize, equaliser: i32| {
-        let first = solved
-            .as_ref()
-            .map(|solved| solved.get(i).copied().unwrap_or(k.zero));
-        let how = Step {
-            i,
-            equaliser,
-            due,
-            halved: settled.filter(|_| i == 4),
-            first: starting.zip(first),
-            nominal,
-        };
-        stepped(old[i], gradient, how, state, k, structure)
+    let mover = Mover {
+        due,
+        settled,
+        start: starting.zip(solved),
+        nominal,
     };
     // θ5 first: its product is the last of the paper's.
     let by = Equaliser::of(structure);
     let [first, second, third, fourth, fifth] = gradient;
-    let plain = [
-        (4, fifth, by.phase),
-        (0, first, by.gain),
-        (1, second, by.offset),
-        (2, third, by.gain),
-        (3, fourth, by.offset),
-    ];
-    for (i, gradient, equaliser) in plain {
-        if i < linear {
-            this.theta[i] = step(gradient, i, equaliser);
-        }
+    // Neither a loop nor a closure: each has its own code, whatever the compiler thinks of them.
+    let of = (state, k, structure);
+    if linear == 5 {
+        this.theta[4] = mover.moved(4, old, (fifth, by.phase), of);
     }
+    this.theta[0] = mover.moved(0, old, (first, by.gain), of);
+    this.theta[1] = mover.moved(1, old, (second, by.offset), of);
+    this.theta[2] = mover.moved(2, old, (third, by.gain), of);
+    this.theta[3] = mover.moved(3, old, (fourth, by.offset), of);
     if let Some(Bent { second, third, .. }) = bent {
         for (i, gradient) in [(5, second[0]), (6, second[1]), (7, third)] {
-            this.theta[i] = step(gradient, i, by.bend);
+            this.theta[i] = mover.moved(i, old, (gradient, by.bend), of);
         }
     }
     this

@@ -102,57 +102,57 @@ pub fn moved<S: Signal>(
     S::select(nominal, k.zero, moved)
 }
 
-/// How a parameter is moved.
-pub struct Step<S: Signal> {
-    /// Which, from 0.
-    pub i: usize,
-    /// log2 of what its gradient is multiplied with beside γ.
-    pub equaliser: i32,
-    /// It is moved with this sample.
+/// What moves every parameter with a sample.
+pub struct Mover<S: Signal> {
+    /// They are moved with this sample.
     pub due: S::Bool,
-    /// By half.
-    pub halved: Option<S::Bool>,
-    /// While the start runs, by this.
-    pub first: Option<(S::Bool, S)>,
-    /// Nothing is known of it.
+    /// Where the phase is moved by half once γ has settled: it has.
+    pub settled: Option<S::Bool>,
+    /// Where the design has a start by least squares: while it runs, by these.
+    pub start: Option<(S::Bool, [S; 5])>,
+    /// Nothing is known of them.
     pub nominal: S::Bool,
 }
 
-/// An accumulator after its step against the gradient.
-#[inline(always)]
-pub fn stepped<S: Signal>(
-    old: S,
-    gradient: S::Wide,
-    how: Step<S>,
-    state: &State<S>,
-    k: &Coefficients<S>,
-    structure: &Structure,
-) -> S {
-    let Step { i, nominal, .. } = how;
-    if how.due.is_known_false() {
-        return moved(old, k.zero, i, nominal, k, structure);
-    }
-    let geared = gradient
-        .scale(how.equaliser - structure.calibration.gamma_first as i32)
-        .named(GRADIENT[i])
-        .quantise_geared(
-            state.gamma_gear,
-            1,
-            structure.calibration.gears(),
-            &structure.formats.step,
-        );
-    let geared = match how.halved {
-        // What is cut off is less than the last bit of the steps.
-        Some(halved) => {
-            let half = geared.scale(-1);
-            S::select(halved, half.quantise(&structure.formats.step_cut), geared)
+impl<S: Signal> Mover<S> {
+    /// Accumulator `i` of `old` after its step against the gradient; `equaliser`: log2 of what that is multiplied with beside γ.
+    #[inline(always)]
+    pub fn moved(
+        &self,
+        i: usize,
+        old: [S; 9],
+        (gradient, equaliser): (S::Wide, i32),
+        (state, k, structure): (&State<S>, &Coefficients<S>, &Structure),
+    ) -> S {
+        let old = old[i];
+        if self.due.is_known_false() {
+            return moved(old, k.zero, i, self.nominal, k, structure);
         }
-        None => geared,
-    };
-    let geared = match how.first {
-        Some((starting, first)) => S::select(starting, first, geared),
-        None => geared,
-    };
-    let step = S::select(how.due, geared, k.zero).named(STEP[i]);
-    moved(old, step, i, nominal, k, structure)
+        let geared = gradient
+            .scale(equaliser - structure.calibration.gamma_first as i32)
+            .named(GRADIENT[i])
+            .quantise_geared(
+                state.gamma_gear,
+                1,
+                structure.calibration.gears(),
+                &structure.formats.step,
+            );
+        let geared = match self.settled {
+            // What is cut off is less than the last bit of the steps.
+            Some(settled) if i == 4 => {
+                let half = geared.scale(-1);
+                S::select(settled, half.quantise(&structure.formats.step_cut), geared)
+            }
+            _ => geared,
+        };
+        let geared = match &self.start {
+            Some((starting, first)) => {
+                let first = first.get(i).copied().unwrap_or(k.zero);
+                S::select(*starting, first, geared)
+            }
+            None => geared,
+        };
+        let step = S::select(self.due, geared, k.zero).named(STEP[i]);
+        moved(old, step, i, self.nominal, k, structure)
+    }
 }
