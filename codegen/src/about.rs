@@ -2,7 +2,7 @@
 
 use nonius_model::spec::{CalibrationMethod, Spec};
 
-use crate::units::wrap;
+use crate::layout::{COLUMNS, wrap};
 
 /// The kind of chip.
 pub(crate) fn kind(spec: &Spec) -> &'static str {
@@ -42,7 +42,19 @@ pub(crate) fn purpose(spec: &Spec) -> Vec<String> {
         8 => " theta_1 to theta_4 and theta_6 to theta_9.",
         _ => " theta_1 to theta_9.",
     };
-    wrap("", &format!("{LOOP} {search}{parameters}"), 116)
+    let gamma = match (c.is_on(), c.gears()) {
+        (false, _) => String::new(),
+        (true, 0) => format!(" gamma, how far, is 2^-{}.", c.gamma_first),
+        (true, gears) => format!(
+            " gamma, how far, is 2^-{} at first and 2^-{} after {gears} gears.",
+            c.gamma_first, c.gamma_last
+        ),
+    };
+    wrap(
+        "",
+        &format!("{LOOP} {search}{parameters}{gamma}"),
+        COLUMNS - 3,
+    )
 }
 
 /// What the input `calibrate` does.

@@ -42,7 +42,7 @@ pub(crate) fn listed(graph: &Graph) -> Vec<String> {
     let width = all.iter().map(|c| c.name.len()).max().unwrap_or(0);
     let lines = |c: &Coefficient| {
         let first = format!("  {:<width$} {:<24}", c.name, c.value);
-        crate::units::wrap(&first, &c.meaning, 116)
+        crate::layout::wrap(&first, &c.meaning, crate::layout::COLUMNS - 5)
     };
     all.iter().flat_map(lines).collect()
 }

@@ -10,6 +10,7 @@ mod constants;
 mod declared;
 pub mod evaluate;
 mod expression;
+mod layout;
 mod names;
 pub mod netlist;
 mod quantise;

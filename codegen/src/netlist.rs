@@ -3,6 +3,7 @@
 use nonius_model::graph::{Graph, Kind, NodeId, Op};
 
 use crate::expression;
+use crate::layout;
 use crate::schedule::{SAMPLED, Schedule};
 use crate::writer::{Writer, range};
 
@@ -45,7 +46,7 @@ pub fn width(graph: &Graph, id: NodeId) -> u32 {
 /// A formula and the statements that compute it.
 pub(crate) struct Section {
     pub(crate) title: String,
-    pub(crate) equation: String,
+    pub(crate) equation: Vec<String>,
     pub(crate) source: String,
     pub(crate) lines: Vec<String>,
 }
@@ -80,7 +81,7 @@ impl Netlist {
             .iter()
             .map(|f| Section {
                 title: f.title.into(),
-                equation: f.equation.into(),
+                equation: layout::wrap("", f.equation, layout::COLUMNS - 9),
                 source: f.source.into(),
                 lines: vec![],
             })
@@ -100,6 +101,7 @@ impl Netlist {
             if let (Some(last), false) = (lines.last_mut(), with.is_empty()) {
                 *last += &format!(", with {with}");
             }
+            let lines = lines.iter().flat_map(|line| layout::fitted(line));
             sections[node.formula].lines.extend(lines);
             if w.kept(id) {
                 let name = w.name(id);

@@ -2,6 +2,7 @@
 
 use nonius_model::graph::{NodeId, Op};
 
+use crate::layout;
 use crate::quantise::covering;
 use crate::schedule::Schedule;
 use crate::writer::{Source, Term, Writer, literal};
@@ -132,7 +133,7 @@ pub(crate) fn units(w: &Writer) -> Vec<Unit> {
             bits,
             loads,
             idle,
-            lines,
+            lines: lines.iter().flat_map(|line| layout::fitted(line)).collect(),
         });
     }
     list

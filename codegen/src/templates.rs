@@ -4,6 +4,7 @@ use askama::Template;
 use nonius_model::design::Design;
 use nonius_model::graph::{Graph, Kind, NodeId};
 
+use crate::layout;
 use crate::netlist::{Netlist, Register, Section, meaning, width};
 use crate::schedule::schedule_for;
 use crate::shifter::Unit;
@@ -14,12 +15,10 @@ use crate::writer::{Writer, range};
 #[template(path = "chip.v")]
 struct Chip<'a> {
     name: &'a str,
-    separator: &'a str,
-    description: &'a str,
+    title: Vec<String>,
     hash: &'a str,
     summary: String,
     timetable: Vec<String>,
-    kind: &'static str,
     purpose: Vec<String>,
     constants: Vec<String>,
     ports: Vec<(String, String, String)>,
@@ -55,8 +54,8 @@ struct Testbench<'a> {
     flow: Vec<Signal>,
     columns: &'a [Signal],
     fields: usize,
-    scan: String,
-    scan_args: String,
+    /// Formats and variables of the columns, some at a time.
+    scans: Vec<(String, String)>,
     stimuli: &'a [(String, usize)],
 }
 
@@ -130,6 +129,12 @@ pub(crate) fn has_port(name: &str) -> bool {
         .strip_prefix("theta_")
         .is_some_and(|n| n.chars().all(|c| c.is_ascii_digit()));
     parameter || ["speed", "locked", "lock_lost", "signal_lost", "direction"].contains(&name)
+}
+
+/// Format and variables of some columns.
+fn scan(columns: &[(String, NodeId, u32)]) -> (String, String) {
+    let variables: Vec<_> = columns.iter().map(|c| format!("expect_{}", c.0)).collect();
+    (vec!["%h"; columns.len()].join(" "), variables.join(", "))
 }
 
 fn ports(
@@ -236,7 +241,14 @@ pub fn generate(
     let shifters = crate::shifter::units(&writer);
     let columns = columns(design);
     let name = design.spec.name.as_str();
-    let description = design.spec.description.replace(['\n', '\r'], " ");
+    let kind = crate::about::kind(&design.spec);
+    let description = design.spec.description.as_str();
+    let separator = if description.is_empty() { "." } else { ": " };
+    let title = layout::wrap(
+        "",
+        &format!("{name}: {kind}{separator}{description}"),
+        layout::COLUMNS - 3,
+    );
     let adc_msb = design.spec.adc.bits - 1;
     let f = &design.structure.formats;
     for (port, id, bits) in &columns {
@@ -262,8 +274,7 @@ pub fn generate(
     let clock = rate * clocks as f64;
     let chip = Chip {
         name,
-        separator: if description.is_empty() { "." } else { ": " },
-        description: &description,
+        title,
         hash,
         summary: format!(
             "{} products on {} multiplier{}, {clocks} clocks per sample",
@@ -272,7 +283,6 @@ pub fn generate(
             if schedule.multipliers == 1 { "" } else { "s" }
         ),
         timetable: crate::units::timetable(&writer),
-        kind: crate::about::kind(&design.spec),
         purpose: crate::about::purpose(&design.spec),
         constants: crate::constants::listed(graph),
         ports: ports(design, clocks, &columns),
@@ -301,10 +311,6 @@ pub fn generate(
         .map(|(name, id, bits)| (range(graph, *id), name.clone(), *bits))
         .collect();
     let outputs: Vec<Signal> = signals.iter().filter(|s| has_port(&s.1)).cloned().collect();
-    let args: String = columns
-        .iter()
-        .map(|c| format!(", expect_{}", c.0))
-        .collect();
     let testbench = Testbench {
         name,
         clocks,
@@ -315,8 +321,7 @@ pub fn generate(
         flow: flow(graph, &columns),
         columns: &signals,
         fields: columns.len() + 5,
-        scan: vec!["%h"; columns.len() + 5].join(" "),
-        scan_args: format!(", sample, adc_cos, adc_sin, preset, calibrate{args}"),
+        scans: columns.chunks(3).map(scan).collect(),
         stimuli,
     };
     let example = Example {

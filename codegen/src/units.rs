@@ -2,6 +2,7 @@
 
 use nonius_model::graph::{NodeId, Op};
 
+use crate::layout::{COLUMNS, wrap};
 use crate::netlist::width;
 use crate::writer::{Source, Term, Writer, literal};
 
@@ -218,7 +219,7 @@ pub(crate) fn tables(w: &Writer) -> Vec<Table> {
 
 /// The schedule as a table: step, products in the multipliers, what is computed.
 pub(crate) fn timetable(w: &Writer) -> Vec<String> {
-    let products: Vec<String> = (0..w.schedule.clocks)
+    let products: Vec<Vec<String>> = (0..w.schedule.clocks)
         .map(|step| products(w, step))
         .collect();
     let title = if w.schedule.multipliers == 1 {
@@ -226,9 +227,10 @@ pub(crate) fn timetable(w: &Writer) -> Vec<String> {
     } else {
         "in the multipliers"
     };
-    let longest = products.iter().map(String::len).max();
+    let longest = products.iter().flatten().map(String::len).max();
     let width = longest.unwrap_or(0).max(title.len());
-    let columns = (width + 60).max(112);
+    // Behind `// `.
+    let columns = COLUMNS - 3;
     let mut rows = vec![
         format!("step | {title:<width$} | computed from it"),
         format!(
@@ -250,14 +252,24 @@ pub(crate) fn timetable(w: &Writer) -> Vec<String> {
             })
             .map(|id| w.name(id))
             .collect();
-        let first = format!("{step:>4} | {products:<width$} | ");
-        rows.extend(wrap(&first, &named.join(" "), columns));
+        let named = wrap("", &named.join(" "), columns - width - 10);
+        for line in 0..products.len().max(named.len()) {
+            let step = if line == 0 {
+                step.to_string()
+            } else {
+                String::new()
+            };
+            let product = products.get(line).map_or("", String::as_str);
+            let named = named.get(line).map_or("", String::as_str);
+            let row = format!("{step:>4} | {product:<width$} | {named}");
+            rows.push(row.trim_end().to_owned());
+        }
     }
     rows
 }
 
 /// The products that are computed in a step.
-fn products(w: &Writer, step: usize) -> String {
+fn products(w: &Writer, step: usize) -> Vec<String> {
     let mut parts = vec![];
     for id in w.graph.ids() {
         let issued = w.schedule.issue[id.index()];
@@ -268,33 +280,7 @@ fn products(w: &Writer, step: usize) -> String {
         }
     }
     if parts.is_empty() {
-        "-".to_owned()
-    } else {
-        parts.join(", ")
+        parts.push("-".to_owned());
     }
-}
-
-/// `words` behind `first`, broken at `columns`; further lines are indented by an empty row of the table.
-pub(crate) fn wrap(first: &str, words: &str, columns: usize) -> Vec<String> {
-    let blank: String = first
-        .chars()
-        .map(|c| if c == '|' { '|' } else { ' ' })
-        .collect();
-    let mut rows = vec![];
-    let mut line = first.to_owned();
-    let mut fresh = true;
-    for word in words.split_whitespace() {
-        if !fresh && line.len() + 1 + word.len() > columns {
-            rows.push(line.trim_end().to_owned());
-            line = blank.clone();
-            fresh = true;
-        }
-        if !fresh {
-            line.push(' ');
-        }
-        line.push_str(word);
-        fresh = false;
-    }
-    rows.push(line.trim_end().to_owned());
-    rows
+    parts
 }

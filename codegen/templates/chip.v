@@ -1,4 +1,7 @@
-// ${ name }$: ${ kind }$${ separator }$${ description }$
+// ${ title[0] }$
+//%- for line in title.iter().skip(1) %//
+// ${ line }$
+//%- endfor %//
 //
 //%- for line in purpose %//
 // ${ line }$
@@ -104,9 +107,9 @@ module ${ name }$ (
 //%- for s in sections %//
 
     // ${ s.title }$
-//%- if !s.equation.is_empty() %//
-    //   ${ s.equation }$
-//%- endif %//
+//%- for line in s.equation %//
+    //   ${ line }$
+//%- endfor %//
 //%- if !s.source.is_empty() %//
     //   (${ s.source }$)
 //%- endif %//

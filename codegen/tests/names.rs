@@ -1,4 +1,4 @@
-//! What the Verilog calls its decisions and coefficients says what they are.
+//! The Verilog can be read: its names say what they are, its lines end where a page does.
 
 #[path = "../../designs/shipped.rs"]
 mod shipped;
@@ -19,5 +19,16 @@ fn every_decision_has_a_name_of_its_own() {
             .filter(|word| word.contains("_condition"))
             .collect();
         assert!(nameless.is_empty(), "{}: {nameless:?}", variant.what);
+    }
+}
+
+#[test]
+fn no_line_is_longer_than_a_page_is_wide() {
+    for variant in variants::everything() {
+        let files = generate(&variant.design(), "0", &[]).expect("templates render");
+        for (path, text) in files.files.iter().filter(|f| f.0.ends_with(".v")) {
+            let long = text.lines().find(|line| line.chars().count() > 120);
+            assert_eq!(long, None, "{}, {path}", variant.what);
+        }
     }
 }

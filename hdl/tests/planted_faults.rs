@@ -8,7 +8,7 @@ use std::path::Path;
 use std::sync::LazyLock;
 
 use chip::optical;
-use faults::{Fault, faults, harmonic_faults, recall_faults, skew_faults};
+use faults::{Fault, faults, harmonic_faults, on_one_line, recall_faults, skew_faults};
 use nonius_hdl::verify::{Options, verify};
 use nonius_model::design::Design;
 use nonius_model::spec::Spec;
@@ -90,11 +90,13 @@ fn kept(place: &str, faults: usize) {
 
 /// The vectors see each of these in the chip, and say where.
 fn all_caught(place: &str, files: &Files, rtl: &str, faults: &[Fault]) {
-    let sound = text(files, rtl);
-    let faulty: Vec<_> = faults
-        .iter()
-        .map(|(n, change)| (n, change(&sound)))
-        .collect();
+    let sound = on_one_line(&text(files, rtl));
+    let faulty = faults.iter().map(|(name, change)| {
+        let faulty = change(&sound);
+        assert_ne!(faulty, sound, "{name}: nothing is altered");
+        (name, faulty)
+    });
+    let faulty: Vec<_> = faulty.collect();
     faulty.par_iter().for_each(|(name, faulty)| {
         let (passed, failure) = verdict(&altered(files, rtl, faulty), &UNTIL_IT_FAILS);
 

@@ -2,7 +2,8 @@
 //
 // A digital loop follows the angle alpha of a sin/cos sensor: the corrected pair is turned back by the estimate
 // alpha_hat, what is left is the phase error e, and the loop filter turns e into the next step of the estimate. The
-// radial residual rho shows what the correction still misses and moves its parameters theta_1 to theta_5.
+// radial residual rho shows what the correction still misses and moves its parameters theta_1 to theta_5. gamma, how
+// far, is 2^-4 at first and 2^-10 after 6 gears.
 // After S. Balemi, "Automatic calibration of sinusoidal encoder signals", IFAC 2005; equation numbers are the paper's.
 //
 // Design 17fbca86931a: 16 products on 1 multiplier, 19 clocks per sample.
@@ -19,14 +20,13 @@
 // the first `valid` those that are not registers of the chip are undefined.
 //
 // step | in the multiplier        | computed from it
-// -----+--------------------------+-------------------------------------------------------------------------------
-//    0 | -                        | sine_phase upper_half odd_quadrant quarter_phase quarter_phase_mirrored
-//      |                          | sin_address sin_inside cos_address cos_inside cos_negative theta_1 theta_3
-//      |                          | theta_5 last_gear periods_modulo_4 sector sector_relative period_ahead
-//      |                          | period_behind a_period_away reach_ahead reach_behind unseen_ahead
-//      |                          | may_add_ahead sector_ahead unseen_behind may_add_behind gamma_settled nominal
-//      |                          | held_long restart_cause quiet gear_done hold_begins hold_ends
-//      |                          | periods_count_ends
+// -----+--------------------------+------------------------------------------------------------------------------------
+//    0 | -                        | sine_phase upper_half odd_quadrant quarter_phase quarter_phase_mirrored sin_address
+//      |                          | sin_inside cos_address cos_inside cos_negative theta_1 theta_3 theta_5 last_gear
+//      |                          | periods_modulo_4 sector sector_relative period_ahead period_behind a_period_away
+//      |                          | reach_ahead reach_behind unseen_ahead may_add_ahead sector_ahead unseen_behind
+//      |                          | may_add_behind gamma_settled nominal held_long restart_cause quiet gear_done
+//      |                          | hold_begins hold_ends periods_count_ends
 //    1 | loop_ab * error_previous | sin_value sin_slope y_c y_s counting whole_period sector_behind travel_clear
 //      |                          | sector_added new_sector still_used_ahead used_up_ahead still_used_behind
 //      |                          | used_up_behind lost_before
@@ -42,12 +42,11 @@
 //   10 | c * sin_hat              | alpha_hat_turned rho_too_large
 //   11 | sin_hat * rho_limited    | e_exact e_seen e
 //   12 | cos_hat * rho_limited    | e_in_window in_window level_step e_change sample_counts counted residual_large
-//      |                          | disturbed_lately disturbed_or_held radius_large rho_s period_tick
-//      |                          | disturbed_period gamma_restart gear_passed gamma_shift gear_periods_up
-//      |                          | periods_end within_period still_held
-//   13 | loop_a * e_change        | level_moved level_full level_empty narrower loop_gear_up full_in_last_gear
-//      |                          | hold fresh rho_c gradient_4 step_4 gamma_gear_up gear_periods_again holding
-//      |                          | lock_falls
+//      |                          | disturbed_lately disturbed_or_held radius_large rho_s period_tick disturbed_period
+//      |                          | gamma_restart gear_passed gamma_shift gear_periods_up periods_end within_period
+//      |                          | still_held
+//   13 | loop_a * e_change        | level_moved level_full level_empty narrower loop_gear_up full_in_last_gear hold
+//      |                          | fresh rho_c gradient_4 step_4 gamma_gear_up gear_periods_again holding lock_falls
 //   14 | y_c * rho_s              | kick gradient_2 step_2
 //   15 | y_c * rho_c              | speed backwards not_forwards gradient_5 step_5
 //   16 | y_s * rho_s              | alpha_hat_sum carry count_before gradient_1 step_1
@@ -312,7 +311,8 @@ module optical (
     wire signed [19:0] sin_value_now = {1'b0, sine_table_row[32:14]}; // u19.18, step 1
     wire signed [14:0] sin_slope_now = {1'b0, sine_table_row[13:0]}; // u14.11, step 1
     wire signed [24:0] sin_slope_times_sin_inside = product_0[24:0]; // s25.30, step 6
-    wire signed [31:0] sin_magnitude_sum = {{7{sin_slope_times_sin_inside[24]}}, sin_slope_times_sin_inside} + {sin_value, 12'b0}; // s32.30, step 6
+    wire signed [31:0] sin_magnitude_sum = // s32.30, step 6
+        {{7{sin_slope_times_sin_inside[24]}}, sin_slope_times_sin_inside} + {sin_value, 12'b0};
     wire signed [17:0] sin_magnitude = sin_magnitude_sum[31:14]; // s18.16, step 6
     wire signed [16:0] cos_address_now = odd_quadrant ? quarter_phase : quarter_phase_mirrored; // s17.18, step 0
     wire signed [10:0] cos_inside_bits = {1'b0, cos_address_now[9:0]}; // u10.18, step 0
@@ -321,7 +321,8 @@ module optical (
     wire signed [19:0] cos_value_now = {1'b0, sine_table_row[32:14]}; // u19.18, step 2
     wire signed [14:0] cos_slope = {1'b0, sine_table_row[13:0]}; // u14.11, step 2
     wire signed [24:0] cos_slope_times_cos_inside = product_0[24:0]; // s25.30, step 4
-    wire signed [31:0] cos_magnitude_sum = {{7{cos_slope_times_cos_inside[24]}}, cos_slope_times_cos_inside} + {cos_value, 12'b0}; // s32.30, step 4
+    wire signed [31:0] cos_magnitude_sum = // s32.30, step 4
+        {{7{cos_slope_times_cos_inside[24]}}, cos_slope_times_cos_inside} + {cos_value, 12'b0};
     wire signed [17:0] cos_magnitude = cos_magnitude_sum[31:14]; // s18.16, step 4
     wire signed [17:0] sin_hat_negated = -sin_magnitude; // s18.16, step 6
     wire signed [17:0] sin_hat_now = upper_half ? sin_hat_negated : sin_magnitude; // s18.16, step 6
@@ -342,22 +343,30 @@ module optical (
     wire signed [17:0] theta_1_now = theta_1_rounded[27:10]; // s18.16, step 0, with theta_1_nominal
     wire signed [27:0] theta_3_rounded = 28'sh5000200 + {{2{theta_3_deviation[25]}}, theta_3_deviation};
     wire signed [17:0] theta_3_now = theta_3_rounded[27:10]; // s18.16, step 0, with theta_3_nominal
-    wire signed [18:0] theta_5_rounded = {theta_5_deviation[24], theta_5_deviation[24:7]} + {18'b0, theta_5_deviation[6]};
-    wire signed [17:0] theta_5_now = ((&theta_5_rounded[18:17]) | ~(|theta_5_rounded[18:17])) ? theta_5_rounded[17:0] : {theta_5_rounded[18], {17{~theta_5_rounded[18]}}}; // s18.19, step 0
+    wire signed [18:0] theta_5_rounded =
+        {theta_5_deviation[24], theta_5_deviation[24:7]} + {18'b0, theta_5_deviation[6]};
+    wire signed [17:0] theta_5_now = // s18.19, step 0
+        ((&theta_5_rounded[18:17]) | ~(|theta_5_rounded[18:17]))
+            ? theta_5_rounded[17:0]
+            : {theta_5_rounded[18], {17{~theta_5_rounded[18]}}};
 
     // Correction
-    //   c = theta_1 y_c + theta_2,  s = theta_3 y_s + theta_4 + theta_5 y_c
+    //   c = theta_1 y_c + theta_2, s = theta_3 y_s + theta_4 + theta_5 y_c
     //   (paper section 5.3)
     wire signed [28:0] theta_1_times_y_c = product_0[28:0]; // s29.27, step 3
-    wire signed [28:0] c_exact = theta_1_times_y_c + {{3{theta_2_deviation[24]}}, theta_2_deviation, 1'b0}; // s29.27, step 3
+    wire signed [28:0] c_exact = // s29.27, step 3
+        theta_1_times_y_c + {{3{theta_2_deviation[24]}}, theta_2_deviation, 1'b0};
     wire signed [28:0] theta_3_times_y_s = product_0[28:0]; // s29.27, step 5
-    wire signed [28:0] s_exact_sum_now = theta_3_times_y_s + {{3{theta_4_deviation[24]}}, theta_4_deviation, 1'b0}; // s29.27, step 5
+    wire signed [28:0] s_exact_sum_now = // s29.27, step 5
+        theta_3_times_y_s + {{3{theta_4_deviation[24]}}, theta_4_deviation, 1'b0};
     wire signed [29:0] theta_5_times_y_c = product_0[29:0]; // s30.30, step 7
-    wire signed [32:0] s_exact = {s_exact_sum[28], s_exact_sum, 3'b0} + {{3{theta_5_times_y_c[29]}}, theta_5_times_y_c}; // s33.30, step 7
+    wire signed [32:0] s_exact = // s33.30, step 7
+        {s_exact_sum[28], s_exact_sum, 3'b0} + {{3{theta_5_times_y_c[29]}}, theta_5_times_y_c};
     wire signed [17:0] c_rounded = c_exact[28:11] + {17'b0, c_exact[10]};
     wire signed [17:0] c_now = c_rounded; // s18.16, step 3
     wire signed [18:0] s_rounded = s_exact[32:14] + {18'b0, s_exact[13]};
-    wire signed [17:0] s_now = ((&s_rounded[18:17]) | ~(|s_rounded[18:17])) ? s_rounded[17:0] : {s_rounded[18], {17{~s_rounded[18]}}}; // s18.16, step 7
+    wire signed [17:0] s_now = // s18.16, step 7
+        ((&s_rounded[18:17]) | ~(|s_rounded[18:17])) ? s_rounded[17:0] : {s_rounded[18], {17{~s_rounded[18]}}};
 
     // Loss of signal
     //   |c| and |s| both below the threshold
@@ -375,23 +384,30 @@ module optical (
     wire signed [34:0] c_times_cos_hat = product_0[34:0]; // s35.32, step 8
     wire signed [34:0] rho_exact_difference_now = c_times_cos_hat - 35'shffff8000; // s35.32, step 8, with unit_radius
     wire signed [34:0] s_times_sin_hat = product_0[34:0]; // s35.32, step 9
-    wire signed [35:0] rho_exact = {rho_exact_difference[34], rho_exact_difference} + {s_times_sin_hat[34], s_times_sin_hat}; // s36.32, step 9
-    wire signed [17:0] rho_now = ((&rho_exact[35:33]) | ~(|rho_exact[35:33])) ? rho_exact[33:16] : {rho_exact[35], {17{~rho_exact[35]}}}; // s18.16, step 9
+    wire signed [35:0] rho_exact = // s36.32, step 9
+        {rho_exact_difference[34], rho_exact_difference} + {s_times_sin_hat[34], s_times_sin_hat};
+    wire signed [17:0] rho_now = // s18.16, step 9
+        ((&rho_exact[35:33]) | ~(|rho_exact[35:33])) ? rho_exact[33:16] : {rho_exact[35], {17{~rho_exact[35]}}};
 
     // Phase detector
     //   e = s cos(alpha_hat) - c sin(alpha_hat)
     //   (paper section 3)
     wire signed [34:0] s_times_cos_hat_now = product_0[34:0]; // s35.32, step 10
     wire signed [34:0] c_times_sin_hat = product_0[34:0]; // s35.32, step 11
-    wire signed [35:0] e_exact = {s_times_cos_hat[34], s_times_cos_hat} - {c_times_sin_hat[34], c_times_sin_hat}; // s36.32, step 11
+    wire signed [35:0] e_exact = // s36.32, step 11
+        {s_times_cos_hat[34], s_times_cos_hat} - {c_times_sin_hat[34], c_times_sin_hat};
     wire signed [19:0] e_seen_rounded = e_exact[35:16] + {19'b0, e_exact[15]};
-    wire signed [17:0] e_seen = ((&e_seen_rounded[19:17]) | ~(|e_seen_rounded[19:17])) ? e_seen_rounded[17:0] : {e_seen_rounded[19], {17{~e_seen_rounded[19]}}}; // s18.16, step 11
+    wire signed [17:0] e_seen = // s18.16, step 11
+        ((&e_seen_rounded[19:17]) | ~(|e_seen_rounded[19:17]))
+            ? e_seen_rounded[17:0]
+            : {e_seen_rounded[19], {17{~e_seen_rounded[19]}}};
     wire signed [17:0] e_now = signal_lost_next ? 18'sd0 : e_seen; // s18.16, step 11
 
     // Lock window
     //   |e| and -rho below their limits, signal present
     //   (calibration needs lock: the update would otherwise drive the gains to zero)
-    wire e_in_window = ($signed(e[17:12]) < 6'sd7) & ($signed(~e[17:12]) < 6'sd7); // step 12, with lock_error, minus_lock_error
+    wire e_in_window = // step 12, with lock_error, minus_lock_error
+        ($signed(e[17:12]) < 6'sd7) & ($signed(~e[17:12]) < 6'sd7);
     wire rho_in_window_now = $signed(~rho_now[17:15]) < 3'sd1; // step 9, with minus_lock_residual
     wire signal_present_now = ~signal_lost_next_now; // step 8
     wire in_window_now = (e_in_window & rho_in_window) & signal_present; // step 12
@@ -399,10 +415,13 @@ module optical (
     wire flip = ~($signed(~rho_now[17:16]) < 2'sd1) & may_flip; // step 9
 
     // Lock level and loop gear
-    //   level' = level + 1 if good, else level - 8; full: narrower loop, in the last gear locked; empty: widest loop, lock is lost
+    //   level' = level + 1 if good, else level - 8; full: narrower loop, in the last gear locked; empty: widest loop,
+    //   lock is lost
     wire signed [3:0] level_step = in_window_now ? 4'sd1 : 4'sh8; // s4.0, step 12, with lock_down
-    wire signed [7:0] level_moved_sum_now = {lock_level[6], lock_level} + {{4{level_step[3]}}, level_step}; // s8.0, step 12
-    wire signed [6:0] level_moved = level_moved_sum[7] ? 7'sd0 : (level_moved_sum[6] ? {1'b0, {6{1'b1}}} : {1'b0, level_moved_sum[5:0]}); // u6.0, step 13
+    wire signed [7:0] level_moved_sum_now = // s8.0, step 12
+        {lock_level[6], lock_level} + {{4{level_step[3]}}, level_step};
+    wire signed [6:0] level_moved = // u6.0, step 13
+        level_moved_sum[7] ? 7'sd0 : (level_moved_sum[6] ? {1'b0, {6{1'b1}}} : {1'b0, level_moved_sum[5:0]});
     wire level_moved_below_lock_full = level_moved < 7'sh3f; // step 13, with lock_full
     wire level_full = ~level_moved_below_lock_full; // step 13
     wire level_empty_now = level_moved < 7'sd1; // step 13
@@ -410,7 +429,8 @@ module optical (
     wire last_gear_now = ~loop_gear_below_loop_gear_last_now; // step 0
     wire narrower = level_full & loop_gear_below_loop_gear_last; // step 13
     wire signed [1:0] loop_gear_up = narrower ? 2'sd1 : 2'sd0; // s2.0, step 13
-    wire signed [3:0] loop_gear_next_sum = {loop_gear[2], loop_gear} + {{2{loop_gear_up[1]}}, loop_gear_up}; // s4.0, step 13
+    wire signed [3:0] loop_gear_next_sum = // s4.0, step 13
+        {loop_gear[2], loop_gear} + {{2{loop_gear_up[1]}}, loop_gear_up};
     wire signed [2:0] loop_gear_next_bits_now = {1'b0, loop_gear_next_sum[1:0]}; // u2.0, step 13
     wire signed [2:0] loop_gear_next_chosen = level_empty ? 3'sd0 : loop_gear_next_bits; // s3.0, step 14
     wire signed [6:0] lock_level_next_chosen = narrower ? 7'sh1f : level_moved; // s7.0, step 13, with lock_restart
@@ -423,7 +443,10 @@ module optical (
     //   rate' = rate + a (e - e_1) + (a + b) e_1; a times 2^n, a + b times 4^n in acquisition
     //   (paper section 4.3: Method 1's a and b, c = -2, d = 1; the rate is kept, it is the speed)
     wire signed [18:0] e_change_difference = {e[17], e} - {error_previous[17], error_previous}; // s19.16, step 12
-    wire signed [17:0] e_change = ((&e_change_difference[18:17]) | ~(|e_change_difference[18:17])) ? e_change_difference[17:0] : {e_change_difference[18], {17{~e_change_difference[18]}}}; // s18.16, step 12
+    wire signed [17:0] e_change = // s18.16, step 12
+        ((&e_change_difference[18:17]) | ~(|e_change_difference[18:17]))
+            ? e_change_difference[17:0]
+            : {e_change_difference[18], {17{~e_change_difference[18]}}};
     wire signed [34:0] loop_a_times_e_change = product_0[34:0]; // s35.39, step 14
     wire signed [34:0] kick_scaled = loop_a_times_e_change; // s35.36, step 14
     wire signed [26:0] kick_unshifted = kick_scaled[34:8];
@@ -438,19 +461,22 @@ module optical (
     wire signed [25:0] drift_now = {drift_rounded[24], drift_rounded}; // s26.27, step 2
     wire signed [26:0] speed_sum_2_now = {rate[25], rate} + {drift[25], drift}; // s27.27, step 3
     wire signed [27:0] speed_sum = {speed_sum_2[26], speed_sum_2} + {{2{kick[25]}}, kick}; // s28.27, step 15
-    wire signed [25:0] speed_now = ((&speed_sum[27:25]) | ~(|speed_sum[27:25])) ? speed_sum[25:0] : {speed_sum[27], {25{~speed_sum[27]}}}; // s26.27, step 15
+    wire signed [25:0] speed_now = // s26.27, step 15
+        ((&speed_sum[27:25]) | ~(|speed_sum[27:25])) ? speed_sum[25:0] : {speed_sum[27], {25{~speed_sum[27]}}};
 
     // Position
     //   alpha_hat' = alpha_hat + rate' (mod 1), count' = count + carry
     //   (paper equation (9))
     wire signed [1:0] half_turn_now = flip ? 2'sd1 : 2'sd0; // s2.1, step 9
-    wire signed [28:0] alpha_hat_turned_now = {alpha_hat[27], alpha_hat} + {half_turn[1], half_turn, 26'b0}; // s29.27, step 10
+    wire signed [28:0] alpha_hat_turned_now = // s29.27, step 10
+        {alpha_hat[27], alpha_hat} + {half_turn[1], half_turn, 26'b0};
     wire signed [28:0] alpha_hat_sum = alpha_hat_turned + {{3{speed[25]}}, speed}; // s29.27, step 16
     wire signed [27:0] alpha_hat_next_now = {1'b0, alpha_hat_sum[26:0]}; // u27.27, step 16
     wire signed [2:0] carry = {alpha_hat_sum[28], alpha_hat_sum[28:27]}; // s3.0, step 16
     wire signed [31:0] count_before = preset_held ? 32'sd0 : count; // s32.32, step 16
     wire signed [1:0] count_next_scaled = carry[1:0]; // s2.32, step 16
-    wire signed [32:0] count_next_sum = {count_before[31], count_before} + {{31{count_next_scaled[1]}}, count_next_scaled}; // s33.32, step 16
+    wire signed [32:0] count_next_sum = // s33.32, step 16
+        {count_before[31], count_before} + {{31{count_next_scaled[1]}}, count_next_scaled};
     wire signed [31:0] count_next_now = count_next_sum[31:0]; // s32.32, step 16
 
     // Direction
@@ -467,7 +493,8 @@ module optical (
     wire signed [1:0] periods_modulo_4 = periods_modulo_4_bits; // s2.0, step 0
     wire signed [6:0] sector_bits = alpha_hat[27:21]; // u6.6, step 0
     wire signed [7:0] sector_now = {periods_modulo_4, 6'b0} + {sector_bits[6], sector_bits}; // s8.6, step 0
-    wire signed [8:0] sector_relative_difference = {sector_now[7], sector_now} - {travel_origin[7], travel_origin}; // s9.6, step 0
+    wire signed [8:0] sector_relative_difference = // s9.6, step 0
+        {sector_now[7], sector_now} - {travel_origin[7], travel_origin};
     wire signed [7:0] sector_relative_now = sector_relative_difference[7:0]; // s8.6, step 0
     wire period_ahead_now = ~($signed(sector_relative_now[7:6]) < 2'sd1); // step 0
     wire period_behind_now = ~(~sector_relative_now < 8'sh3f); // step 0
@@ -475,11 +502,14 @@ module optical (
     wire whole_period_now = a_period_away & counting_now; // step 1
     wire signed [8:0] reach_ahead = {travel_low[7], travel_low} + 9'sh40; // s9.6, step 0
     wire signed [8:0] reach_behind = {travel_high[7], travel_high} - 9'sh40; // s9.6, step 0
-    wire unseen_ahead = (travel_high < sector_relative_now) & ($signed({sector_relative_now[7], sector_relative_now}) < reach_ahead); // step 0
+    wire unseen_ahead = // step 0
+        (travel_high < sector_relative_now) & ($signed({sector_relative_now[7], sector_relative_now}) < reach_ahead);
     wire may_add_ahead = ~(($signed(sector_relative_now[7:4]) < 4'sd1) & ahead_used); // step 0
     wire sector_ahead_now = unseen_ahead & may_add_ahead; // step 0
-    wire unseen_behind_now = (sector_relative_now < travel_low) & (reach_behind < $signed({sector_relative_now[7], sector_relative_now})); // step 0
-    wire may_add_behind_now = ~(($signed(~sector_relative_now[7:4]) < 4'sd1) & behind_used); // step 0, with minus_quarter
+    wire unseen_behind_now = // step 0
+        (sector_relative_now < travel_low) & (reach_behind < $signed({sector_relative_now[7], sector_relative_now}));
+    wire may_add_behind_now = // step 0, with minus_quarter
+        ~(($signed(~sector_relative_now[7:4]) < 4'sd1) & behind_used);
     wire sector_behind = unseen_behind & may_add_behind; // step 1
     wire travel_clear_now = whole_period_now | ~counting_now; // step 1
     wire sector_added = sector_ahead | sector_behind; // step 1
@@ -499,12 +529,14 @@ module optical (
     wire counted_now = sample_counts & new_sector; // step 12
 
     // Hold
-    //   once gamma has settled a residual that is not small, and all until the end of a period without one, moves no parameter
+    //   once gamma has settled a residual that is not small, and all until the end of a period without one, moves no
+    //   parameter
     wire gamma_gear_below_gamma_gear_settled = $signed(gamma_gear[3:2]) < 2'sd1; // step 0, with gamma_gear_settled
     wire gamma_settled_now = ~gamma_gear_below_gamma_gear_settled; // step 0
     wire rho_high_now = ~($signed(rho_now[17:14]) < 4'sd1); // step 9, with restart_residual
     wire rho_large_now = rho_high_now | ~($signed(~rho_now[17:14]) < 4'sd1); // step 9, with minus_restart_residual
-    wire rho_not_small_now = ~(($signed(rho_now[17:12]) < 6'sd1) & ($signed(~rho_now[17:12]) < 6'sd1)); // step 9, with hold_residual, minus_hold_residual
+    wire rho_not_small_now = // step 9, with hold_residual, minus_hold_residual
+        ~(($signed(rho_now[17:12]) < 6'sd1) & ($signed(~rho_now[17:12]) < 6'sd1));
     wire rho_too_large_now = rho_large | (gamma_settled & rho_not_small); // step 10
     wire residual_large_now = rho_too_large & counted_now; // step 12
     wire disturbed_lately = residual_large_now | disturbed; // step 12
@@ -514,9 +546,10 @@ module optical (
     wire fresh_now = counted & ~hold; // step 13
 
     // Gradient along the radius
-    //   rho_c = cos(alpha_hat) rho,  rho_s = sin(alpha_hat) rho
+    //   rho_c = cos(alpha_hat) rho, rho_s = sin(alpha_hat) rho
     //   (paper section 5.5.1: r + (sin, -cos) e = n (n^T r))
-    wire signed [14:0] rho_limited_now = ((&rho_now[17:14]) | ~(|rho_now[17:14])) ? rho_now[14:0] : {rho_now[17], {14{~rho_now[17]}}}; // s15.16, step 9
+    wire signed [14:0] rho_limited_now = // s15.16, step 9
+        ((&rho_now[17:14]) | ~(|rho_now[17:14])) ? rho_now[14:0] : {rho_now[17], {14{~rho_now[17]}}};
     wire signed [31:0] cos_hat_times_rho_limited = product_0[31:0]; // s32.32, step 13
     wire signed [15:0] rho_c_rounded = cos_hat_times_rho_limited[31:16] + {15'b0, cos_hat_times_rho_limited[15]};
     wire signed [17:0] rho_c_now = {{2{rho_c_rounded[15]}}, rho_c_rounded}; // s18.16, step 13
@@ -537,32 +570,52 @@ module optical (
     wire signed [25:0] step_5_bits = {step_5_scaled[25], step_5_scaled[25:1]}; // s26.26, step 15
     wire signed [25:0] step_5_chosen = gamma_settled ? step_5_bits : step_5_geared; // s26.26, step 15
     wire signed [25:0] step_5_now = fresh ? step_5_chosen : 26'sd0; // s26.26, step 15
-    wire signed [26:0] theta_5_deviation_next_difference = {{2{theta_5_deviation[24]}}, theta_5_deviation} - {step_5[25], step_5}; // s27.26, step 16
-    wire signed [24:0] theta_5_deviation_next_bits = ((&theta_5_deviation_next_difference[26:24]) | ~(|theta_5_deviation_next_difference[26:24])) ? theta_5_deviation_next_difference[24:0] : {theta_5_deviation_next_difference[26], {24{~theta_5_deviation_next_difference[26]}}}; // s25.26, step 16
+    wire signed [26:0] theta_5_deviation_next_difference = // s27.26, step 16
+        {{2{theta_5_deviation[24]}}, theta_5_deviation} - {step_5[25], step_5};
+    wire signed [24:0] theta_5_deviation_next_bits = // s25.26, step 16
+        ((&theta_5_deviation_next_difference[26:24]) | ~(|theta_5_deviation_next_difference[26:24]))
+            ? theta_5_deviation_next_difference[24:0]
+            : {theta_5_deviation_next_difference[26], {24{~theta_5_deviation_next_difference[26]}}};
     wire signed [24:0] theta_5_deviation_next_now = nominal ? 25'sd0 : theta_5_deviation_next_bits; // s25.26, step 16
     wire signed [26:0] gradient_1 = y_c_times_rho_c; // s27.30, step 16
     wire signed [25:0] step_1_geared = shifted_1; // s26.26, step 16
     wire signed [22:0] step_1_now = fresh ? step_1_geared[22:0] : 23'sd0; // s23.26, step 16
-    wire signed [26:0] theta_1_deviation_next_difference = {theta_1_deviation[25], theta_1_deviation} - {{4{step_1[22]}}, step_1}; // s27.26, step 17
-    wire signed [25:0] theta_1_deviation_next_bits = ((&theta_1_deviation_next_difference[26:25]) | ~(|theta_1_deviation_next_difference[26:25])) ? theta_1_deviation_next_difference[25:0] : {theta_1_deviation_next_difference[26], {25{~theta_1_deviation_next_difference[26]}}}; // s26.26, step 17
+    wire signed [26:0] theta_1_deviation_next_difference = // s27.26, step 17
+        {theta_1_deviation[25], theta_1_deviation} - {{4{step_1[22]}}, step_1};
+    wire signed [25:0] theta_1_deviation_next_bits = // s26.26, step 17
+        ((&theta_1_deviation_next_difference[26:25]) | ~(|theta_1_deviation_next_difference[26:25]))
+            ? theta_1_deviation_next_difference[25:0]
+            : {theta_1_deviation_next_difference[26], {25{~theta_1_deviation_next_difference[26]}}};
     wire signed [25:0] theta_1_deviation_next_now = nominal ? 26'sd0 : theta_1_deviation_next_bits; // s26.26, step 17
     wire signed [15:0] gradient_2 = rho_c[15:0]; // s16.20, step 14
     wire signed [25:0] step_2_geared = shifted_1; // s26.26, step 14
     wire signed [21:0] step_2_now = fresh ? step_2_geared[21:0] : 22'sd0; // s22.26, step 14
-    wire signed [25:0] theta_2_deviation_next_difference = {theta_2_deviation[24], theta_2_deviation} - {{4{step_2[21]}}, step_2}; // s26.26, step 15
-    wire signed [24:0] theta_2_deviation_next_bits = ((&theta_2_deviation_next_difference[25:24]) | ~(|theta_2_deviation_next_difference[25:24])) ? theta_2_deviation_next_difference[24:0] : {theta_2_deviation_next_difference[25], {24{~theta_2_deviation_next_difference[25]}}}; // s25.26, step 15
+    wire signed [25:0] theta_2_deviation_next_difference = // s26.26, step 15
+        {theta_2_deviation[24], theta_2_deviation} - {{4{step_2[21]}}, step_2};
+    wire signed [24:0] theta_2_deviation_next_bits = // s25.26, step 15
+        ((&theta_2_deviation_next_difference[25:24]) | ~(|theta_2_deviation_next_difference[25:24]))
+            ? theta_2_deviation_next_difference[24:0]
+            : {theta_2_deviation_next_difference[25], {24{~theta_2_deviation_next_difference[25]}}};
     wire signed [24:0] theta_2_deviation_next_now = nominal ? 25'sd0 : theta_2_deviation_next_bits; // s25.26, step 15
     wire signed [26:0] gradient_3 = y_s_times_rho_s; // s27.30, step 17
     wire signed [25:0] step_3_geared = shifted_1; // s26.26, step 17
     wire signed [22:0] step_3_now = fresh ? step_3_geared[22:0] : 23'sd0; // s23.26, step 17
-    wire signed [26:0] theta_3_deviation_next_difference = {theta_3_deviation[25], theta_3_deviation} - {{4{step_3[22]}}, step_3}; // s27.26, step 18
-    wire signed [25:0] theta_3_deviation_next_bits = ((&theta_3_deviation_next_difference[26:25]) | ~(|theta_3_deviation_next_difference[26:25])) ? theta_3_deviation_next_difference[25:0] : {theta_3_deviation_next_difference[26], {25{~theta_3_deviation_next_difference[26]}}}; // s26.26, step 18
+    wire signed [26:0] theta_3_deviation_next_difference = // s27.26, step 18
+        {theta_3_deviation[25], theta_3_deviation} - {{4{step_3[22]}}, step_3};
+    wire signed [25:0] theta_3_deviation_next_bits = // s26.26, step 18
+        ((&theta_3_deviation_next_difference[26:25]) | ~(|theta_3_deviation_next_difference[26:25]))
+            ? theta_3_deviation_next_difference[25:0]
+            : {theta_3_deviation_next_difference[26], {25{~theta_3_deviation_next_difference[26]}}};
     wire signed [25:0] theta_3_deviation_next = nominal ? 26'sd0 : theta_3_deviation_next_bits; // s26.26, step 18
     wire signed [15:0] gradient_4 = rho_s[15:0]; // s16.20, step 13
     wire signed [25:0] step_4_geared = shifted_1; // s26.26, step 13
     wire signed [21:0] step_4_now = fresh_now ? step_4_geared[21:0] : 22'sd0; // s22.26, step 13
-    wire signed [25:0] theta_4_deviation_next_difference = {theta_4_deviation[24], theta_4_deviation} - {{4{step_4[21]}}, step_4}; // s26.26, step 14
-    wire signed [24:0] theta_4_deviation_next_bits = ((&theta_4_deviation_next_difference[25:24]) | ~(|theta_4_deviation_next_difference[25:24])) ? theta_4_deviation_next_difference[24:0] : {theta_4_deviation_next_difference[25], {24{~theta_4_deviation_next_difference[25]}}}; // s25.26, step 14
+    wire signed [25:0] theta_4_deviation_next_difference = // s26.26, step 14
+        {theta_4_deviation[24], theta_4_deviation} - {{4{step_4[21]}}, step_4};
+    wire signed [24:0] theta_4_deviation_next_bits = // s25.26, step 14
+        ((&theta_4_deviation_next_difference[25:24]) | ~(|theta_4_deviation_next_difference[25:24]))
+            ? theta_4_deviation_next_difference[24:0]
+            : {theta_4_deviation_next_difference[25], {24{~theta_4_deviation_next_difference[25]}}};
     wire signed [24:0] theta_4_deviation_next_now = nominal ? 25'sd0 : theta_4_deviation_next_bits; // s25.26, step 14
 
     // Gears of gamma
@@ -577,10 +630,12 @@ module optical (
     wire gear_passed = period_tick & gear_done; // step 12
     wire gamma_shift_now = gear_passed & gamma_gear_below_gamma_gear_last; // step 12
     wire signed [1:0] gamma_gear_up = gamma_shift ? 2'sd1 : 2'sd0; // s2.0, step 13
-    wire signed [4:0] gamma_gear_next_sum = {gamma_gear[3], gamma_gear} + {{3{gamma_gear_up[1]}}, gamma_gear_up}; // s5.0, step 13
+    wire signed [4:0] gamma_gear_next_sum = // s5.0, step 13
+        {gamma_gear[3], gamma_gear} + {{3{gamma_gear_up[1]}}, gamma_gear_up};
     wire signed [3:0] gamma_gear_next_bits = {1'b0, gamma_gear_next_sum[2:0]}; // u3.0, step 13
     wire signed [1:0] gear_periods_up_now = period_tick ? 2'sd1 : 2'sd0; // s2.0, step 12
-    wire signed [6:0] gear_periods_next_sum = {gear_periods[5], gear_periods} + {{5{gear_periods_up[1]}}, gear_periods_up}; // s7.0, step 13
+    wire signed [6:0] gear_periods_next_sum = // s7.0, step 13
+        {gear_periods[5], gear_periods} + {{5{gear_periods_up[1]}}, gear_periods_up};
     wire signed [5:0] gear_periods_next_bits = {1'b0, gear_periods_next_sum[4:0]}; // u5.0, step 13
     wire hold_begins = disturbed & ~held; // step 0
     wire hold_ends = held & ~disturbed; // step 0

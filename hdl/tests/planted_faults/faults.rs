@@ -1,5 +1,26 @@
 //! Single faults in the Verilog, each of one place.
 
+/// The same Verilog with each statement on one line, however long.
+pub(crate) fn on_one_line(verilog: &str) -> String {
+    let mut lines: Vec<String> = vec![];
+    for line in verilog.lines() {
+        let words = line.trim_start();
+        match lines.last_mut() {
+            Some(last) if last.ends_with(" =") => *last += &format!(" {words}"),
+            // What stands behind the sign is a comment, which ends a line.
+            Some(last) if last.contains(" = // ") => {
+                let code = last.split_once(" // ").map_or("", |parts| parts.0);
+                *last = format!("{code} {words}");
+            }
+            Some(last) if words.starts_with(['?', ':', '+', '-', '&', '|', '^']) => {
+                *last += &format!(" {words}");
+            }
+            _ => lines.push(line.to_owned()),
+        }
+    }
+    lines.join("\n") + "\n"
+}
+
 /// The one line that holds all of `words`.
 fn line_with<'a>(verilog: &'a str, words: &[&str]) -> &'a str {
     let mut lines = verilog
