@@ -62,21 +62,28 @@ pub fn write(files: &[(String, Vec<u8>)], output: &Path) -> Result<(), WriteErro
         let ours: Vec<PathBuf> = manifest.lines().map(|name| output.join(name)).collect();
         keep(output, &fresh, &ours)?;
     }
-    // The old one steps aside and comes back if the new one cannot take its place.
-    let old = scratch.path().join("old");
-    if there {
-        fs::rename(output, &old).map_err(refuse(output))?;
-    }
-    if let Err(error) = fs::rename(&fresh, output) {
-        if there {
-            let _ = fs::rename(&old, output);
+    let placed = if there {
+        swap(&fresh, output, &scratch.path().join("old"))
+    } else {
+        fs::rename(&fresh, output)
+    };
+    placed.map_err(refuse(output))
+}
+
+/// Puts `fresh` in the place of `output`. Where the system can exchange two names in one go, there is never nothing at the
+/// place; elsewhere the old one steps aside to `old`, and comes back if the new one cannot take its place.
+fn swap(fresh: &Path, output: &Path, old: &Path) -> io::Result<()> {
+    #[cfg(any(target_os = "linux", target_vendor = "apple"))]
+    {
+        use rustix::fs::{CWD, RenameFlags, renameat_with};
+        if renameat_with(CWD, fresh, CWD, output, RenameFlags::EXCHANGE).is_ok() {
+            return Ok(());
         }
-        return Err(WriteError::Io {
-            path: output.to_owned(),
-            error,
-        });
     }
-    Ok(())
+    fs::rename(output, old)?;
+    fs::rename(fresh, output).inspect_err(|_| {
+        let _ = fs::rename(old, output);
+    })
 }
 
 /// Copies what is not `ours` from a folder into another, where nothing stands in its place.
@@ -107,7 +114,7 @@ fn is_empty(folder: &Path) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::{WriteError, write};
+    use super::{WriteError, swap, write};
     use std::fs;
 
     fn files(text: &str) -> Vec<(String, Vec<u8>)> {
@@ -155,5 +162,18 @@ mod tests {
         let file = dir.path().join("file");
         fs::write(&file, "").expect("file");
         assert!(write(&files("4"), &file).is_err());
+    }
+
+    #[test]
+    fn two_folders_change_places() {
+        let dir = tempfile::tempdir().expect("scratch");
+        let [new, old, place] = ["new", "old", "place"].map(|name| dir.path().join(name));
+        fs::create_dir(&new).expect("folder");
+        fs::write(new.join("a"), "new").expect("file");
+        fs::create_dir(&place).expect("folder");
+        swap(&new, &place, &old).expect("changed");
+        assert!(place.join("a").is_file());
+        assert!(swap(&dir.path().join("none"), &place, &old).is_err());
+        assert!(place.join("a").is_file(), "the old one came back");
     }
 }
