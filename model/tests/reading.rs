@@ -55,22 +55,42 @@ fn a_field_is_found_where_it_is_given() {
 }
 
 #[test]
+fn what_is_wrong_is_named_with_its_section() {
+    let message = |text: &str| {
+        let error = Spec::from_toml(text, "d.toml").expect_err("wrong");
+        error.to_string()
+    };
+    assert_eq!(
+        message("adc = 3\n"),
+        "d.toml:1:7: adc: invalid type: `3`, expected a section"
+    );
+    let missing = message(&text().replace("bits = 12", ""));
+    assert_eq!(missing, "d.toml:14:1: adc: missing field `bits`");
+    let wrong = format!("{}\n[[correction.harmonics]]\norder = \"third\"\n", text());
+    let told = message(&wrong);
+    assert!(
+        told.contains(": correction.harmonics[1].order: invalid type"),
+        "{told}"
+    );
+}
+
+#[test]
 fn a_value_of_the_wrong_kind_is_told_without_words_of_rust() {
     for (was, is, expected) in [
         (
             "bits = 12",
             "bits = \"many\"",
-            "d.toml:15:8: bits: invalid type: string \"many\", expected a whole number, 0 or more",
+            "d.toml:15:8: adc.bits: invalid type: string \"many\", expected a whole number, 0 or more",
         ),
         (
             "bits = 12",
             "bits = -12",
-            "d.toml:15:8: bits: invalid value: `-12`, expected a whole number, 0 or more",
+            "d.toml:15:8: adc.bits: invalid value: `-12`, expected a whole number, 0 or more",
         ),
         (
             "full_scale = 1.0 ",
             "full_scale = true ",
-            "d.toml:16:14: full_scale: invalid type: boolean `true`, expected a number",
+            "d.toml:16:14: adc.full_scale: invalid type: boolean `true`, expected a number",
         ),
     ] {
         let message = Spec::from_toml(&text().replace(was, is), "d.toml")
@@ -90,60 +110,60 @@ fn a_number_that_is_too_large_to_be_read_is_told_with_its_limit() {
         (
             "bits = 12",
             "bits = 5_000_000_000",
-            "d.toml:15:8: bits = 5_000_000_000: out of range (limit: 0 … 4294967295)",
+            "d.toml:15:8: adc.bits = 5_000_000_000: out of range (limit: 0 … 4294967295)",
         ),
         (
             "bits = 12",
             "bits = -99999999999999999999",
-            "d.toml:15:8: bits = -99999999999999999999: out of range (limit: 0 … 4294967295)",
+            "d.toml:15:8: adc.bits = -99999999999999999999: out of range (limit: 0 … 4294967295)",
         ),
         (
             "bits = 12",
             "bits = 0xfffffffffffffffffff",
-            "d.toml:15:8: bits = 0xfffffffffffffffffff: out of range (limit: 0 … 4294967295)",
+            "d.toml:15:8: adc.bits = 0xfffffffffffffffffff: out of range (limit: 0 … 4294967295)",
         ),
         (
             "bits = 12",
             &count,
-            "d.toml:15:8: bits = 9999999999999999999999999999999999999999…: out of range (limit: 4294967295 where it is a \
+            "d.toml:15:8: adc.bits = 9999999999999999999999999999999999999999…: out of range (limit: 4294967295 where it is a \
              whole number; others are written with a point or an exponent)",
         ),
         (
             "name = \"optical\"",
             "formats = { phase_bits = 30, gain_range_log2 = 99999999999999999999 }\nname = \"optical\"",
-            "d.toml:2:48: gain_range_log2 = 99999999999999999999: out of range (limit: -2147483648 … 2147483647)",
+            "d.toml:2:48: formats.gain_range_log2 = 99999999999999999999: out of range (limit: -2147483648 … 2147483647)",
         ),
         (
             "multipliers = 1",
             "multipliers = 99999999999999999999",
-            "d.toml:32:15: multipliers = 99999999999999999999: out of range (limit: 1 … 4294967295, or \"all\")",
+            "d.toml:32:15: chip.multipliers = 99999999999999999999: out of range (limit: 1 … 4294967295, or \"all\")",
         ),
         (
             "multipliers = 1",
             "multipliers = 4294967296",
-            "d.toml:32:15: multipliers = 4294967296: out of range (limit: 1 … 4294967295, or \"all\")",
+            "d.toml:32:15: chip.multipliers = 4294967296: out of range (limit: 1 … 4294967295, or \"all\")",
         ),
         (
             "full_scale = 1.0 ",
             "full_scale = 99999999999999999999 ",
-            "d.toml:16:14: full_scale = 99999999999999999999: so many digits are written with a point or an exponent \
+            "d.toml:16:14: adc.full_scale = 99999999999999999999: so many digits are written with a point or an exponent \
              (limit without: 9223372036854775807)",
         ),
         (
             "full_scale = 1.0 ",
             &real,
-            "d.toml:16:14: full_scale = 9999999999999999999999999999999999999999…: out of range (limit: 4294967295 where it \
+            "d.toml:16:14: adc.full_scale = 9999999999999999999999999999999999999999…: out of range (limit: 4294967295 where it \
              is a whole number; others are written with a point or an exponent)",
         ),
         (
             "full_scale = 1.0 ",
             "full_scale = 1e400 ",
-            "d.toml:16:14: full_scale = 1e400: out of range (limit: -1.797e308 … 1.797e308)",
+            "d.toml:16:14: adc.full_scale = 1e400: out of range (limit: -1.797e308 … 1.797e308)",
         ),
         (
             "parameters = 5",
             "recall = 99999999999999999999",
-            "d.toml:25:10: recall: invalid type: `99999999999999999999`, expected a boolean",
+            "d.toml:25:10: calibration.recall: invalid type: `99999999999999999999`, expected a boolean",
         ),
     ] {
         let message = Spec::from_toml(&text().replacen(was, is, 1), "d.toml")

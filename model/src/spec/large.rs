@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use super::place::field_at;
+
 /// Of a number at `span` that is beyond what its key can be: key, value and limit; `None` where something else is wrong, which
 /// the reader's `message` says.
 pub(super) fn too_large(text: &str, span: Range<usize>, message: &str) -> Option<String> {
@@ -25,7 +27,10 @@ pub(super) fn too_large(text: &str, span: Range<usize>, message: &str) -> Option
     } else {
         return None;
     };
-    let key = key_before(text, span.start).map_or_else(String::new, |key| format!("{key} = "));
+    let field = field_at(text, span.start);
+    // What is no TOML, for a number that TOML cannot hold, still has its key before it.
+    let field = field.or_else(|| key_before(text, span.start).map(ToOwned::to_owned));
+    let key = field.map_or_else(String::new, |field| format!("{field} = "));
     Some(format!("{key}{}: {limit}", shortened(value)))
 }
 

@@ -57,3 +57,32 @@ impl Place {
         place.map(|byte| Self::of_byte(text, byte))
     }
 }
+
+/// The field whose value stands at this byte, with its section: `adc.bits`, or `correction.harmonics[2].order`. `None` where
+/// the text is not TOML or nothing has its value there.
+pub(super) fn field_at(text: &str, byte: usize) -> Option<String> {
+    let parsed = DeTable::parse(text).ok()?;
+    within(parsed.get_ref(), byte)
+}
+
+fn within(table: &DeTable, byte: usize) -> Option<String> {
+    // A section's own span is its head, so what stands in it is looked for first.
+    let inside = table.iter().find_map(|(key, value)| {
+        let key = key.get_ref();
+        match value.get_ref() {
+            DeValue::Table(inner) => within(inner, byte).map(|field| format!("{key}.{field}")),
+            DeValue::Array(entries) => (1..).zip(entries.iter()).find_map(|(n, entry)| {
+                let DeValue::Table(inner) = entry.get_ref() else {
+                    return None;
+                };
+                within(inner, byte).map(|field| format!("{key}[{n}].{field}"))
+            }),
+            _ => None,
+        }
+    });
+    inside.or_else(|| {
+        let here = |value: std::ops::Range<usize>| value.contains(&byte);
+        let found = table.iter().find(|(_, value)| here(value.span()));
+        found.map(|(key, _)| key.get_ref().to_string())
+    })
+}

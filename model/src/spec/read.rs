@@ -4,7 +4,7 @@ use thiserror::Error;
 use toml::de::{DeTable, DeValue};
 
 use super::large::too_large;
-use super::place::Place;
+use super::place::{Place, field_at};
 use super::{Overrides, Spec};
 
 /// What is wrong with a `design.toml`.
@@ -137,26 +137,23 @@ fn place(text: &str, error: &toml::de::Error) -> String {
     match error.span() {
         Some(span) => {
             let place = Place::of_byte(text, span.start);
-            if let Some(large) = too_large(text, span, message) {
+            if let Some(large) = too_large(text, span.clone(), message) {
                 return format!("{place}: {large}");
             }
-            let here = text.lines().nth(place.line - 1).unwrap_or_default();
-            let key = here.split_once('=').map_or("", |(key, _)| key.trim());
-            let named =
-                message.contains(&format!("`{key}`")) || key.is_empty() || key.starts_with('#');
-            let of = if named {
-                String::new()
-            } else {
-                format!("{key}: ")
-            };
+            let of =
+                field_at(text, span.start).map_or_else(String::new, |field| format!("{field}: "));
             format!("{place}: {of}{}", plain(message))
         }
         None => format!("1:1: {}", plain(message)),
     }
 }
 
-/// Without the names that Rust has for kinds of numbers.
+/// Without the names that Rust has for kinds of values.
 fn plain(message: &str) -> String {
+    let message = match message.split_once("expected struct ") {
+        Some((before, _)) => format!("{before}expected a section"),
+        None => message.to_owned(),
+    };
     message
         .replace("expected u32", "expected a whole number, 0 or more")
         .replace("expected i32", "expected a whole number")
