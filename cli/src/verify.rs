@@ -62,11 +62,16 @@ fn print(report: &Report) {
         say!("{} {}: {}", run.tool, run.version, verdict(run.passed));
         for stimulus in &run.stimuli {
             say!("  {} {}", verdict(stimulus.passed), stimulus.name);
-            if !stimulus.passed {
+            if !stimulus.passed && !stimulus.detail.is_empty() {
                 say!("       {}", stimulus.detail);
             }
         }
-        if let Some(failure) = &run.failure {
+        // A failed stimulus has said it.
+        let told = run
+            .stimuli
+            .iter()
+            .any(|stimulus| !stimulus.detail.is_empty() && !stimulus.passed);
+        if let Some(failure) = run.failure.as_ref().filter(|_| !told) {
             say!("  {failure}");
         }
         for warning in &run.warnings {

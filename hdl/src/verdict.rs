@@ -20,7 +20,7 @@ pub(crate) fn judge(output: &Output, expected: &[String]) -> Verdict {
         .into_iter()
         .filter(|line| !line.is_empty() && !is_simulator_note(line))
         .collect();
-    let stimuli: Vec<StimulusResult> = said.iter().filter_map(|line| stimulus(line)).collect();
+    let stimuli = reported(&said);
     let failure = reason(output, &said, &stimuli, expected)
         .map(|reason| format!("{reason}\n{}", output.tail()).trim_end().to_owned());
     Verdict {
@@ -46,10 +46,11 @@ fn reason(
         return Some(format!("the simulation {trouble}"));
     }
     if let Some(failed) = stimuli.iter().find(|it| !it.passed) {
-        return Some(format!(
-            "stimulus {} failed: {}",
-            failed.name, failed.detail
-        ));
+        let detail = match failed.detail.as_str() {
+            "" => "the testbench does not say why",
+            detail => detail,
+        };
+        return Some(format!("stimulus {} failed: {detail}", failed.name));
     }
     let error = said
         .iter()
@@ -94,6 +95,22 @@ fn reason(
     stimuli
         .is_empty()
         .then(|| "no stimulus was reported".to_owned())
+}
+
+/// Every stimulus, a failed one with what was said right before its verdict: the first difference.
+fn reported(said: &[&str]) -> Vec<StimulusResult> {
+    let mut stimuli = vec![];
+    let mut before = "";
+    for line in said {
+        if let Some(mut one) = stimulus(line) {
+            if !one.passed && one.detail.is_empty() && before.starts_with("signal ") {
+                one.detail = before.to_owned();
+            }
+            stimuli.push(one);
+        }
+        before = line;
+    }
+    stimuli
 }
 
 /// `PASS name: detail` or `FAIL name: detail`.
@@ -189,6 +206,14 @@ mod tests {
             (
                 "PASS ramp\nFAIL step: signal x\nPASS\n",
                 "stimulus step failed: signal x",
+            ),
+            (
+                "PASS ramp\nsignal e sample 3 expected 1 actual 0\nFAIL step\nFAIL\n",
+                "stimulus step failed: signal e sample 3 expected 1 actual 0",
+            ),
+            (
+                "signal e sample 3 expected 1 actual 0\nPASS ramp\nFAIL step\nFAIL\n",
+                "stimulus step failed: the testbench does not say why",
             ),
             (
                 "PASS ramp\nPASS ramp\nPASS step\nPASS\n",
