@@ -21,6 +21,7 @@ mod calibrate;
 mod corrections;
 mod design_file;
 mod diagnose;
+mod interpolator;
 pub mod new;
 mod paper;
 pub mod play;
