@@ -239,7 +239,7 @@ fn uncorrected(j: &DesignJson) -> Option<String> {
 
 /// From power-up into full speed.
 fn pulled_in(p: &PullIn) {
-    let Some(worst) = &p.worst else {
+    let Some(missed) = p.missed() else {
         say!(
             "  lock        every sensor that is promised, {} at the ends of the promise, from power-up into full speed both \
              ways, within {}",
@@ -248,12 +248,7 @@ fn pulled_in(p: &PullIn) {
         );
         return;
     };
-    say!(
-        "  note        {} of the {} sensors at the ends of the promise do not lock from power-up into full speed; worst: \
-         {worst}",
-        p.not_locked,
-        p.sensors
-    );
+    say!("  note        {missed}");
     say!("              to change: {}", p.advice());
 }
 

@@ -12,7 +12,7 @@ use anyhow::{Context, Result, bail};
 use clap::Args;
 use nonius_model::design::{Design, DesignError};
 use nonius_model::spec::Spec;
-use nonius_package::periods_per_second;
+use nonius_package::{BOTH_WAYS, periods_per_second, pull_in};
 use nonius_recording::{Recording, Survey};
 
 use crate::recording_args::RecordingArgs;
@@ -72,6 +72,10 @@ pub(crate) fn run(args: &New) -> Result<()> {
         if let Some(why) = promise.missed() {
             eprintln!("note: sensor.{key} does not hold what the recording shows: {why}");
         }
+    }
+    let pull_in = pull_in(&design, &BOTH_WAYS);
+    if let Some(missed) = pull_in.missed() {
+        eprintln!("note: {missed}; {}", pull_in.advice());
     }
     say!("next: nonius build {} -o out/{}", path.display(), args.name);
     Ok(())

@@ -115,3 +115,33 @@ fn a_promise_that_does_not_hold_is_told_in_the_file_and_on_the_terminal() {
     let expected = format!("note: sensor.offset_max does not hold what the recording shows: {why}");
     assert_eq!(told, [expected]);
 }
+
+/// A sensor so far off that a chip which is promised it, and some to spare, does not always lock: said at once, with what helps.
+#[test]
+fn a_sensor_that_does_not_always_lock_is_told() {
+    let said = |amplitudes: [f64; 2], offset: f64, beta: f64| {
+        let dir = tempfile::tempdir().expect("scratch");
+        let mut rows = String::from("# sample_rate_hz: 1000\ncos,sin\n");
+        for k in 0..4000 {
+            let angle = f64::from(k) * 0.02;
+            let cos = amplitudes[0] * angle.cos() + offset;
+            let sin = amplitudes[1] * (angle - beta).sin() - offset;
+            rows += &format!(
+                "{},{}\n",
+                (cos * 4096.0).round() / 4096.0,
+                (sin * 4096.0).round() / 4096.0
+            );
+        }
+        fs::write(dir.path().join("r.csv"), rows).expect("a recording");
+        done(dir.path(), &["new", "it", "--from", "r.csv"])
+    };
+    let far_off = said([1.25, 0.75], 0.36, 0.5);
+    for words in [
+        "sensors at the ends of the promise do not lock",
+        "every sensor locks with sensor.amplitude_tolerance",
+    ] {
+        assert!(far_off.contains(words), "{far_off}");
+    }
+    let usual = said([1.05, 0.95], 0.05, 0.05);
+    assert!(!usual.contains("do not lock"), "{usual}");
+}

@@ -69,6 +69,16 @@ impl PullIn {
         self.not_locked == 0
     }
 
+    /// Which sensors do not lock, in a sentence; nothing where every one does.
+    #[must_use]
+    pub fn missed(&self) -> Option<String> {
+        let worst = self.worst.as_ref()?;
+        Some(format!(
+            "{} of the {} sensors at the ends of the promise do not lock from power-up into full speed; worst: {worst}",
+            self.not_locked, self.sensors
+        ))
+    }
+
     /// What to change where it does not hold.
     #[must_use]
     pub fn advice(&self) -> String {
