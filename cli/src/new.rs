@@ -105,11 +105,11 @@ fn settle(draft: &mut Draft) -> Result<Design> {
                 }
                 draft.accuracy = rounded_up(spared / MARGIN);
             }
+            // A name is no number, and says itself what is wrong.
+            Err(error) if names_the_name(&error) => return Err(error),
             Err(_) if draft.accuracy < COARSEST => {
                 draft.accuracy = rounded_up(draft.accuracy * 1.1);
             }
-            // A name is no number, and says itself what is wrong.
-            Err(error) if names_the_name(&error) => return Err(error),
             Err(error) => {
                 return Err(error).context("no design can follow this; the number at fault is");
             }

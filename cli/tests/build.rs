@@ -149,6 +149,12 @@ fn designs_that_no_chip_can_have_are_refused() {
             "name = \"module\"",
             ["d.toml:2:1: name", "keyword"],
         ),
+        // Of Icarus alone.
+        (
+            "name = \"optical\"",
+            "name = \"bool\"",
+            ["d.toml:2:1: name", "keyword"],
+        ),
         (
             "name = \"optical\"",
             "name = \"chip_tb\"",

@@ -5,7 +5,7 @@ mod support;
 use std::fs;
 
 use nonius_model::spec::Spec;
-use support::{done, recording};
+use support::{done, nonius, recording, refused};
 
 /// The design that is fitted to a recording.
 fn fitted(recording: &str) -> (String, Spec) {
@@ -144,4 +144,15 @@ fn a_sensor_that_does_not_always_lock_is_told() {
     }
     let usual = said([1.05, 0.95], 0.05, 0.05);
     assert!(!usual.contains("do not lock"), "{usual}");
+}
+
+/// A name that the chip has for a signal is told as such, not as an accuracy that cannot be reached.
+#[test]
+fn a_name_that_the_chip_has_is_told() {
+    let dir = tempfile::tempdir().expect("scratch");
+    for name in ["position", "clk", "theta_1"] {
+        let output = nonius(dir.path(), &["new", name]);
+        refused(&output, &["name = ", name, "a signal"]);
+        assert!(!dir.path().join(format!("{name}.toml")).exists());
+    }
 }

@@ -60,6 +60,7 @@ fn error_degrees(turns: &[f64], reference: &[f64]) -> f64 {
 /// RM44, one turn played sixty times: the angle errors of the last turn differ by less than 2 %.
 #[test]
 fn the_magnetic_encoder_is_calibrated_alike() {
+    let mut measured = vec![];
     for name in ["rm44_center", "rm44_static_x500um", "rm44_gap_z500um"] {
         let Some(path) = nonius_kept::recording(CHECK, &format!("{name}.csv")) else {
             return;
@@ -67,16 +68,30 @@ fn the_magnetic_encoder_is_calibrated_alike() {
         let reference = column(&path, "reference_rad");
         let [chip, paper] =
             both(&path, "60").map(|p| error_degrees(&p[p.len() - reference.len()..], &reference));
-        println!("{name}: chip {chip:.4}, paper {paper:.4} degrees rms");
+        measured.push(format!("{name}: chip {chip:.3}, paper {paper:.3}"));
         assert!((paper / chip - 1.0).abs() < 0.02, "{name}: {chip} {paper}");
         assert!(paper < 0.27, "{name}: {paper}");
     }
+    let what =
+        "chip and paper, each with its own decisions, over the RM44: angle error, degrees rms";
+    figure(what, &measured.join("; "));
+}
+
+fn figure(what: &str, measured: &str) {
+    let page = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/figures.md");
+    nonius_kept::figure(
+        Path::new(page),
+        what,
+        measured,
+        "cli/tests/paper_and_chip_over_recordings.rs",
+    );
 }
 
 /// Homodyne interferometers with stops, ringing and reversals: 8-bit codes, thousands of periods, never a hundredth of
 /// a period apart once both have locked.
 #[test]
 fn the_interferometers_are_followed_alike() {
+    let mut measured = vec![];
     for name in ["homodyne_settle", "homodyne_stop"] {
         let Some(path) = nonius_kept::recording(CHECK, &format!("{name}.csv")) else {
             return;
@@ -85,7 +100,9 @@ fn the_interferometers_are_followed_alike() {
         let whole = (paper[300] - chip[300]).round();
         let apart = |k: usize| (paper[k] - chip[k] - whole).abs();
         let largest = (300..chip.len()).map(apart).fold(0.0, f64::max);
-        println!("{name}: {largest:.4} periods apart at most");
+        measured.push(format!("{name}: {largest:.4}"));
         assert!(largest < 0.01, "{name}: {largest}");
     }
+    let what = "chip and paper, each with its own decisions, over the homodyne interferometers: furthest apart, periods";
+    figure(what, &measured.join("; "));
 }

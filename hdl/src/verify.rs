@@ -124,13 +124,20 @@ fn joined<T>(handle: thread::ScopedJoinHandle<'_, T>) -> T {
         .unwrap_or_else(|panic| std::panic::resume_unwind(panic))
 }
 
-/// Icarus does some thousand samples a second.
+/// Icarus does some thousand samples a second; a busy machine a tenth of that.
 fn default_limit(chip: &ChipDir) -> Duration {
-    Duration::from_secs(60)
-        + Duration::from_millis(5) * u32::try_from(chip.rows).unwrap_or(u32::MAX)
+    Duration::from_secs(300)
+        + Duration::from_millis(20) * u32::try_from(chip.rows).unwrap_or(u32::MAX)
 }
 
 fn compare(one: &Run, other: &Run) -> Vec<String> {
+    // One that did not get so far has said why.
+    if [one, other]
+        .iter()
+        .any(|run| !run.passed && run.stimuli.is_empty())
+    {
+        return Vec::new();
+    }
     let mut disagreements = Vec::new();
     for (a, b) in [(one, other), (other, one)] {
         for stimulus in &a.stimuli {

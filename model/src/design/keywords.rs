@@ -1,13 +1,14 @@
 //! Reserved words of Verilog-2005 (IEEE 1364-2005, annex B) and of SystemVerilog (IEEE 1800-2017, annex B), which simulators
 //! read by default.
 
-/// Words of Verilog-2005 that no module may have for a name.
+/// Words of Verilog-2005 that no module may have for a name, and two (`bool`, `wreal`) that Icarus reads as such.
 pub(super) const KEYWORDS: &[&str] = &[
     "always",
     "and",
     "assign",
     "automatic",
     "begin",
+    "bool",
     "buf",
     "bufif0",
     "bufif1",
@@ -125,6 +126,7 @@ pub(super) const KEYWORDS: &[&str] = &[
     "while",
     "wire",
     "wor",
+    "wreal",
     "xnor",
     "xor",
 ];
