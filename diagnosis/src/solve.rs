@@ -165,30 +165,27 @@ impl Normal {
     /// The least-squares solution; directions that the columns hardly have are left at zero.
     pub(crate) fn solve(&self) -> Solution {
         let m = self.right.len();
-        // A column of nothing gets no amount.
-        let scale: Vec<f64> = (0..m)
-            .map(|i| {
-                let norm = self.norms[i];
-                if norm > 1e-300 {
-                    norm.sqrt().recip()
-                } else {
-                    0.0
-                }
-            })
-            .collect();
-        let unit = DMatrix::from_fn(m, m, |i, j| self.gram[(i, j)] * scale[i] * scale[j]);
-        let right = DVector::from_fn(m, |i, _| self.right[i] * scale[i]);
-        if m == 0 {
+        // A column of nothing gets no amount, and has no place among the others: where most are nothing, as knots at speeds
+        // that never come, the search for eigenvalues ends in no number at all.
+        let kept: Vec<usize> = (0..m).filter(|i| self.norms[*i] > 1e-300).collect();
+        let scale: Vec<f64> = kept.iter().map(|i| self.norms[*i].sqrt().recip()).collect();
+        let count = kept.len();
+        let (mut x, mut covariance) = (vec![0.0; m], DMatrix::zeros(m, m));
+        if count == 0 {
             return Solution {
-                x: vec![],
-                covariance: unit,
+                x,
+                covariance,
                 explained: 0.0,
                 rank: 0,
             };
         }
+        let unit = DMatrix::from_fn(count, count, |i, j| {
+            self.gram[(kept[i], kept[j])] * scale[i] * scale[j]
+        });
+        let right = DVector::from_fn(count, |i, _| self.right[kept[i]] * scale[i]);
         let eigen = unit.symmetric_eigen();
         let largest = eigen.eigenvalues.amax().max(1.0);
-        let (mut x, mut covariance) = (DVector::zeros(m), DMatrix::zeros(m, m));
+        let (mut amounts, mut spread) = (DVector::zeros(count), DMatrix::zeros(count, count));
         let (mut explained, mut rank) = (0.0, 0);
         for (value, vector) in eigen
             .eigenvalues
@@ -200,15 +197,51 @@ impl Normal {
             }
             let along = vector.dot(&right);
             explained += along * along / value;
-            x += vector * (along / value);
-            covariance.ger(1.0 / *value, &vector, &vector, 1.0);
+            amounts += vector * (along / value);
+            spread.ger(1.0 / *value, &vector, &vector, 1.0);
             rank += 1;
         }
+        for (j, to) in kept.iter().enumerate() {
+            x[*to] = amounts[j] * scale[j];
+            for (i, row) in kept.iter().enumerate() {
+                covariance[(*row, *to)] = spread[(i, j)] * scale[i] * scale[j];
+            }
+        }
         Solution {
-            x: (0..m).map(|i| x[i] * scale[i]).collect(),
-            covariance: DMatrix::from_fn(m, m, |i, j| covariance[(i, j)] * scale[i] * scale[j]),
+            x,
+            covariance,
             explained,
             rank,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Normal;
+
+    /// As of knots at speeds that the axis never has, beside columns that depend on each other.
+    #[test]
+    fn columns_of_nothing_change_nothing() {
+        let n = 200;
+        let column = |f: fn(f64) -> f64| -> Vec<f64> { (0..n).map(|k| f(f64::from(k))).collect() };
+        let some = [
+            column(|k| (0.1 * k).sin()),
+            column(|k| (0.1 * k).cos()),
+            column(|k| (0.1 * k + 1.0).sin()),
+        ];
+        let data = column(|k| (0.1 * k + 0.4).sin() + 0.01 * (7.0 * k * k).sin());
+        let mut all = vec![vec![0.0; data.len()]; 60];
+        all.splice(20..20, some.iter().cloned());
+        let (few, many) = (
+            Normal::of_columns(&data, &some).solve(),
+            Normal::of_columns(&data, &all).solve(),
+        );
+        assert_eq!((few.rank, many.rank), (2, 2));
+        assert!((few.explained - many.explained).abs() < 1e-9 * few.explained);
+        for (i, x) in few.x.iter().enumerate() {
+            assert!((x - many.x[20 + i]).abs() < 1e-9);
+        }
+        assert!(many.x[..20].iter().all(|x| *x == 0.0));
     }
 }
