@@ -7,6 +7,7 @@ use std::time::Duration;
 use anyhow::Result;
 use clap::{Args, ValueEnum};
 use indicatif::ProgressBar;
+use nonius_hdl::StimulusResult;
 use nonius_hdl::progress::Event;
 use nonius_hdl::tools::Tool;
 use nonius_hdl::verify::{Options, Report};
@@ -60,19 +61,18 @@ pub(crate) fn run(args: &Verify) -> Result<bool> {
 fn print(report: &Report) {
     for run in &report.runs {
         say!("{} {}: {}", run.tool, run.version, verdict(run.passed));
+        let says_why = |one: &StimulusResult| !one.passed && !one.detail.is_empty();
         for stimulus in &run.stimuli {
             say!("  {} {}", verdict(stimulus.passed), stimulus.name);
-            if !stimulus.passed && !stimulus.detail.is_empty() {
+            if says_why(stimulus) {
                 say!("       {}", stimulus.detail);
             }
         }
-        // A failed stimulus has said it.
-        let told = run
-            .stimuli
-            .iter()
-            .any(|stimulus| !stimulus.detail.is_empty() && !stimulus.passed);
-        if let Some(failure) = run.failure.as_ref().filter(|_| !told) {
-            say!("  {failure}");
+        if let Some(failure) = &run.failure {
+            // What stands behind the reason is the end of the output, which a failed stimulus has said already.
+            let reason = failure.lines().next().unwrap_or_default();
+            let told = run.stimuli.iter().any(says_why);
+            say!("  {}", if told { reason } else { failure });
         }
         for warning in &run.warnings {
             say!("  warning: {warning}");

@@ -78,9 +78,7 @@ fn the_magnetic_encoder_is_calibrated_alike() {
 }
 
 fn figure(what: &str, measured: &str) {
-    let page = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/figures.md");
     nonius_kept::figure(
-        Path::new(page),
         what,
         measured,
         "cli/tests/paper_and_chip_over_recordings.rs",

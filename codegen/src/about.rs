@@ -2,7 +2,7 @@
 
 use nonius_model::spec::{CalibrationMethod, Spec};
 
-use crate::layout::{COLUMNS, wrap};
+use crate::layout::{COMMENT, wrap};
 
 /// The kind of chip.
 pub(crate) fn kind(spec: &Spec) -> &'static str {
@@ -50,11 +50,7 @@ pub(crate) fn purpose(spec: &Spec) -> Vec<String> {
             c.gamma_first, c.gamma_last
         ),
     };
-    wrap(
-        "",
-        &format!("{LOOP} {search}{parameters}{gamma}"),
-        COLUMNS - 3,
-    )
+    wrap("", &format!("{LOOP} {search}{parameters}{gamma}"), COMMENT)
 }
 
 /// What the input `calibrate` does.

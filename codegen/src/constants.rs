@@ -3,6 +3,8 @@
 use nonius_model::graph::{Graph, Kind, Op};
 use nonius_model::kernel::{Coefficients, Constant};
 
+use crate::layout::{COMMENT, wrap};
+
 /// A coefficient of the chip.
 pub(crate) struct Coefficient {
     pub(crate) name: String,
@@ -42,7 +44,7 @@ pub(crate) fn listed(graph: &Graph) -> Vec<String> {
     let width = all.iter().map(|c| c.name.len()).max().unwrap_or(0);
     let lines = |c: &Coefficient| {
         let first = format!("  {:<width$} {:<24}", c.name, c.value);
-        crate::layout::wrap(&first, &c.meaning, crate::layout::COLUMNS - 5)
+        wrap(&first, &c.meaning, COMMENT - 2)
     };
     all.iter().flat_map(lines).collect()
 }

@@ -1,13 +1,20 @@
 //! Long statements and sentences on several lines.
 
 /// Columns of a line, indentation included.
-pub(crate) const COLUMNS: usize = 120;
+const COLUMNS: usize = 120;
+/// Columns of a comment behind its `// `.
+pub(crate) const COMMENT: usize = COLUMNS - 3;
 /// What stands before a statement of the module.
 const INDENT: usize = 4;
 
-/// A statement as it stands in the module: where it is too long for one line, its value is below its name, and a value that is
+/// Statements as they stand in the module.
+pub(crate) fn laid_out(statements: &[String]) -> Vec<String> {
+    statements.iter().flat_map(|one| fitted(one)).collect()
+}
+
+/// Where it is too long for one line, its value is below its name, and a value that is
 /// still too long is broken at its signs.
-pub(crate) fn fitted(statement: &str) -> Vec<String> {
+fn fitted(statement: &str) -> Vec<String> {
     let fits = |text: &str, deeper: usize| INDENT + deeper + text.len() <= COLUMNS;
     let (code, comment) = match statement.split_once(" // ") {
         Some((code, comment)) => (code, format!(" // {comment}")),

@@ -81,7 +81,7 @@ impl Netlist {
             .iter()
             .map(|f| Section {
                 title: f.title.into(),
-                equation: layout::wrap("", f.equation, layout::COLUMNS - 9),
+                equation: layout::wrap("", f.equation, layout::COMMENT - 6),
                 source: f.source.into(),
                 lines: vec![],
             })
@@ -101,8 +101,9 @@ impl Netlist {
             if let (Some(last), false) = (lines.last_mut(), with.is_empty()) {
                 *last += &format!(", with {with}");
             }
-            let lines = lines.iter().flat_map(|line| layout::fitted(line));
-            sections[node.formula].lines.extend(lines);
+            sections[node.formula]
+                .lines
+                .extend(layout::laid_out(&lines));
             if w.kept(id) {
                 let name = w.name(id);
                 w.declare(name, width(graph, id));

@@ -133,7 +133,7 @@ pub(crate) fn units(w: &Writer) -> Vec<Unit> {
             bits,
             loads,
             idle,
-            lines: lines.iter().flat_map(|line| layout::fitted(line)).collect(),
+            lines: layout::laid_out(&lines),
         });
     }
     list

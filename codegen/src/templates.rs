@@ -247,7 +247,7 @@ pub fn generate(
     let title = layout::wrap(
         "",
         &format!("{name}: {kind}{separator}{description}"),
-        layout::COLUMNS - 3,
+        layout::COMMENT,
     );
     let adc_msb = design.spec.adc.bits - 1;
     let f = &design.structure.formats;

@@ -2,7 +2,7 @@
 
 use nonius_model::graph::{NodeId, Op};
 
-use crate::layout::{COLUMNS, wrap};
+use crate::layout::{COMMENT, wrap};
 use crate::netlist::width;
 use crate::writer::{Source, Term, Writer, literal};
 
@@ -229,15 +229,13 @@ pub(crate) fn timetable(w: &Writer) -> Vec<String> {
     };
     let longest = products.iter().flatten().map(String::len).max();
     let width = longest.unwrap_or(0).max(title.len());
-    // Behind `// `.
-    let columns = COLUMNS - 3;
     let mut rows = vec![
         format!("step | {title:<width$} | computed from it"),
         format!(
             "-----+-{:-<width$}-+{:-<rest$}",
             "",
             "",
-            rest = columns - width - 9
+            rest = COMMENT - width - 9
         ),
     ];
     for (step, products) in products.iter().enumerate() {
@@ -252,7 +250,7 @@ pub(crate) fn timetable(w: &Writer) -> Vec<String> {
             })
             .map(|id| w.name(id))
             .collect();
-        let named = wrap("", &named.join(" "), columns - width - 10);
+        let named = wrap("", &named.join(" "), COMMENT - width - 10);
         for line in 0..products.len().max(named.len()) {
             let step = if line == 0 {
                 step.to_string()

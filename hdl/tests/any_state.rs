@@ -7,7 +7,6 @@ mod chip;
 use std::collections::HashMap;
 use std::fmt::Write;
 use std::fs;
-use std::path::Path;
 
 use chip::shipped::variants::kinds;
 use nonius_hdl::verify::{Options, verify};
@@ -184,7 +183,6 @@ fn from_any_state_the_verilog_goes_on_as_the_graph() {
         goes_on(&kind.what, &kind.design(), &options, &mut random);
     });
     nonius_kept::figure(
-        Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/figures.md")),
         "every register set to any value of its range, one sample on: the graph and the Verilog agree",
         &format!("{} chips, {ROWS} states each", kinds.len()),
         "hdl/tests/any_state.rs",

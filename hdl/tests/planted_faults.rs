@@ -4,7 +4,6 @@ mod chip;
 #[path = "planted_faults/faults.rs"]
 mod faults;
 
-use std::path::Path;
 use std::sync::LazyLock;
 
 use chip::optical;
@@ -81,7 +80,6 @@ fn verdict(files: &Files, options: &Options) -> (bool, String) {
 /// What is caught, on the page of figures.
 fn kept(place: &str, faults: usize) {
     nonius_kept::figure(
-        Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/figures.md")),
         &format!("faults planted in {place}, caught by the vectors"),
         &format!("{faults} of {faults}"),
         "hdl/tests/planted_faults.rs",

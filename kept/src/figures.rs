@@ -10,13 +10,14 @@ const SLACK: f64 = 0.1;
 /// One test at a time writes the page.
 static PAGE: Mutex<()> = Mutex::new(());
 
-/// The row of figure `name` in the table of `page` says `measured`, its numbers to a tenth where they are no counts, and names `test`.
+/// The row of figure `name` on the page, docs/figures.md, says `measured`, its numbers to a tenth where they are no counts, and names `test`.
 ///
 /// # Panics
 /// The row is not there or says something else; with `NONIUS_BLESS` set it is written, and only a page that cannot be
 /// panics.
 #[track_caller]
-pub fn figure(page: &Path, name: &str, measured: &str, test: &str) {
+pub fn figure(name: &str, measured: &str, test: &str) {
+    let page = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/figures.md"));
     let lock = PAGE.lock();
     let text = fs::read_to_string(page).unwrap_or_else(|e| panic!("{}: {e}", page.display()));
     let row = format!("| {name} | {measured} | `{test}` |");

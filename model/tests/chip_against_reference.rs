@@ -7,7 +7,6 @@ mod agreement;
 mod support;
 
 use std::f64::consts::TAU;
-use std::path::Path;
 
 use agreement::{Difference, WorstCase, compare, equaliser};
 use nonius_model::chip::Chip;
@@ -113,7 +112,6 @@ fn check(name: &str, found: &Difference, worst: &WorstCase) {
 /// Without and with a correction of skew, whose series ends.
 fn kept(reading: &str, [without, with]: [f64; 2]) {
     nonius_kept::figure(
-        Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/figures.md")),
         &format!(
             "chip, {reading}, against the paper in `f64`: largest difference of the angle, periods; with skew corrected"
         ),

@@ -4,7 +4,8 @@ mod chip_support;
 
 use std::f64::consts::TAU;
 
-use chip_support::{Bench, figure, optical, order, rms};
+use chip_support::{Bench, optical, order, rms};
+use nonius_kept::figure;
 use nonius_model::spec::{CalibrationMethod, Spec};
 
 /// Samples per period of the signal; the loop's bandwidth is `bandwidth` times its frequency.

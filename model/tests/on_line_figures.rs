@@ -5,7 +5,8 @@ mod chip_support;
 use std::f64::consts::TAU;
 
 use chip_support::shipped::variants::searches_of;
-use chip_support::{Bench, course, course_at, fast, figure, largest, optical, sensor};
+use chip_support::{Bench, course, course_at, fast, largest, optical, sensor};
+use nonius_kept::figure;
 use nonius_model::spec::{CalibrationMethod, Spec};
 use rayon::prelude::*;
 

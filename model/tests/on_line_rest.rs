@@ -8,8 +8,9 @@ mod chip_support;
 
 use std::f64::consts::TAU;
 
+use chip_support::Bench;
 use chip_support::shipped::variants::{Variant, searches};
-use chip_support::{Bench, figure};
+use nonius_kept::figure;
 use nonius_model::bits::Bits;
 use nonius_model::design::Design;
 use nonius_model::kernel::State;

@@ -4,7 +4,8 @@ mod chip_support;
 
 use std::f64::consts::TAU;
 
-use chip_support::{Bench, fast, figure, rms, sensor};
+use chip_support::{Bench, fast, rms, sensor};
+use nonius_kept::figure;
 use nonius_model::spec::Spec;
 
 const TEST: &str = "model/tests/on_line_speeds.rs";

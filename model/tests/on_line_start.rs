@@ -4,7 +4,8 @@ mod chip_support;
 
 use std::f64::consts::TAU;
 
-use chip_support::{Bench, course, fast, figure, rms, sensor};
+use chip_support::{Bench, course, fast, rms, sensor};
+use nonius_kept::figure;
 use nonius_model::spec::{CalibrationMethod, CalibrationStart, Spec};
 
 /// What is left when the start has solved its last period, worst of all signs: percent of the first miscalibration, and

@@ -4,7 +4,6 @@
 mod reference_support;
 
 use std::f64::consts::TAU;
-use std::path::Path;
 
 use nonius_model::reference::gate::{Gate, Window};
 use nonius_model::reference::gradient::Form;
@@ -105,7 +104,6 @@ fn a_single_gamma_takes_twelve_periods() {
     let best = course("single gamma 0.07", FINAL, Gamma::constant(0.07));
     assert!(best[11] < 1.0 && best[4] > 5.0, "{best:?}");
     nonius_kept::figure(
-        Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/figures.md")),
         "the same with the paper's single γ, in `f64`, after five and after twelve periods, %",
         &format!("{:.1}, {:.2}", best[4], best[11]),
         "model/tests/reference_speed_of_convergence.rs",

@@ -163,7 +163,6 @@ pub fn update<S: Signal, const PLAIN: bool>(
         None if method == CalibrationMethod::Batch => period_ends().named("batch_due"),
         None => gate.fresh,
     };
-    let old = this.theta;
     let nominal = gears::nominal(state, k);
     let settled = structure
         .calibration
@@ -181,15 +180,15 @@ pub fn update<S: Signal, const PLAIN: bool>(
     // Neither a loop nor a closure: each has its own code, whatever the compiler thinks of them.
     let of = (state, k, structure);
     if linear == 5 {
-        this.theta[4] = mover.moved(4, old, (fifth, by.phase), of);
+        this.theta[4] = mover.moved(4, this.theta[4], (fifth, by.phase), of);
     }
-    this.theta[0] = mover.moved(0, old, (first, by.gain), of);
-    this.theta[1] = mover.moved(1, old, (second, by.offset), of);
-    this.theta[2] = mover.moved(2, old, (third, by.gain), of);
-    this.theta[3] = mover.moved(3, old, (fourth, by.offset), of);
+    this.theta[0] = mover.moved(0, this.theta[0], (first, by.gain), of);
+    this.theta[1] = mover.moved(1, this.theta[1], (second, by.offset), of);
+    this.theta[2] = mover.moved(2, this.theta[2], (third, by.gain), of);
+    this.theta[3] = mover.moved(3, this.theta[3], (fourth, by.offset), of);
     if let Some(Bent { second, third, .. }) = bent {
         for (i, gradient) in [(5, second[0]), (6, second[1]), (7, third)] {
-            this.theta[i] = mover.moved(i, old, (gradient, by.bend), of);
+            this.theta[i] = mover.moved(i, this.theta[i], (gradient, by.bend), of);
         }
     }
     this

@@ -115,16 +115,15 @@ pub struct Mover<S: Signal> {
 }
 
 impl<S: Signal> Mover<S> {
-    /// Accumulator `i` of `old` after its step against the gradient; `equaliser`: log2 of what that is multiplied with beside γ.
+    /// Accumulator `i` after its step against the gradient; `equaliser`: log2 of what that is multiplied with beside γ.
     #[inline(always)]
     pub fn moved(
         &self,
         i: usize,
-        old: [S; 9],
+        old: S,
         (gradient, equaliser): (S::Wide, i32),
         (state, k, structure): (&State<S>, &Coefficients<S>, &Structure),
     ) -> S {
-        let old = old[i];
         if self.due.is_known_false() {
             return moved(old, k.zero, i, self.nominal, k, structure);
         }

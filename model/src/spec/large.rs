@@ -27,10 +27,7 @@ pub(super) fn too_large(text: &str, span: Range<usize>, message: &str) -> Option
     } else {
         return None;
     };
-    let field = field_at(text, span.start);
-    // What is no TOML, for a number that TOML cannot hold, still has its key before it.
-    let field = field.or_else(|| key_before(text, span.start).map(ToOwned::to_owned));
-    let key = field.map_or_else(String::new, |field| format!("{field} = "));
+    let key = field_at(text, span.start).map_or_else(String::new, |field| format!("{field} = "));
     Some(format!("{key}{}: {limit}", shortened(value)))
 }
 
@@ -45,12 +42,6 @@ fn is_large(value: &str) -> bool {
     };
     let is_whole = !digits.is_empty() && digits.chars().all(|c| c.is_digit(radix));
     is_whole && i32::from_str_radix(digits, radix).is_err()
-}
-
-/// The key whose value begins at this byte.
-fn key_before(text: &str, value: usize) -> Option<&str> {
-    let key = text.get(..value)?.trim_end().strip_suffix('=')?;
-    key.rsplit(['\n', '{', ',']).next().map(str::trim)
 }
 
 /// Cut where it would fill the screen.

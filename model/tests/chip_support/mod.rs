@@ -16,13 +16,6 @@ use nonius_model::physical::Converter;
 use nonius_model::spec::Spec;
 use rand::{Rng, SeedableRng, rngs::StdRng};
 
-/// A row of docs/figures.md.
-#[track_caller]
-pub(crate) fn figure(name: &str, measured: &str, test: &str) {
-    let page = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/figures.md");
-    nonius_kept::figure(std::path::Path::new(page), name, measured, test);
-}
-
 /// White noise of unit variance.
 #[derive(Clone)]
 pub(crate) struct Noise(StdRng);
