@@ -23,3 +23,20 @@ pub(crate) fn all_said(design: &Design) -> Spec {
     }
     spec
 }
+
+/// `said` but for `value` of `key`; words of others that cannot stay with it are left to the analysis. `None` where there is no
+/// such chip.
+pub(crate) fn with(said: &Spec, key: &str, value: i64) -> Option<Design> {
+    let mut spec = said.clone();
+    say(&mut spec, key, value);
+    loop {
+        let refused = match Design::new(&spec) {
+            Ok(design) => return Some(design),
+            Err(refused) => refused,
+        };
+        let other = refused.field().strip_prefix("formats.")?;
+        if other == key || spec.formats.given(other).is_none() || !spec.formats.set(other, None) {
+            return None;
+        }
+    }
+}

@@ -221,10 +221,10 @@ fn designs_that_no_chip_can_have_are_refused() {
         ),
         (
             "parameters = 5",
-            "parameters = 9\nmethod = \"sum_of_squares\"\n[formats]\nsignal_fraction = 24\naccumulator_fraction = 44\n",
+            "parameters = 9\nmethod = \"sum_of_squares\"\n[formats]\ngathered_fraction = 44\n",
             [
-                "d.toml:29:1: formats.accumulator_fraction = 44: the formats cannot hold the design: ",
-                "does not fit s63.48",
+                "d.toml:28:1: formats.gathered_fraction = 44: ",
+                "limit: 8 … 43",
             ],
         ),
         (

@@ -87,6 +87,10 @@ fn decisions<S: Signal<Bool = bool>>(
     (values.map(number), flags)
 }
 
+/// Samples within which both readings pass the edge of a sector, by which decisions fall, in this slow motion: it takes them to
+/// move by the largest difference.
+const WITHIN: u32 = 10;
+
 fn measure(spec: &Spec, calibrating: bool) -> Measured {
     let design = Design::new(spec).expect("a shipped design");
     let encoder = Encoder::miscalibrated(spec);
@@ -99,6 +103,7 @@ fn measure(spec: &Spec, calibrating: bool) -> Measured {
     let slow = 1.0 / f64::from(sweep);
     let mut at: f64 = 0.1;
     let (mut arithmetic, mut adc, mut largest) = (0.0, 0.0, 0.0f64);
+    let mut apart = 0;
     for k in 0..converge + settle + sweep {
         let measuring = k >= converge;
         let calibrate = !measuring || calibrating;
@@ -132,10 +137,14 @@ fn measure(spec: &Spec, calibrating: bool) -> Measured {
         analogue.step(&input(part(v_cos * half), part(v_sin * half)));
         if k >= converge + settle {
             assert!(bits.state.locked, "{}, sample {k}", spec.name);
-            assert_eq!(
+            let both = (
                 decisions(&bits.state, Bits::to_f64),
                 decisions(&real.state, |x| x),
-                "{}, sample {k}: lock level, loop gear, gamma gear, its periods; locked, lost, no signal, disturbed, risen, held",
+            );
+            apart = if both.0 == both.1 { 0 } else { apart + 1 };
+            assert!(
+                apart <= WITHIN,
+                "{}, sample {k}: lock level, loop gear, gamma gear, its periods; locked, lost, no signal, disturbed, risen, held: {both:?}",
                 spec.name
             );
             let difference = wrapped(bits.position() - real.position());

@@ -95,3 +95,21 @@ fn a_product_ends_before_the_containers_last_bit() {
         "{refused}"
     );
 }
+
+/// What does not fit is named with what it is made of, with its steps, and with the way out.
+#[test]
+fn a_value_that_does_not_fit_is_named() {
+    let recorder = Recorder::new();
+    let signal = recorder.input("signal", Format::signed(26, 25));
+    recorder.probe("small", signal.scale(-24).id);
+    let refused = recorder.finish().expect_err("too fine").to_string();
+    for words in [
+        "does not fit s63.48",
+        "in steps of 2^-49",
+        "signal is -1 … ",
+        "[formats]",
+    ] {
+        assert!(refused.contains(words), "{refused}");
+    }
+    assert!(!refused.contains("operand"), "{refused}");
+}

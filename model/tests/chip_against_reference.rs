@@ -143,6 +143,15 @@ fn the_equations_agree() {
     for (name, mut spec) in structures() {
         spec.formats.signal_fraction = Some(24);
         spec.formats.sine_rows_log2 = Some(13);
+        spec.formats.coefficient_bits = Some(32);
+        spec.formats.gain_bits = Some(32);
+        if spec.calibration.is_on() {
+            // What saturates ends a last bit below its bound.
+            spec.formats.residual_fraction = Some(24);
+        }
+        if spec.calibration.has_phase() {
+            spec.formats.cross_bits = Some(32);
+        }
         if !spec.correction.harmonics.is_empty() {
             spec.formats.harmonic_rows_log2 = Some(12);
         }
@@ -194,6 +203,9 @@ fn a_small_difference_in_the_design_is_seen() {
     let mut spec = optical();
     spec.formats.signal_fraction = Some(24);
     spec.formats.sine_rows_log2 = Some(13);
+    spec.formats.coefficient_bits = Some(32);
+    spec.formats.residual_fraction = Some(24);
+    spec.formats.cross_bits = Some(32);
     let design = Design::new(&spec).expect("a design that works");
     let worst = WorstCase::of(&design, false);
     let mut wider = design.clone();

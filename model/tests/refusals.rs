@@ -153,28 +153,6 @@ const WORDS: [Word; 5] = [
     ),
 ];
 
-/// One bit less in any word misses the budget.
-#[test]
-fn each_word_is_the_shortest() {
-    for spec in shipped::NAMES.map(shipped::spec) {
-        let chosen = Design::new(&spec).expect("a shipped design");
-        for (short, ..) in WORDS {
-            let mut spec = spec.clone();
-            for (field, word, set) in WORDS {
-                let n = word(&chosen.words) - u32::from(field == short);
-                set(&mut spec.formats, n);
-            }
-            let design = Design::new(&spec).expect("an override may miss the budget");
-            assert!(
-                design.budget.arithmetic() > design.budget.allowed,
-                "{}: {short}: {:?}",
-                spec.name,
-                design.words
-            );
-        }
-    }
-}
-
 /// A short word of the user's makes the error of that word, and the others are not blamed for it.
 #[test]
 fn an_override_that_misses_the_budget_is_built() {
@@ -243,27 +221,26 @@ proptest! {
     }
 }
 
-/// What does not fit is named with what it is made of, with its steps, and with the way out.
+/// The completion counts the samples of a period of travel at a fifth of the loop's bandwidth.
 #[test]
-fn a_value_that_does_not_fit_is_named() {
+fn a_loop_too_slow_for_the_completion_is_refused() {
     let mut spec = optical();
-    spec.adc.bits = 18;
-    spec.sensor.noise_rms = 0.0;
     spec.calibration.parameters = 9;
-    spec.calibration.method = CalibrationMethod::SumOfSquares;
-    spec.formats.signal_fraction = Some(24);
-    spec.formats.phase_bits = Some(44);
-    spec.formats.accumulator_fraction = Some(44);
-    let refused = Design::new(&spec).expect_err("too many bits").to_string();
+    spec.sensor.speed_max_periods_per_s = 100.0;
+    spec.tracking.bandwidth_hz = 610.0;
+    let refused = Design::new(&spec).expect_err("too slow").to_string();
     for words in [
-        "does not fit s63.48",
-        "in steps of 2^-",
-        " is ",
-        "[formats]",
+        "loop.bandwidth_hz = 610",
+        "610.43",
+        "calibration.completion",
     ] {
         assert!(refused.contains(words), "{refused}");
     }
-    assert!(!refused.contains("operand"), "{refused}");
+    spec.tracking.bandwidth_hz = 611.0;
+    Design::new(&spec).expect("just fast enough");
+    spec.tracking.bandwidth_hz = 610.0;
+    spec.calibration.completion = false;
+    Design::new(&spec).expect("nothing to count");
 }
 
 /// The test's own encoder: an ideal one has no offset, angles wrap to half a turn.

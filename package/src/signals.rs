@@ -98,7 +98,7 @@ const REASONS: &[(&[&str], &str, &[&str])] = &[
     ),
     (
         &["theta", "theta_solved", "cubic_c", "cubic_s"],
-        "parameter as it is multiplied: as wide as a signal, its point as far left as its bounds allow",
+        "parameter as it is multiplied: resolution by the budget, its point as far left as its bounds allow",
         &[],
     ),
     (
@@ -108,7 +108,7 @@ const REASONS: &[(&[&str], &str, &[&str])] = &[
     ),
     (
         &["rho_limited"],
-        "residual: a quarter of the radius at most moves a parameter; a signal's resolution",
+        "residual: a quarter of the radius at most moves a parameter; resolution by the budget",
         &["formats.residual_fraction"],
     ),
     (
@@ -118,12 +118,12 @@ const REASONS: &[(&[&str], &str, &[&str])] = &[
             "null_gradient",
             "null_gradient_rate",
         ],
-        "gradient of the phase: two turns at most, to its resolution",
+        "gradient of the phase: two turns at most; resolution by the budget",
         &["formats.sensitivity_fraction"],
     ),
     (
         &["gathered"],
-        "gathered gradient: its bound, to a parameter's resolution",
+        "gathered gradient: its bound; resolution by the budget",
         &["formats.gathered_fraction"],
     ),
     (
@@ -175,7 +175,7 @@ const REASONS: &[(&[&str], &str, &[&str])] = &[
     ),
     (
         &["harmonic_cos", "harmonic_sin", "harmonic_turned"],
-        "harmonics: a quarter of the amplitude at most, to a signal's resolution",
+        "harmonics: a quarter of the amplitude at most; resolution by the budget",
         &["formats.harmonic_fraction"],
     ),
     (
@@ -190,12 +190,12 @@ const REASONS: &[(&[&str], &str, &[&str])] = &[
     ),
     (
         &["skew_rate"],
-        "speed up to a quarter above the design's largest, as wide as a signal",
+        "speed up to a quarter above the design's largest; resolution by the budget",
         &["formats.skew_rate_bits"],
     ),
     (
         &["skew", "skew_moving"],
-        "phase of the sine's delay at that speed, six bits finer than a signal",
+        "phase of the sine's delay at that speed; resolution by the budget",
         &["formats.skew_bits"],
     ),
 ];
@@ -228,8 +228,7 @@ fn reason(design: &Design, name: &str, node: &Entry) -> (&'static str, Vec<Strin
 /// The reason and the keys of a word that is read from a table.
 fn table_word(name: &str) -> Reason {
     const SINE: &str = "word of the sine table: the budget's rounding of the table";
-    const HARMONICS: &str =
-        "word of the table of harmonics: two bits finer than a signal, with its slope";
+    const HARMONICS: &str = "word of the table of harmonics: the budget's rounding of the table";
     match (name.starts_with("harmonic"), name.ends_with("slope")) {
         (false, false) => (SINE, &["formats.sine_value_fraction"]),
         (false, true) => (SINE, &["formats.sine_slope_fraction"]),

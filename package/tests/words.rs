@@ -85,10 +85,15 @@ fn the_page_of_word_lengths_is_fresh() {
     let mut page = format!(
         "# Word lengths\n\nWritten by `{HOW}`; do not edit. Every word length that the analysis chooses\nmay be said in \
          `[formats]` of the design:\n\n    [formats]\n    signal_fraction = 18      # two bits more than the analysis \
-         takes for optical\n\nThe others are then chosen around it. A word that misses the budget is built, with a note \
-         of what it adds. One that cannot be\nis refused with its limits, a range that does not hold the promised sensor \
-         with the parameter and the sensor's worst case, a\nsignal that fits no word any more with its operands and the \
-         key that leads there. Words that a chip does not have are refused: a\nchip without harmonics has no table of \
+         takes for optical\n\nEach is the shortest with which all errors together keep to the budget, so one bit less misses it \
+         (`each_word_is_the_shortest` in\n`model/tests/word_lengths.rs`, for every kind of chip). First those that cost \
+         most, the others as long as is of use; then the others,\none after the other. No accuracy is in the ranges of \
+         parameters, which hold the promise and a quarter more, in `rate_high_bits`,\nwhich parts a factor in two, and \
+         in `lock_level_bits`, by which lock takes as long as the loop takes to settle.\n\n\
+         The others are chosen around what you say. A word that misses the budget is built, with a note of what it \
+         adds. One that cannot be\nis refused with its limits, a range that does not hold the promised sensor \
+         with the parameter and the sensor's worst case. Within\nthe limits everything fits: interval analysis shows it for \
+         every value of the chip. Words that a chip does not have are refused: a\nchip without harmonics has no table of \
          them. `design.json` holds them under `budget.words`, what they add under `budget.terms`,\nand names beside each \
          signal the keys that set its format (`set_by`).\n\nChosen for the shipped designs, and for optical with a loop of \
          type 1, nine parameters by the sum of squares, skew and harmonics\n(what they may be is of the last one):\n\n\

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use super::followers::Followers;
-use super::formats::multiplied;
+use super::limits::of_followers as followers_limits;
 use super::refuse::between;
 use super::{DesignError, Loop, harmonics, normalisation, word};
 use crate::format::exp2;
@@ -126,29 +126,8 @@ pub(super) fn dead_band(fraction: u32) -> f64 {
     exp2(-i64::from(fraction) - 1) / 3f64.sqrt()
 }
 
-fn terms(words: &Words, spec: &Spec, tracking: &Loop) -> Vec<Term> {
+fn terms(words: &Words, follow: &Followers, spec: &Spec, tracking: &Loop) -> Vec<Term> {
     let f = words.signal_fraction;
-    let amplitude = normalisation(spec).0;
-    let follow = Followers::of(words, spec, tracking);
-    // As the analysis would choose the words that the user says.
-    let free = Spec {
-        formats: Overrides::default(),
-        ..spec.clone()
-    };
-    let chosen = Followers::of(words, &free, tracking);
-    let [theta_1, _, theta_5] = multiplied(spec, &follow).theta;
-    let [fine_1, _, fine_5] = multiplied(&free, &chosen).theta;
-    let gain = if theta_1.format.fraction < fine_1.format.fraction {
-        rounding(theta_1.format.fraction)
-    } else {
-        // θ1 and θ3 need at least one integer bit beside the sign.
-        rounding(f) * 2.0
-    };
-    let cross = if theta_5.format.fraction < fine_5.format.fraction {
-        rounding(theta_5.format.fraction)
-    } else {
-        rounding(f)
-    };
     // Smallest change of the rate is half its last bit: errors below that die in the integrator.
     let rate = dead_band(words.phase_bits) / tracking.ab;
     let segment = TAU * exp2(-i64::from(words.sine_rows_log2) - 3);
@@ -163,19 +142,15 @@ fn terms(words: &Words, spec: &Spec, tracking: &Loop) -> Vec<Term> {
         ),
         ("phase in the sine", TAU * rounding(words.sine_phase_bits)),
         ("phase error", rounding(f)),
-        ("gains as multiplied", gain * amplitude * 0.25f64.sqrt()),
-        (
-            "phase parameter as multiplied",
-            cross * amplitude * 0.375f64.sqrt(),
-        ),
         ("phase and its increments", rate),
         ("parameter accumulators", accumulator(words, spec)),
     ];
     if spec.correction.has_skew() {
         list.push(("channel skew", skew));
     }
-    list.extend(harmonics::terms(words, &follow, spec));
-    list.extend(follow.terms((&free, &chosen), words, spec));
+    list.extend(harmonics::terms(words, follow, spec));
+    let of = |key: &&str| follow.term(key, words, spec, tracking);
+    list.extend(Followers::KEYS.iter().filter_map(of));
     list.into_iter()
         .map(|(source, radians)| Term {
             source,
@@ -232,26 +207,45 @@ fn reachable(spec: &Spec, adc: f64, noise: f64) -> Result<(), DesignError> {
 /// Where a word of the user's misses the budget, the others add no more than this.
 const MUCH_AS_GOOD: f64 = 1.05;
 
-/// Chooses the shortest words, one after the other, that keep the sum of all errors within what is allowed.
-pub(super) fn choose(spec: &Spec, tracking: &Loop) -> Result<(Words, Budget), DesignError> {
+/// Chooses the shortest words, one after the other, that keep the sum of all errors within what is allowed: first those of
+/// the budget with followers as long as they can make worth it, then the followers.
+pub(super) fn choose(
+    spec: &Spec,
+    tracking: &Loop,
+) -> Result<(Words, Followers, Budget), DesignError> {
     word::plausible(spec)?;
     let (amplitude, power) = normalisation(spec);
     let adc = rounding(spec.adc.bits - 1 - power) / amplitude / TAU;
     let noise = spec.sensor.noise_rms / TAU * tracking.noise_gain.sqrt();
     let allowed = spec.accuracy.rms_periods * spec.accuracy.arithmetic_share;
     reachable(spec, adc, noise)?;
-    let budget = |words: &Words| Budget {
+    let budget = |words: &Words, followers: &Followers| Budget {
         adc,
         noise,
         calibration: calibration(spec, adc * TAU),
         uncorrected: uncorrected(spec),
         allowed,
-        terms: terms(words, spec, tracking),
+        terms: terms(words, followers, spec, tracking),
     };
+    let followers = |words: &Words| Followers::generous(words, spec, tracking);
+    let arithmetic = |words: &Words| budget(words, &followers(words)).arithmetic();
     let o = &spec.formats;
+    let generous = |f: u32| Words {
+        signal_fraction: f,
+        phase_bits: o.phase_bits.unwrap_or(44),
+        sine_phase_bits: o.sine_phase_bits.unwrap_or((f + 8).min(30)),
+        sine_rows_log2: o.sine_rows_log2.unwrap_or(13),
+        harmonic_rows_log2: o.harmonic_rows_log2.unwrap_or(harmonics::ROWS_LOG2_MAX),
+        accumulator_fraction: o.accumulator_fraction.unwrap_or(44),
+    };
     // What is missed with the longest words is missed because of a word that the user chose: then the others are as
     // long as adds little to that.
-    let enough = |longest: &Words| allowed.max(MUCH_AS_GOOD * budget(longest).arithmetic());
+    let enough = if *o == Overrides::default() {
+        allowed
+    } else {
+        let longest = generous(o.signal_fraction.unwrap_or(SIGNAL_FRACTION_MAX));
+        allowed.max(MUCH_AS_GOOD * arithmetic(&longest))
+    };
     let pick = |key: &str, before: &Words, set: &dyn Fn(u32) -> Words| {
         let (low, high) = limits(key, before);
         let field = || format!("formats.{key}").into();
@@ -268,32 +262,16 @@ pub(super) fn choose(spec: &Spec, tracking: &Loop) -> Result<(Words, Budget), De
                 },
                 reason: "the chip cannot be built with it".into(),
             }),
-            None => {
-                let enough = if *o == Overrides::default() {
-                    allowed
-                } else {
-                    enough(&set(high))
-                };
-                (low..=high)
-                    .map(set)
-                    .find(|w| budget(w).arithmetic() <= enough)
-                    .ok_or_else(|| DesignError::Field {
-                        field: field(),
-                        value: format!("more than {high} bits"),
-                        limit: format!("{high} bits"),
-                        reason: "the accuracy asked for needs longer words than the chip has"
-                            .into(),
-                    })
-            }
+            None => (low..=high)
+                .map(set)
+                .find(|w| arithmetic(w) <= enough)
+                .ok_or_else(|| DesignError::Field {
+                    field: field(),
+                    value: format!("more than {high} bits"),
+                    limit: format!("{high} bits"),
+                    reason: "the accuracy asked for needs longer words than the chip has".into(),
+                }),
         }
-    };
-    let generous = |f: u32| Words {
-        signal_fraction: f,
-        phase_bits: o.phase_bits.unwrap_or(44),
-        sine_phase_bits: o.sine_phase_bits.unwrap_or((f + 8).min(30)),
-        sine_rows_log2: o.sine_rows_log2.unwrap_or(13),
-        harmonic_rows_log2: o.harmonic_rows_log2.unwrap_or(harmonics::ROWS_LOG2_MAX),
-        accumulator_fraction: o.accumulator_fraction.unwrap_or(44),
     };
     let w = pick("signal_fraction", &generous(8), &generous)?;
     let w = pick("sine_rows_log2", &w, &|n| Words {
@@ -313,13 +291,30 @@ pub(super) fn choose(spec: &Spec, tracking: &Loop) -> Result<(Words, Budget), De
         accumulator_fraction: n,
         ..w
     })?;
-    Ok((words, budget(&words)))
+    let mut followers = followers(&words);
+    for key in Followers::KEYS {
+        let list = followers_limits(&followers, &words, spec);
+        let Some(l) = list.iter().find(|l| l.key == *key && l.absent.is_none()) else {
+            continue;
+        };
+        if Followers::adds(key) && o.given(key).is_none() {
+            let lowest = u32::try_from(l.lowest).unwrap_or(0);
+            followers = (lowest..followers.word(key))
+                .map(|n| followers.with(key, n))
+                .find(|f| budget(&words, f).arithmetic() <= enough)
+                .unwrap_or(followers);
+        }
+    }
+    Ok((words, followers, budget(&words, &followers)))
 }
+
+/// Most fraction bits of a signal.
+const SIGNAL_FRACTION_MAX: u32 = 24;
 
 /// What a word of the budget may be, with those that are settled before it as they are.
 pub(super) fn limits(key: &str, w: &Words) -> (u32, u32) {
     match key {
-        "signal_fraction" => (8, 24),
+        "signal_fraction" => (8, SIGNAL_FRACTION_MAX),
         "sine_rows_log2" => (4, 13),
         "harmonic_rows_log2" => (4, harmonics::ROWS_LOG2_MAX),
         "sine_phase_bits" => ((w.sine_rows_log2 + 3).max(w.harmonic_rows_log2 + 1), 30),

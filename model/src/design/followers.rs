@@ -1,38 +1,73 @@
 //! Words that follow from those of the budget, unless the user says otherwise.
 
+use std::f64::consts::TAU;
+
 use super::budget::{dead_band, rounding};
-use super::formats::{held, level_bits, multiplied, skew_top, speed_top};
-use super::{Loop, Words};
-use crate::format::exp2;
+use super::formats::{held, level_bits, lock_window, multiplied, skew_top, speed_top};
+use super::limits::{absent, gathered_most};
+use super::ranges::ranges;
+use super::skew::{delay, phase_max};
+use super::{Loop, Words, normalisation};
+use crate::format::{Quantiser, exp2};
 use crate::spec::{CalibrationMethod, Spec};
 
-/// The words; see [`Overrides`](crate::spec::Overrides) for what each is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "described where the user gives them")]
-pub struct Followers {
-    pub sine_value_fraction: u32,
-    pub sine_slope_fraction: u32,
-    pub harmonic_fraction: u32,
-    pub harmonic_value_fraction: u32,
-    pub harmonic_slope_fraction: u32,
-    pub gain_bits: u32,
-    pub cross_bits: u32,
-    pub bend_bits: u32,
-    pub cubic_bits: u32,
-    pub coefficient_bits: u32,
-    pub rate_high_bits: u32,
-    pub residual_fraction: u32,
-    pub sensitivity_fraction: u32,
-    pub gathered_fraction: u32,
-    pub skew_rate_bits: u32,
-    pub skew_bits: u32,
-    pub lock_level_bits: u32,
+macro_rules! followers {
+    ($($key:ident),* $(,)?) => {
+        /// The words; see [`Overrides`](crate::spec::Overrides) for what each is.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        #[allow(missing_docs, reason = "described where the user gives them")]
+        pub struct Followers {
+            $(pub $key: u32,)*
+        }
+
+        impl Followers {
+            /// Their keys, in the order in which they are shortened.
+            pub(super) const KEYS: &'static [&'static str] = &[$(stringify!($key)),*];
+
+            /// The word of `key`; 0 where there is none.
+            pub(super) fn word(&self, key: &str) -> u32 {
+                match key {
+                    $(stringify!($key) => self.$key,)*
+                    _ => 0,
+                }
+            }
+
+            /// With another word of `key`.
+            pub(super) fn with(mut self, key: &str, bits: u32) -> Self {
+                match key {
+                    $(stringify!($key) => self.$key = bits,)*
+                    _ => {}
+                }
+                self
+            }
+        }
+    };
+}
+
+followers! {
+    sine_value_fraction,
+    sine_slope_fraction,
+    harmonic_fraction,
+    harmonic_value_fraction,
+    harmonic_slope_fraction,
+    gain_bits,
+    cross_bits,
+    bend_bits,
+    cubic_bits,
+    coefficient_bits,
+    rate_high_bits,
+    residual_fraction,
+    sensitivity_fraction,
+    gathered_fraction,
+    skew_rate_bits,
+    skew_bits,
+    lock_level_bits,
 }
 
 impl Followers {
-    /// As the user says, else as wide as the words of the budget make worth it: two bits below a signal's last in a table,
-    /// as wide as a signal where one multiplier serves all.
-    pub(super) fn of(words: &Words, spec: &Spec, tracking: &Loop) -> Self {
+    /// As the user says, else as long as the words of the budget can make worth it: two bits below a signal's last in a
+    /// table, as wide as a signal where one multiplier serves all.
+    pub(super) fn generous(words: &Words, spec: &Spec, tracking: &Loop) -> Self {
         let (o, f) = (&spec.formats, words.signal_fraction);
         let or = |given: Option<u32>, chosen: u32| given.unwrap_or(chosen);
         let slope = |fraction: u32, rows: u32| fraction.saturating_sub(rows).max(1);
@@ -53,7 +88,10 @@ impl Followers {
             bend_bits: or(o.bend_bits, width),
             cubic_bits: or(o.cubic_bits, width),
             coefficient_bits: or(o.coefficient_bits, width),
-            rate_high_bits: or(o.rate_high_bits, width),
+            rate_high_bits: or(
+                o.rate_high_bits,
+                width.min(words.phase_bits.saturating_sub(2)),
+            ),
             residual_fraction: or(o.residual_fraction, f),
             sensitivity_fraction: or(o.sensitivity_fraction, words.phase_bits),
             gathered_fraction: or(
@@ -61,7 +99,7 @@ impl Followers {
                 if spec.calibration.starts() {
                     f
                 } else {
-                    words.accumulator_fraction
+                    words.accumulator_fraction.min(gathered_most(spec))
                 },
             ),
             skew_rate_bits: or(
@@ -73,80 +111,101 @@ impl Followers {
         }
     }
 
-    /// What these words add to the angle where the user wants them coarser than `chosen` for a `free` design, radians rms. Those that the analysis
-    /// chooses are so fine that the terms of the budget hold them.
-    pub(super) fn terms(
+    /// Whether a shorter word of `key` costs accuracy. The upper part of a rate is parted from the lower, whose product counts
+    /// as well; and lock takes as long as the loop takes to settle.
+    pub(super) fn adds(key: &str) -> bool {
+        !matches!(key, "rate_high_bits" | "lock_level_bits")
+    }
+
+    /// What the word of `key` adds to the angle, radians rms, with its source; `None` where the chip has no such word, where
+    /// it [adds](Self::adds) nothing, and for harmonics as they are read, which are counted [together](super::harmonics::terms).
+    pub(super) fn term(
         &self,
-        (free, chosen): (&Spec, &Self),
+        key: &str,
         words: &Words,
         spec: &Spec,
-    ) -> Vec<(&'static str, f64)> {
-        let c = &spec.calibration;
+        tracking: &Loop,
+    ) -> Option<(&'static str, f64)> {
+        if absent(key, spec).is_some() {
+            return None;
+        }
+        let amplitude = normalisation(spec).0;
+        let reach = |n: usize| exp2(ranges(spec).deviation[n].into());
+        let m = multiplied(spec, self);
+        let of = |word: &Quantiser| rounding(word.format.fraction);
         // Over a segment, in turns.
         let slope =
             |fraction: u32, half_segment: f64| rounding(fraction) * half_segment / 3f64.sqrt();
-        let half_sine = exp2(-i64::from(words.sine_rows_log2) - 3);
-        let half_harmonic = exp2(-i64::from(words.harmonic_rows_log2) - 1);
-        let (m, fine) = (multiplied(spec, self), multiplied(free, chosen));
-        let skew = held(skew_top(spec), self.skew_bits, words.signal_fraction + 6);
-        let speed = held(speed_top(spec), self.skew_rate_bits, words.phase_bits);
-        // Below half the last bit nothing is gathered.
-        let gathered = match c.method {
-            _ if c.starts() => rounding(self.gathered_fraction) / 8.0,
-            CalibrationMethod::Batch => rounding(self.gathered_fraction) / 8.0,
-            _ => exp2(c.forgetting.into()) * dead_band(self.gathered_fraction),
-        };
-        [
-            (
-                self.sine_value_fraction < chosen.sine_value_fraction,
-                "sine table values",
-                rounding(self.sine_value_fraction),
-            ),
-            (
-                self.sine_slope_fraction < chosen.sine_slope_fraction,
+        Some(match key {
+            "sine_value_fraction" => ("sine table values", rounding(self.sine_value_fraction)),
+            "sine_slope_fraction" => (
                 "sine table slopes",
-                slope(self.sine_slope_fraction, half_sine),
+                slope(
+                    self.sine_slope_fraction,
+                    exp2(-i64::from(words.sine_rows_log2) - 3),
+                ),
             ),
-            (
-                self.harmonic_slope_fraction < chosen.harmonic_slope_fraction,
+            "harmonic_slope_fraction" => (
                 "harmonic table slopes",
-                slope(self.harmonic_slope_fraction, half_harmonic),
+                slope(
+                    self.harmonic_slope_fraction,
+                    exp2(-i64::from(words.harmonic_rows_log2) - 1),
+                ),
             ),
-            // As multiplied by u, of which a half is left on average.
-            (
-                m.bend.format.fraction < fine.bend.format.fraction,
-                "even bends as multiplied",
-                rounding(m.bend.format.fraction) / 2.0,
+            "gain_bits" => (
+                "gains as multiplied",
+                of(&m.theta[0]) * amplitude * 0.25f64.sqrt(),
             ),
-            (
-                m.cubic.format.fraction < fine.cubic.format.fraction,
-                "odd bends as multiplied",
-                rounding(m.cubic.format.fraction) / 2.0,
+            "cross_bits" => (
+                "phase parameter as multiplied",
+                of(&m.theta[2]) * amplitude * 0.375f64.sqrt(),
             ),
-            (
-                self.residual_fraction < chosen.residual_fraction,
+            // By u, of which a half is left on average.
+            "bend_bits" => ("even bends as multiplied", of(&m.bend) / 2.0),
+            "cubic_bits" => ("odd bends as multiplied", of(&m.cubic) / 2.0),
+            // Of what the loop lags behind and what the sine runs ahead by, at their largest.
+            "coefficient_bits" => (
+                "coefficients",
+                rounding(self.coefficient_bits.saturating_sub(2))
+                    * lock_window(spec).hypot(phase_max(spec) / 2.0),
+            ),
+            "residual_fraction" => (
                 "residual as it moves the parameters",
                 dead_band(self.residual_fraction),
             ),
-            (
-                self.gathered_fraction < chosen.gathered_fraction,
-                "gathered gradients",
-                gathered,
+            // Of what the estimate follows a parameter by, at its largest.
+            "sensitivity_fraction" => (
+                "sensitivities and their increments",
+                dead_band(self.sensitivity_fraction) / (TAU * tracking.ab)
+                    * if spec.calibration.is_exact() {
+                        (0..5).map(reach).fold(0.0, f64::max)
+                    } else {
+                        4.0 * reach(8)
+                    },
             ),
-            (
-                self.skew_rate_bits < chosen.skew_rate_bits,
-                "speed in the channel skew",
-                (super::skew::delay(spec) * rounding(speed.format.fraction)).abs() / 2.0,
-            ),
-            (
-                self.skew_bits < chosen.skew_bits,
-                "phase of the channel skew",
-                rounding(skew.format.fraction) / 2.0,
-            ),
-        ]
-        .into_iter()
-        .filter(|(coarser, ..)| *coarser)
-        .map(|(_, source, radians)| (source, radians))
-        .collect()
+            "gathered_fraction" => ("gathered gradients", self.gathered(spec)),
+            "skew_rate_bits" => {
+                let speed = held(speed_top(spec), self.skew_rate_bits, words.phase_bits);
+                (
+                    "speed in the channel skew",
+                    (delay(spec) * of(&speed)).abs() / 2.0,
+                )
+            }
+            "skew_bits" => {
+                let skew = held(skew_top(spec), self.skew_bits, words.signal_fraction + 6);
+                ("phase of the channel skew", of(&skew) / 2.0)
+            }
+            _ => return None,
+        })
+    }
+
+    /// Below half the last bit nothing is gathered.
+    fn gathered(&self, spec: &Spec) -> f64 {
+        let c = &spec.calibration;
+        if c.starts() || c.method == CalibrationMethod::Batch {
+            rounding(self.gathered_fraction) / 8.0
+        } else {
+            exp2(c.forgetting.into()) * dead_band(self.gathered_fraction)
+        }
     }
 }

@@ -5,7 +5,7 @@ use std::f64::consts::{SQRT_2, TAU};
 use super::followers::Followers;
 use super::ranges::ranges;
 use super::{Acquisition, DesignError, Loop, Words, harmonics, normalisation, skew};
-use crate::format::{Format, Quantiser, exp2};
+use crate::format::{CONTAINER_INTEGER, Format, Quantiser, exp2};
 use crate::kernel::gears::HELD;
 use crate::kernel::skew::Order;
 use crate::kernel::start::PERIODS as START_PERIODS;
@@ -35,9 +35,12 @@ fn amplitude_shift(spec: &Spec) -> u32 {
 
 /// Samples of a period of travel at a fifth of the loop's bandwidth: below that the loop follows what the completion
 /// should see.
-fn travel_samples(spec: &Spec) -> u32 {
+pub(super) fn travel_samples(spec: &Spec) -> u32 {
     (5.0 * spec.adc.sample_rate_hz / spec.tracking.bandwidth_hz) as u32
 }
+
+/// Most of them: a counter and one more stay in the container, whose sign is not theirs.
+pub(super) const TRAVEL_SAMPLES_MAX: u32 = (1 << (CONTAINER_INTEGER - 3)) - 1;
 
 /// A counter from 0 to `last`.
 fn counting_to(last: u32) -> Quantiser {
@@ -236,6 +239,35 @@ fn sine_table(words: &Words, follow: &Followers) -> Result<Rom, DesignError> {
     })
 }
 
+/// What noise, bends and skew add to the pair before they are corrected, amplitudes.
+fn disturbances(spec: &Spec) -> f64 {
+    let s = &spec.sensor;
+    let bends = if spec.calibration.has_bend() {
+        2.0 * s.bend_max
+    } else {
+        0.0
+    };
+    5.0 * s.noise_rms + bends + skew::phase_max(spec) / 2.0
+}
+
+/// Phase errors up to here are those of a loop in lock, radians. At top speed the loop follows nothing of an uncalibrated
+/// pair's: gains turn it by sin 2α, offsets by a wave of the period, the phase by half of it and a wave of half the period.
+/// Near its bandwidth it adds a fifth.
+pub(super) fn lock_window(spec: &Spec) -> f64 {
+    let s = &spec.sensor;
+    let beta = s.phase_error_max_deg.to_radians();
+    let turn = s.amplitude_tolerance + SQRT_2 * s.offset_max + 0.75 * beta + disturbances(spec);
+    (1.2 * turn).clamp(0.35, 0.8)
+}
+
+/// Radial residuals up to here are those of a promised sensor, amplitudes.
+fn lock_radius(spec: &Spec) -> f64 {
+    let s = &spec.sensor;
+    let beta = s.phase_error_max_deg.to_radians();
+    let radius = 1.5 * s.offset_max + s.amplitude_tolerance + beta + disturbances(spec);
+    (1.25 * radius).clamp(0.4, 0.9)
+}
+
 pub(super) fn constants(
     spec: &Spec,
     tracking: &Loop,
@@ -257,19 +289,6 @@ pub(super) fn constants(
         structure.formats.theta[0].format.fraction,
     );
     let full = (1i64 << follow.lock_level_bits) - 1;
-    let s = &spec.sensor;
-    let more = 5.0 * s.noise_rms
-        + if spec.calibration.has_bend() {
-            2.0 * s.bend_max
-        } else {
-            0.0
-        }
-        + skew::phase_max(spec) / 2.0;
-    let beta = s.phase_error_max_deg.to_radians();
-    let radius = 1.5 * s.offset_max + s.amplitude_tolerance + beta + more;
-    // At top speed the loop follows none of it: gains turn the pair by sin 2α, offsets by a wave of the period, the phase
-    // by half of it and a wave of half the period. Near its bandwidth it adds a fifth.
-    let turn = s.amplitude_tolerance + SQRT_2 * s.offset_max + 0.75 * beta + more;
     Coefficients {
         adc_middle: Constant::rounded(0.5, 1),
         loop_a: Constant::normalised(tracking.a, width, 40),
@@ -293,8 +312,8 @@ pub(super) fn constants(
             words.harmonic_rows_log2 + 1,
         ),
         // Limits of few bits make short comparators.
-        lock_error: Constant::rounded((1.2 * turn).clamp(0.35, 0.8), 4),
-        lock_residual: Constant::rounded((1.25 * radius).clamp(0.4, 0.9), 4),
+        lock_error: Constant::rounded(lock_window(spec), 4),
+        lock_residual: Constant::rounded(lock_radius(spec), 4),
         weak_signal: Constant::rounded(0.25, 2),
         restart_residual: Constant::rounded(spec.calibration.restart_residual, f.min(8)),
         hold_residual: Constant::rounded(spec.hold_residual(), f.min(8)),
@@ -304,7 +323,7 @@ pub(super) fn constants(
         lock_restart: whole(full / 2),
         loop_gear_last: whole(acquisition.gears.into()),
         completion_residual: Constant::rounded(
-            exp2((6.0 * s.noise_rms).max(0.05).log2().ceil() as i64),
+            exp2((6.0 * spec.sensor.noise_rms).max(0.05).log2().ceil() as i64),
             f.min(8),
         ),
         // Above what a promised sensor leaves of e in lock, below what a stop or a start makes of it: 3/32 rad.

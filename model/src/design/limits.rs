@@ -29,8 +29,13 @@ pub(super) fn all(words: &Words, followers: &Followers, spec: &Spec) -> Vec<Limi
     list
 }
 
+/// Most fraction bits of a gathered gradient.
+pub(super) fn gathered_most(spec: &Spec) -> u32 {
+    44 - gathered_power(spec).unsigned_abs()
+}
+
 /// Why a chip has no word of this key, where it has none.
-fn absent(key: &str, spec: &Spec) -> Option<&'static str> {
+pub(super) fn absent(key: &str, spec: &Spec) -> Option<&'static str> {
     let c = &spec.calibration;
     let (missing, why) = match key {
         key if key.starts_with("harmonic_") => (
@@ -109,7 +114,11 @@ const DELAY: &str = "fewer are no number, and more are finer than what they are 
 const LEVEL: &str = "lock takes as many samples as the loop takes to settle: 32 to 4096";
 
 /// The words that follow from those of the budget.
-fn of_followers(words_that_follow: &Followers, words: &Words, spec: &Spec) -> Vec<Limits> {
+pub(super) fn of_followers(
+    words_that_follow: &Followers,
+    words: &Words,
+    spec: &Spec,
+) -> Vec<Limits> {
     let w = words_that_follow;
     let (f, p, h) = (words.signal_fraction, words.phase_bits, w.harmonic_fraction);
     let r = ranges(spec);
@@ -119,7 +128,7 @@ fn of_followers(words_that_follow: &Followers, words: &Words, spec: &Spec) -> Ve
     // As wide as its finest bit allows.
     let most = |largest: f64, finest: u32| held(largest, 64, finest).format.width;
     let values = (h.saturating_add(1), h.saturating_add(8));
-    let gathered = (8, 44 - gathered_power(spec).unsigned_abs());
+    let gathered = (8, gathered_most(spec));
     let skew_rate = (4, most(speed_top(spec), p));
     let skew = (4, most(skew_top(spec), f + 6));
     let rows = [

@@ -1,6 +1,5 @@
 //! From physical units to integers: [`Spec`] becomes [`Design`].
 
-mod blame;
 mod budget;
 mod check;
 mod followers;
@@ -46,16 +45,9 @@ pub enum DesignError {
         /// Why.
         reason: String,
     },
-    /// A signal does not fit.
-    #[error("{field} = {value}: the formats cannot hold the design: {error}")]
-    Range {
-        /// The key in `design.toml` that leads there.
-        field: Cow<'static, str>,
-        /// What it says.
-        value: String,
-        /// The signal and its worst case.
-        error: Box<RangeError>,
-    },
+    /// A signal does not fit; with the signal and its worst case.
+    #[error("[formats] cannot hold the design: {0}")]
+    Range(Box<RangeError>),
 }
 
 impl DesignError {
@@ -74,26 +66,15 @@ impl DesignError {
     #[must_use]
     pub fn field(&self) -> &str {
         match self {
-            Self::Field { field, .. } | Self::Range { field, .. } => field,
+            Self::Field { field, .. } => field,
+            Self::Range(_) => "formats",
         }
     }
 }
 
-/// Why a design cannot work, as it is found.
-enum Refused {
-    Field(DesignError),
-    Range(RangeError),
-}
-
-impl From<DesignError> for Refused {
-    fn from(error: DesignError) -> Self {
-        Self::Field(error)
-    }
-}
-
-impl From<RangeError> for Refused {
+impl From<RangeError> for DesignError {
     fn from(error: RangeError) -> Self {
-        Self::Range(error)
+        Self::Range(Box::new(error))
     }
 }
 
@@ -130,21 +111,12 @@ impl Design {
     /// # Errors
     /// [`DesignError`] names the field, its value, the limit and the reason.
     pub fn new(spec: &Spec) -> Result<Self, DesignError> {
-        Self::recorded(spec).map_err(|refused| match refused {
-            Refused::Field(error) => error,
-            Refused::Range(error) => blame::of_range(spec, error),
-        })
-    }
-
-    /// The same; where a signal does not fit nobody has looked yet for the key that leads there.
-    fn recorded(spec: &Spec) -> Result<Self, Refused> {
         check::check(spec)?;
         let tracking = Loop::new(spec)?;
         skew::check(spec, &tracking)?;
         harmonics::check(spec)?;
         let acquisition = Acquisition::new(spec, &tracking);
-        let (words, mut budget) = budget::choose(spec, &tracking)?;
-        let followers = Followers::of(&words, spec, &tracking);
+        let (words, followers, mut budget) = budget::choose(spec, &tracking)?;
         let limits = limits::all(&words, &followers, spec);
         word::present(spec, &limits)?;
         word::inside(spec, &limits)?;

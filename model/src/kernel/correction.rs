@@ -12,7 +12,7 @@ static NORMALISE: Formula = Formula {
 
 static THETA: Formula = Formula {
     title: "Parameters as multiplied",
-    equation: "theta = nominal + deviation, rounded to the width of the signals",
+    equation: "theta = nominal + deviation, rounded to what the multiplier takes",
     source: "paper section 5.3",
 };
 
