@@ -148,11 +148,11 @@ module optical (
     // Values that later steps or the testbench read
     reg upper_half;
     reg signed [10:0] sin_inside;
-    reg signed [19:0] sin_value;
-    reg signed [14:0] sin_slope;
+    reg signed [18:0] sin_value;
+    reg signed [13:0] sin_slope;
     reg signed [16:0] cos_address;
     reg signed [10:0] cos_inside;
-    reg signed [19:0] cos_value;
+    reg signed [18:0] cos_value;
     reg signed [17:0] sin_hat;
     reg cos_negative;
     reg signed [17:0] cos_hat;
@@ -280,11 +280,11 @@ module optical (
             calibrate_held <= calibrate;
         end
 
-    // Table sine_table: 64 rows of 33 bits, a row is there one step after its address
-    reg [32:0] sine_table [0:63];
+    // Table sine_table: 64 rows of 31 bits, a row is there one step after its address
+    reg [30:0] sine_table [0:63];
     initial $readmemh("coefficients/sine_table.mem", sine_table);
     reg [5:0] sine_table_address;
-    reg [32:0] sine_table_row;
+    reg [30:0] sine_table_row;
 
     always @*
         case (step)
@@ -308,22 +308,22 @@ module optical (
     wire signed [10:0] sin_inside_bits = {1'b0, sin_address[9:0]}; // u10.18, step 0
     wire signed [11:0] sin_inside_sum = {sin_inside_bits, 1'h1}; // s12.19, step 0, with half_bit
     wire signed [10:0] sin_inside_now = sin_inside_sum[10:0] - 11'sh400; // s11.19, step 0, with half_segment
-    wire signed [19:0] sin_value_now = {1'b0, sine_table_row[32:14]}; // u19.18, step 1
-    wire signed [14:0] sin_slope_now = {1'b0, sine_table_row[13:0]}; // u14.11, step 1
-    wire signed [24:0] sin_slope_times_sin_inside = product_0[24:0]; // s25.30, step 6
-    wire signed [31:0] sin_magnitude_sum = // s32.30, step 6
-        {{7{sin_slope_times_sin_inside[24]}}, sin_slope_times_sin_inside} + {sin_value, 12'b0};
-    wire signed [17:0] sin_magnitude = sin_magnitude_sum[31:14]; // s18.16, step 6
+    wire signed [18:0] sin_value_now = {1'b0, sine_table_row[30:13]}; // u18.17, step 1
+    wire signed [13:0] sin_slope_now = {1'b0, sine_table_row[12:0]}; // u13.10, step 1
+    wire signed [23:0] sin_slope_times_sin_inside = product_0[23:0]; // s24.29, step 6
+    wire signed [30:0] sin_magnitude_sum = // s31.29, step 6
+        {{7{sin_slope_times_sin_inside[23]}}, sin_slope_times_sin_inside} + {sin_value, 12'b0};
+    wire signed [17:0] sin_magnitude = sin_magnitude_sum[30:13]; // s18.16, step 6
     wire signed [16:0] cos_address_now = odd_quadrant ? quarter_phase : quarter_phase_mirrored; // s17.18, step 0
     wire signed [10:0] cos_inside_bits = {1'b0, cos_address_now[9:0]}; // u10.18, step 0
     wire signed [11:0] cos_inside_sum = {cos_inside_bits, 1'h1}; // s12.19, step 0, with half_bit
     wire signed [10:0] cos_inside_now = cos_inside_sum[10:0] - 11'sh400; // s11.19, step 0, with half_segment
-    wire signed [19:0] cos_value_now = {1'b0, sine_table_row[32:14]}; // u19.18, step 2
-    wire signed [14:0] cos_slope = {1'b0, sine_table_row[13:0]}; // u14.11, step 2
-    wire signed [24:0] cos_slope_times_cos_inside = product_0[24:0]; // s25.30, step 4
-    wire signed [31:0] cos_magnitude_sum = // s32.30, step 4
-        {{7{cos_slope_times_cos_inside[24]}}, cos_slope_times_cos_inside} + {cos_value, 12'b0};
-    wire signed [17:0] cos_magnitude = cos_magnitude_sum[31:14]; // s18.16, step 4
+    wire signed [18:0] cos_value_now = {1'b0, sine_table_row[30:13]}; // u18.17, step 2
+    wire signed [13:0] cos_slope = {1'b0, sine_table_row[12:0]}; // u13.10, step 2
+    wire signed [23:0] cos_slope_times_cos_inside = product_0[23:0]; // s24.29, step 4
+    wire signed [30:0] cos_magnitude_sum = // s31.29, step 4
+        {{7{cos_slope_times_cos_inside[23]}}, cos_slope_times_cos_inside} + {cos_value, 12'b0};
+    wire signed [17:0] cos_magnitude = cos_magnitude_sum[30:13]; // s18.16, step 4
     wire signed [17:0] sin_hat_negated = -sin_magnitude; // s18.16, step 6
     wire signed [17:0] sin_hat_now = upper_half ? sin_hat_negated : sin_magnitude; // s18.16, step 6
     wire cos_negative_now = upper_half_now ^ odd_quadrant; // step 0
@@ -337,7 +337,7 @@ module optical (
     wire signed [11:0] y_s = adc_sin_held; // s12.11, step 1
 
     // Parameters as multiplied
-    //   theta = nominal + deviation, rounded to the width of the signals
+    //   theta = nominal + deviation, rounded to what the multiplier takes
     //   (paper section 5.3)
     wire signed [27:0] theta_1_rounded = 28'sh5000200 + {{2{theta_1_deviation[25]}}, theta_1_deviation};
     wire signed [17:0] theta_1_now = theta_1_rounded[27:10]; // s18.16, step 0, with theta_1_nominal
@@ -683,7 +683,7 @@ module optical (
             5'd1, 5'd5, 5'd13, 5'd14: operand_a_0 <= {{6{y_c[11]}}, y_c};
             5'd2: operand_a_0 <= {{7{cos_inside[10]}}, cos_inside};
             5'd3, 5'd15: operand_a_0 <= {{6{y_s[11]}}, y_s};
-            5'd4: operand_a_0 <= {{3{sin_slope[14]}}, sin_slope};
+            5'd4: operand_a_0 <= {{4{sin_slope[13]}}, sin_slope};
             5'd6, 5'd9: operand_a_0 <= c;
             5'd7: operand_a_0 <= s_now;
             5'd8: operand_a_0 <= s;
@@ -695,7 +695,7 @@ module optical (
         case (step)
             5'd0: operand_b_0 <= error_previous;
             5'd1: operand_b_0 <= theta_1;
-            5'd2: operand_b_0 <= {{3{cos_slope[14]}}, cos_slope};
+            5'd2: operand_b_0 <= {{4{cos_slope[13]}}, cos_slope};
             5'd3: operand_b_0 <= theta_3;
             5'd4: operand_b_0 <= {{7{sin_inside[10]}}, sin_inside};
             5'd5: operand_b_0 <= theta_5;
@@ -919,11 +919,11 @@ module optical (
         odd_quadrant_bits[15:0],
         sin_address[16],
         sin_inside_sum[11],
-        sin_magnitude_sum[13:0],
+        sin_magnitude_sum[12:0],
         cos_address[9:0],
         cos_address[16],
         cos_inside_sum[11],
-        cos_magnitude_sum[13:0],
+        cos_magnitude_sum[12:0],
         theta_1_rounded[9:0],
         theta_3_rounded[9:0],
         c_exact[9:0],
