@@ -67,6 +67,14 @@ fn half_down(verilog: &str, name: &str) -> String {
     )
 }
 
+/// The chip that fills the first operand up with zeros in place of its sign.
+fn zero_extended(verilog: &str, words: &[&str]) -> String {
+    let copies = between(verilog, words, "{{", "{");
+    let sign = between(verilog, words, &format!("{{{{{copies}{{"), "}}");
+    let signed = format!("{{{{{copies}{{{sign}}}}}");
+    replaced(verilog, words, &signed, &format!("{{{copies}'b0"))
+}
+
 /// What it is, and how it comes into the Verilog.
 pub(crate) type Fault = (&'static str, Box<dyn Fn(&str) -> String>);
 
@@ -148,18 +156,12 @@ pub(crate) fn faults() -> Vec<Fault> {
             "{24{~",
             "{24{",
         ),
-        swap(
-            "sign extension of a product",
-            &["wire", " sin_magnitude_sum ="],
-            "{{7{sin_slope_times_sin_inside[24]}}",
-            "{7'b0",
-        ),
-        swap(
-            "sign extension of the speed",
-            &["wire", " alpha_hat_sum ="],
-            "{{3{speed[25]}}",
-            "{3'b0",
-        ),
+        fault("sign extension of a product", |v| {
+            zero_extended(v, &["wire", " sin_magnitude_sum ="])
+        }),
+        fault("sign extension of the speed", |v| {
+            zero_extended(v, &["wire", " alpha_hat_sum ="])
+        }),
         swap(
             "logical shift in place of the arithmetic one",
             &["wire", " kick_shifted ="],
@@ -321,12 +323,11 @@ pub(crate) fn harmonic_faults() -> Vec<Fault> {
             "} + {{",
             "} - {{",
         ),
-        swap(
-            "expanded about the segment's beginning",
-            &["wire", " harmonic_inside_now ="],
-            "'sh400;",
-            "'sh000;",
-        ),
+        fault("expanded about the segment's beginning", |v| {
+            let words = ["wire", " harmonic_inside_now ="];
+            let half = between(v, &words, "'sh", ";");
+            replaced(v, &words, &format!("'sh{half};"), "'sh0;")
+        }),
     ]
 }
 
