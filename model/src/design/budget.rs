@@ -3,7 +3,6 @@
 use std::f64::consts::TAU;
 
 use super::followers::Followers;
-use super::limits::of_followers as followers_limits;
 use super::refuse::between;
 use super::{DesignError, Loop, harmonics, normalisation, word};
 use crate::format::exp2;
@@ -291,20 +290,9 @@ pub(super) fn choose(
         accumulator_fraction: n,
         ..w
     })?;
-    let mut followers = followers(&words);
-    for key in Followers::KEYS {
-        let list = followers_limits(&followers, &words, spec);
-        let Some(l) = list.iter().find(|l| l.key == *key && l.absent.is_none()) else {
-            continue;
-        };
-        if Followers::adds(key) && o.given(key).is_none() {
-            let lowest = u32::try_from(l.lowest).unwrap_or(0);
-            followers = (lowest..followers.word(key))
-                .map(|n| followers.with(key, n))
-                .find(|f| budget(&words, f).arithmetic() <= enough)
-                .unwrap_or(followers);
-        }
-    }
+    let followers = followers(&words).shortened(&words, spec, |shorter| {
+        budget(&words, shorter).arithmetic() <= enough
+    });
     Ok((words, followers, budget(&words, &followers)))
 }
 

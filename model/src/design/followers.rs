@@ -1,10 +1,10 @@
-//! Words that follow from those of the budget, unless the user says otherwise.
+//! Words that follow from those of the budget: what each adds, and how short it may be.
 
 use std::f64::consts::TAU;
 
 use super::budget::{dead_band, rounding};
 use super::formats::{held, level_bits, lock_window, multiplied, skew_top, speed_top};
-use super::limits::{absent, gathered_most};
+use super::limits::{absent, gathered_most, of_followers};
 use super::ranges::ranges;
 use super::skew::{delay, phase_max};
 use super::{Loop, Words, normalisation};
@@ -109,6 +109,26 @@ impl Followers {
             skew_bits: or(o.skew_bits, held(skew_top(spec), width, f + 6).format.width),
             lock_level_bits: or(o.lock_level_bits, level_bits(tracking)),
         }
+    }
+
+    /// Each in turn as short as `keeps` to the budget, with the others as they are.
+    pub(super) fn shortened(
+        self,
+        words: &Words,
+        spec: &Spec,
+        keeps: impl Fn(&Self) -> bool,
+    ) -> Self {
+        Self::KEYS.iter().fold(self, |all, key| {
+            if !Self::adds(key) || spec.formats.given(key).is_some() || absent(key, spec).is_some()
+            {
+                return all;
+            }
+            let limits = of_followers(&all, words, spec);
+            let lowest = limits.iter().find(|l| l.key == *key).map(|l| l.lowest);
+            let lowest = lowest.and_then(|n| u32::try_from(n).ok()).unwrap_or(0);
+            let mut shorter = (lowest..all.word(key)).map(|n| all.with(key, n));
+            shorter.find(|f| keeps(f)).unwrap_or(all)
+        })
     }
 
     /// Whether a shorter word of `key` costs accuracy. The upper part of a rate is parted from the lower, whose product counts
