@@ -29,7 +29,7 @@
 //      |                          | hold_begins hold_ends periods_count_ends
 //    1 | loop_ab * error_previous | sin_value sin_slope y_c y_s counting whole_period sector_behind travel_clear
 //      |                          | sector_added new_sector still_used_ahead used_up_ahead still_used_behind
-//      |                          | used_up_behind lost_before
+//      |                          | used_up_behind y_5 lost_before
 //    2 | theta_1 * y_c            | cos_value cos_slope drift
 //    3 | cos_slope * cos_inside   | c_exact c
 //    4 | theta_3 * y_s            | cos_magnitude cos_hat c_weak
@@ -40,17 +40,17 @@
 //    9 | s * cos_hat              | rho_exact rho rho_in_window flip half_turn rho_high rho_large rho_not_small
 //      |                          | rho_limited
 //   10 | c * sin_hat              | alpha_hat_turned rho_too_large
-//   11 | sin_hat * rho_limited    | e_exact e_seen e
-//   12 | cos_hat * rho_limited    | e_in_window in_window level_step e_change sample_counts counted residual_large
-//      |                          | disturbed_lately disturbed_or_held radius_large rho_s period_tick disturbed_period
+//   11 | cos_hat * rho_limited    | e_exact e_seen e
+//   12 | sin_hat * rho_limited    | e_in_window in_window level_step e_change sample_counts counted residual_large
+//      |                          | disturbed_lately disturbed_or_held radius_large rho_c period_tick disturbed_period
 //      |                          | gamma_restart gear_passed gamma_shift gear_periods_up periods_end within_period
 //      |                          | still_held
 //   13 | loop_a * e_change        | level_moved level_full level_empty narrower loop_gear_up full_in_last_gear hold
-//      |                          | fresh rho_c gradient_4 step_4 gamma_gear_up gear_periods_again holding lock_falls
-//   14 | y_c * rho_s              | kick gradient_2 step_2
-//   15 | y_c * rho_c              | speed backwards not_forwards gradient_5 step_5
-//   16 | y_s * rho_s              | alpha_hat_sum carry count_before gradient_1 step_1
-//   17 | -                        | gradient_3 step_3
+//      |                          | fresh rho_s gradient_2 step_2 gamma_gear_up gear_periods_again holding lock_falls
+//   14 | y_c * rho_c              | kick gradient_4 step_4
+//   15 | y_s * rho_s              | speed backwards not_forwards gradient_1 step_1
+//   16 | y_5 * rho_s              | alpha_hat_sum carry count_before gradient_3 step_3
+//   17 | -                        | gradient_5 step_5
 //   18 | -                        |
 //
 // Coefficients, by name in the comments below:
@@ -220,14 +220,15 @@ module optical (
     reg signed [14:0] rho_limited;
     reg signed [17:0] rho_c;
     reg signed [17:0] rho_s;
+    reg signed [12:0] y_5;
     reg nominal;
     reg signed [25:0] step_5;
-    reg signed [24:0] theta_5_deviation_next;
     reg signed [22:0] step_1;
     reg signed [25:0] theta_1_deviation_next;
     reg signed [21:0] step_2;
     reg signed [24:0] theta_2_deviation_next;
     reg signed [22:0] step_3;
+    reg signed [25:0] theta_3_deviation_next;
     reg signed [21:0] step_4;
     reg signed [24:0] theta_4_deviation_next;
     reg restart_cause;
@@ -550,73 +551,72 @@ module optical (
     //   (paper section 5.5.1: r + (sin, -cos) e = n (n^T r))
     wire signed [14:0] rho_limited_now = // s15.16, step 9
         ((&rho_now[17:14]) | ~(|rho_now[17:14])) ? rho_now[14:0] : {rho_now[17], {14{~rho_now[17]}}};
-    wire signed [31:0] cos_hat_times_rho_limited = product_0[31:0]; // s32.32, step 13
+    wire signed [31:0] cos_hat_times_rho_limited = product_0[31:0]; // s32.32, step 12
     wire signed [15:0] rho_c_rounded = cos_hat_times_rho_limited[31:16] + {15'b0, cos_hat_times_rho_limited[15]};
-    wire signed [17:0] rho_c_now = {{2{rho_c_rounded[15]}}, rho_c_rounded}; // s18.16, step 13
-    wire signed [31:0] sin_hat_times_rho_limited = product_0[31:0]; // s32.32, step 12
+    wire signed [17:0] rho_c_now = {{2{rho_c_rounded[15]}}, rho_c_rounded}; // s18.16, step 12
+    wire signed [31:0] sin_hat_times_rho_limited = product_0[31:0]; // s32.32, step 13
     wire signed [15:0] rho_s_rounded = sin_hat_times_rho_limited[31:16] + {15'b0, sin_hat_times_rho_limited[15]};
-    wire signed [17:0] rho_s_now = {{2{rho_s_rounded[15]}}, rho_s_rounded}; // s18.16, step 12
+    wire signed [17:0] rho_s_now = {{2{rho_s_rounded[15]}}, rho_s_rounded}; // s18.16, step 13
     wire period_tick = counted_now & whole_period; // step 12
 
     // Parameter update
     //   theta -= gamma gradient, each component times a power of two that lets all parameters converge alike
     //   (paper section 5.5.1, M of equation (7))
-    wire signed [26:0] gradient_5 = product_0[26:0]; // s27.27, step 15
-    wire signed [26:0] y_c_times_rho_c = product_0[26:0]; // s27.27, step 16
-    wire signed [26:0] y_s_times_rho_s = product_0[26:0]; // s27.27, step 17
+    wire signed [11:0] y_5_scaled = y_c; // s12.12, step 1
+    wire signed [12:0] y_5_now = gamma_settled ? {y_5_scaled[11], y_5_scaled} : {y_c, 1'b0}; // s13.12, step 1
+    wire signed [27:0] gradient_5 = product_0[27:0]; // s28.28, step 17
+    wire signed [26:0] y_c_times_rho_c = product_0[26:0]; // s27.27, step 15
+    wire signed [26:0] y_s_times_rho_s = product_0[26:0]; // s27.27, step 16
     wire nominal_now = (gamma_gear < 4'sd1) & (signal_lost & ~locked); // step 0
-    wire signed [25:0] step_5_geared = shifted_1; // s26.26, step 15
-    wire signed [25:0] step_5_scaled = step_5_geared; // s26.27, step 15
-    wire signed [25:0] step_5_bits = {step_5_scaled[25], step_5_scaled[25:1]}; // s26.26, step 15
-    wire signed [25:0] step_5_chosen = gamma_settled ? step_5_bits : step_5_geared; // s26.26, step 15
-    wire signed [25:0] step_5_now = fresh ? step_5_chosen : 26'sd0; // s26.26, step 15
-    wire signed [26:0] theta_5_deviation_next_difference = // s27.26, step 16
+    wire signed [25:0] step_5_geared = shifted_1; // s26.26, step 17
+    wire signed [25:0] step_5_now = fresh ? step_5_geared : 26'sd0; // s26.26, step 17
+    wire signed [26:0] theta_5_deviation_next_difference = // s27.26, step 18
         {{2{theta_5_deviation[24]}}, theta_5_deviation} - {step_5[25], step_5};
-    wire signed [24:0] theta_5_deviation_next_bits = // s25.26, step 16
+    wire signed [24:0] theta_5_deviation_next_bits = // s25.26, step 18
         ((&theta_5_deviation_next_difference[26:24]) | ~(|theta_5_deviation_next_difference[26:24]))
             ? theta_5_deviation_next_difference[24:0]
             : {theta_5_deviation_next_difference[26], {24{~theta_5_deviation_next_difference[26]}}};
-    wire signed [24:0] theta_5_deviation_next_now = nominal ? 25'sd0 : theta_5_deviation_next_bits; // s25.26, step 16
-    wire signed [26:0] gradient_1 = y_c_times_rho_c; // s27.30, step 16
-    wire signed [25:0] step_1_geared = shifted_1; // s26.26, step 16
-    wire signed [22:0] step_1_now = fresh ? step_1_geared[22:0] : 23'sd0; // s23.26, step 16
-    wire signed [26:0] theta_1_deviation_next_difference = // s27.26, step 17
+    wire signed [24:0] theta_5_deviation_next = nominal ? 25'sd0 : theta_5_deviation_next_bits; // s25.26, step 18
+    wire signed [26:0] gradient_1 = y_c_times_rho_c; // s27.30, step 15
+    wire signed [25:0] step_1_geared = shifted_1; // s26.26, step 15
+    wire signed [22:0] step_1_now = fresh ? step_1_geared[22:0] : 23'sd0; // s23.26, step 15
+    wire signed [26:0] theta_1_deviation_next_difference = // s27.26, step 16
         {theta_1_deviation[25], theta_1_deviation} - {{4{step_1[22]}}, step_1};
-    wire signed [25:0] theta_1_deviation_next_bits = // s26.26, step 17
+    wire signed [25:0] theta_1_deviation_next_bits = // s26.26, step 16
         ((&theta_1_deviation_next_difference[26:25]) | ~(|theta_1_deviation_next_difference[26:25]))
             ? theta_1_deviation_next_difference[25:0]
             : {theta_1_deviation_next_difference[26], {25{~theta_1_deviation_next_difference[26]}}};
-    wire signed [25:0] theta_1_deviation_next_now = nominal ? 26'sd0 : theta_1_deviation_next_bits; // s26.26, step 17
-    wire signed [15:0] gradient_2 = rho_c[15:0]; // s16.20, step 14
-    wire signed [25:0] step_2_geared = shifted_1; // s26.26, step 14
-    wire signed [21:0] step_2_now = fresh ? step_2_geared[21:0] : 22'sd0; // s22.26, step 14
-    wire signed [25:0] theta_2_deviation_next_difference = // s26.26, step 15
+    wire signed [25:0] theta_1_deviation_next_now = nominal ? 26'sd0 : theta_1_deviation_next_bits; // s26.26, step 16
+    wire signed [15:0] gradient_2 = rho_c[15:0]; // s16.20, step 13
+    wire signed [25:0] step_2_geared = shifted_1; // s26.26, step 13
+    wire signed [21:0] step_2_now = fresh_now ? step_2_geared[21:0] : 22'sd0; // s22.26, step 13
+    wire signed [25:0] theta_2_deviation_next_difference = // s26.26, step 14
         {theta_2_deviation[24], theta_2_deviation} - {{4{step_2[21]}}, step_2};
-    wire signed [24:0] theta_2_deviation_next_bits = // s25.26, step 15
+    wire signed [24:0] theta_2_deviation_next_bits = // s25.26, step 14
         ((&theta_2_deviation_next_difference[25:24]) | ~(|theta_2_deviation_next_difference[25:24]))
             ? theta_2_deviation_next_difference[24:0]
             : {theta_2_deviation_next_difference[25], {24{~theta_2_deviation_next_difference[25]}}};
-    wire signed [24:0] theta_2_deviation_next_now = nominal ? 25'sd0 : theta_2_deviation_next_bits; // s25.26, step 15
-    wire signed [26:0] gradient_3 = y_s_times_rho_s; // s27.30, step 17
-    wire signed [25:0] step_3_geared = shifted_1; // s26.26, step 17
-    wire signed [22:0] step_3_now = fresh ? step_3_geared[22:0] : 23'sd0; // s23.26, step 17
-    wire signed [26:0] theta_3_deviation_next_difference = // s27.26, step 18
+    wire signed [24:0] theta_2_deviation_next_now = nominal ? 25'sd0 : theta_2_deviation_next_bits; // s25.26, step 14
+    wire signed [26:0] gradient_3 = y_s_times_rho_s; // s27.30, step 16
+    wire signed [25:0] step_3_geared = shifted_1; // s26.26, step 16
+    wire signed [22:0] step_3_now = fresh ? step_3_geared[22:0] : 23'sd0; // s23.26, step 16
+    wire signed [26:0] theta_3_deviation_next_difference = // s27.26, step 17
         {theta_3_deviation[25], theta_3_deviation} - {{4{step_3[22]}}, step_3};
-    wire signed [25:0] theta_3_deviation_next_bits = // s26.26, step 18
+    wire signed [25:0] theta_3_deviation_next_bits = // s26.26, step 17
         ((&theta_3_deviation_next_difference[26:25]) | ~(|theta_3_deviation_next_difference[26:25]))
             ? theta_3_deviation_next_difference[25:0]
             : {theta_3_deviation_next_difference[26], {25{~theta_3_deviation_next_difference[26]}}};
-    wire signed [25:0] theta_3_deviation_next = nominal ? 26'sd0 : theta_3_deviation_next_bits; // s26.26, step 18
-    wire signed [15:0] gradient_4 = rho_s[15:0]; // s16.20, step 13
-    wire signed [25:0] step_4_geared = shifted_1; // s26.26, step 13
-    wire signed [21:0] step_4_now = fresh_now ? step_4_geared[21:0] : 22'sd0; // s22.26, step 13
-    wire signed [25:0] theta_4_deviation_next_difference = // s26.26, step 14
+    wire signed [25:0] theta_3_deviation_next_now = nominal ? 26'sd0 : theta_3_deviation_next_bits; // s26.26, step 17
+    wire signed [15:0] gradient_4 = rho_s[15:0]; // s16.20, step 14
+    wire signed [25:0] step_4_geared = shifted_1; // s26.26, step 14
+    wire signed [21:0] step_4_now = fresh ? step_4_geared[21:0] : 22'sd0; // s22.26, step 14
+    wire signed [25:0] theta_4_deviation_next_difference = // s26.26, step 15
         {theta_4_deviation[24], theta_4_deviation} - {{4{step_4[21]}}, step_4};
-    wire signed [24:0] theta_4_deviation_next_bits = // s25.26, step 14
+    wire signed [24:0] theta_4_deviation_next_bits = // s25.26, step 15
         ((&theta_4_deviation_next_difference[25:24]) | ~(|theta_4_deviation_next_difference[25:24]))
             ? theta_4_deviation_next_difference[24:0]
             : {theta_4_deviation_next_difference[25], {24{~theta_4_deviation_next_difference[25]}}};
-    wire signed [24:0] theta_4_deviation_next_now = nominal ? 25'sd0 : theta_4_deviation_next_bits; // s25.26, step 14
+    wire signed [24:0] theta_4_deviation_next_now = nominal ? 25'sd0 : theta_4_deviation_next_bits; // s25.26, step 15
 
     // Gears of gamma
     //   gamma halves after some periods of travel, starts again when the residual stays large
@@ -663,11 +663,11 @@ module optical (
     reg signed [26:0] unshifted_1;
     always @*
         case (step)
-            5'd13: unshifted_1 = {{4{gradient_4[15]}}, gradient_4, 7'b0}; // step_4_geared
-            5'd14: unshifted_1 = {{4{gradient_2[15]}}, gradient_2, 7'b0}; // step_2_geared
-            5'd15: unshifted_1 = gradient_5; // step_5_geared
-            5'd16: unshifted_1 = {{3{gradient_1[26]}}, gradient_1[26:3]}; // step_1_geared
-            default: unshifted_1 = {{3{gradient_3[26]}}, gradient_3[26:3]};
+            5'd13: unshifted_1 = {{4{gradient_2[15]}}, gradient_2, 7'b0}; // step_2_geared
+            5'd14: unshifted_1 = {{4{gradient_4[15]}}, gradient_4, 7'b0}; // step_4_geared
+            5'd15: unshifted_1 = {{3{gradient_1[26]}}, gradient_1[26:3]}; // step_1_geared
+            5'd16: unshifted_1 = {{3{gradient_3[26]}}, gradient_3[26:3]}; // step_3_geared
+            default: unshifted_1 = gradient_5[27:1];
         endcase
     wire signed [26:0] shift_1 = unshifted_1 >>> gamma_gear[2:0];
     wire signed [25:0] shifted_1_rounded = shift_1[26:1] + {25'b0, shift_1[0]};
@@ -679,31 +679,32 @@ module optical (
 
     always @(posedge clk)
         case (step)
-            5'd0: operand_a_0 <= 18'sh13b1b; // loop_ab
-            5'd1, 5'd5, 5'd13, 5'd14: operand_a_0 <= {{6{y_c[11]}}, y_c};
+            5'd0: operand_a_0 <= error_previous;
+            5'd1, 5'd5, 5'd13: operand_a_0 <= {{6{y_c[11]}}, y_c};
             5'd2: operand_a_0 <= {{7{cos_inside[10]}}, cos_inside};
-            5'd3, 5'd15: operand_a_0 <= {{6{y_s[11]}}, y_s};
+            5'd3: operand_a_0 <= theta_3;
             5'd4: operand_a_0 <= {{4{sin_slope[13]}}, sin_slope};
             5'd6, 5'd9: operand_a_0 <= c;
             5'd7: operand_a_0 <= s_now;
             5'd8: operand_a_0 <= s;
             5'd10, 5'd11: operand_a_0 <= {{3{rho_limited[14]}}, rho_limited};
-            default: operand_a_0 <= 18'sh1cf1c; // loop_a
+            5'd12: operand_a_0 <= 18'sh1cf1c; // loop_a
+            default: operand_a_0 <= rho_s;
         endcase
 
     always @(posedge clk)
         case (step)
-            5'd0: operand_b_0 <= error_previous;
+            5'd0: operand_b_0 <= 18'sh13b1b; // loop_ab
             5'd1: operand_b_0 <= theta_1;
             5'd2: operand_b_0 <= {{4{cos_slope[13]}}, cos_slope};
-            5'd3: operand_b_0 <= theta_3;
+            5'd3, 5'd14: operand_b_0 <= {{6{y_s[11]}}, y_s};
             5'd4: operand_b_0 <= {{7{sin_inside[10]}}, sin_inside};
             5'd5: operand_b_0 <= theta_5;
-            5'd6, 5'd8, 5'd11: operand_b_0 <= cos_hat;
-            5'd7, 5'd9, 5'd10: operand_b_0 <= sin_hat;
+            5'd6, 5'd8, 5'd10: operand_b_0 <= cos_hat;
+            5'd7, 5'd9, 5'd11: operand_b_0 <= sin_hat;
             5'd12: operand_b_0 <= e_change;
-            5'd13, 5'd15: operand_b_0 <= rho_s;
-            default: operand_b_0 <= rho_c;
+            5'd13: operand_b_0 <= rho_c;
+            default: operand_b_0 <= {{5{y_5[12]}}, y_5};
         endcase
 
     // Values that later steps or the testbench read, at the end of the step that computes them
@@ -747,6 +748,7 @@ module optical (
             travel_high_next <= travel_high_next_now;
             ahead_used_next <= ahead_used_next_now;
             behind_used_next <= behind_used_next_now;
+            y_5 <= y_5_now;
             lost_before <= lost_before_now;
         end
         if (step == 5'd2) begin
@@ -804,7 +806,7 @@ module optical (
             residual_large <= residual_large_now;
             disturbed_or_held <= disturbed_or_held_now;
             radius_large <= radius_large_now;
-            rho_s <= rho_s_now;
+            rho_c <= rho_c_now;
             disturbed_period <= disturbed_period_now;
             gamma_restart <= gamma_restart_now;
             gamma_shift <= gamma_shift_now;
@@ -819,8 +821,8 @@ module optical (
             locked_next <= locked_next_now;
             lock_level_next <= lock_level_next_now;
             fresh <= fresh_now;
-            rho_c <= rho_c_now;
-            step_4 <= step_4_now;
+            rho_s <= rho_s_now;
+            step_2 <= step_2_now;
             gamma_gear_next <= gamma_gear_next_now;
             gear_periods_next <= gear_periods_next_now;
             disturbed_next <= disturbed_next_now;
@@ -831,27 +833,27 @@ module optical (
         if (step == 5'd14) begin
             loop_gear_next <= loop_gear_next_now;
             kick <= kick_now;
-            step_2 <= step_2_now;
-            theta_4_deviation_next <= theta_4_deviation_next_now;
+            theta_2_deviation_next <= theta_2_deviation_next_now;
+            step_4 <= step_4_now;
             lock_lost_next <= lock_lost_next_now;
         end
         if (step == 5'd15) begin
             speed <= speed_now;
             backwards <= backwards_now;
             not_forwards <= not_forwards_now;
-            step_5 <= step_5_now;
-            theta_2_deviation_next <= theta_2_deviation_next_now;
+            step_1 <= step_1_now;
+            theta_4_deviation_next <= theta_4_deviation_next_now;
         end
         if (step == 5'd16) begin
             alpha_hat_next <= alpha_hat_next_now;
             count_next <= count_next_now;
             direction_next <= direction_next_now;
-            theta_5_deviation_next <= theta_5_deviation_next_now;
-            step_1 <= step_1_now;
-        end
-        if (step == 5'd17) begin
             theta_1_deviation_next <= theta_1_deviation_next_now;
             step_3 <= step_3_now;
+        end
+        if (step == 5'd17) begin
+            step_5 <= step_5_now;
+            theta_3_deviation_next <= theta_3_deviation_next_now;
         end
     end
 
@@ -940,7 +942,7 @@ module optical (
         sector_relative_difference[8],
         cos_hat_times_rho_limited[14:0],
         sin_hat_times_rho_limited[14:0],
-        step_5_scaled[0],
+        gradient_5[0],
         gradient_1[2:0],
         step_1_geared[25:23],
         step_2_geared[25:22],

@@ -173,7 +173,6 @@ pub(super) fn structure(
         start_periods: counting_to(START_PERIODS),
         travel_samples: counting_to(travel_samples(spec)),
         step,
-        step_cut: Quantiser::truncating(step.format),
         level: Quantiser::saturating(Format::unsigned(follow.lock_level_bits, 0)),
         // Two bits even where one would do.
         loop_gear: counting_to(acquisition.gears.max(3)),

@@ -92,7 +92,12 @@ pub fn update<S: Signal, const PLAIN: bool>(
     } else {
         seen.start.map(|start| start.running)
     };
-    let mut gradient = gradient::linear(seen, k, structure);
+    let settled = structure
+        .calibration
+        .phase_settles()
+        .then(|| gears::settled(state, k, structure));
+    seen.rho.begin(formula);
+    let mut gradient = gradient::linear(seen, settled, k, structure);
     let mut bent =
         (!PLAIN && structure.calibration.has_bend()).then(|| gradient::bent(seen, k, structure));
     let solved = starting.map(|_| {
@@ -164,13 +169,8 @@ pub fn update<S: Signal, const PLAIN: bool>(
         None => gate.fresh,
     };
     let nominal = gears::nominal(state, k);
-    let settled = structure
-        .calibration
-        .phase_settles()
-        .then(|| gears::settled(state, k, structure));
     let mover = Mover {
         due,
-        settled,
         start: starting.zip(solved),
         nominal,
     };

@@ -75,10 +75,12 @@ pub fn along<S: Signal>(rho: S, (cos, sin): (S, S), structure: &Structure) -> (S
 }
 
 /// By θ1 … θ5 in the final form: Mᵀ n ρ. The last is 0 without phase. While the start runs, by δ1 … δ5 of a pair of
-/// amplitude 1.
+/// amplitude 1. Where the phase is moved by half once γ has `settled`, by half of it then: a half of the step would have to be
+/// rounded once more, and what rounding loses moves parameters where samples lie at few places of the period.
 #[inline(always)]
 pub fn linear<S: Signal>(
     seen: &Seen<S>,
+    settled: Option<S::Bool>,
     k: &Coefficients<S>,
     structure: &Structure,
 ) -> [S::Wide; 5] {
@@ -88,10 +90,10 @@ pub fn linear<S: Signal>(
         y_c = S::select(start.running, cos, y_c).named("m_c");
         y_s = S::select(start.running, sin, y_s).named("m_s");
     }
-    let fifth = if structure.calibration.has_phase() {
-        y_c * rho_s
-    } else {
-        k.zero.widen()
+    let fifth = match settled {
+        _ if !structure.calibration.has_phase() => k.zero.widen(),
+        Some(settled) => S::select(settled, y_c.scale(-1), y_c).named("y_5") * rho_s,
+        None => y_c * rho_s,
     };
     [
         y_c * rho_c,

@@ -135,8 +135,6 @@ pub struct Formats {
     pub start_periods: Quantiser,
     /// One step of any parameter: one format, so that one shifter serves all.
     pub step: Quantiser,
-    /// Half of it, what is behind its last bit cut off.
-    pub step_cut: Quantiser,
     /// Lock level.
     pub level: Quantiser,
     /// Loop gear.

@@ -106,8 +106,6 @@ pub fn moved<S: Signal>(
 pub struct Mover<S: Signal> {
     /// They are moved with this sample.
     pub due: S::Bool,
-    /// Where the phase is moved by half once γ has settled: it has.
-    pub settled: Option<S::Bool>,
     /// Where the design has a start by least squares: while it runs, by these.
     pub start: Option<(S::Bool, [S; 5])>,
     /// Nothing is known of them.
@@ -136,14 +134,6 @@ impl<S: Signal> Mover<S> {
                 structure.calibration.gears(),
                 &structure.formats.step,
             );
-        let geared = match self.settled {
-            // What is cut off is less than the last bit of the steps.
-            Some(settled) if i == 4 => {
-                let half = geared.scale(-1);
-                S::select(settled, half.quantise(&structure.formats.step_cut), geared)
-            }
-            _ => geared,
-        };
         let geared = match &self.start {
             Some((starting, first)) => {
                 let first = first.get(i).copied().unwrap_or(k.zero);
