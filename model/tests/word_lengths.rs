@@ -106,6 +106,25 @@ fn each_word_is_the_shortest() {
     );
 }
 
+/// Asked for twice the accuracy, a chip of any kind has longer words: more bits in all, and no shorter signals. A single word may
+/// be shorter, where the others leave it more of the budget.
+#[test]
+fn twice_the_accuracy_takes_longer_words() {
+    for chip in with_every_word() {
+        let mut finer = chip.spec.clone();
+        finer.accuracy.arithmetic_share /= 2.0;
+        let finer = Design::new(&finer).expect("a design that works");
+        let chosen = chip.design();
+        let [once, twice] = [&chosen, &finer].map(|design| {
+            let words = design.word_lengths().into_iter();
+            words.map(|word| word.value).sum::<i64>()
+        });
+        assert!(twice > once, "{}: {once} and {twice} bits", chip.what);
+        let [once, twice] = [&chosen, &finer].map(|design| design.words.signal_fraction);
+        assert!(twice >= once, "{}", chip.what);
+    }
+}
+
 /// Sensors a third worse than promised, which ranges hold no more where they are shorter.
 fn promising_more(spec: &Spec) -> Spec {
     let mut spec = spec.clone();

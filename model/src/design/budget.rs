@@ -3,7 +3,8 @@
 use std::f64::consts::TAU;
 
 use super::followers::Followers;
-use super::refuse::between;
+use super::limits::BUDGET;
+use super::refuse::{between, number, refuse};
 use super::{DesignError, Loop, harmonics, normalisation, word};
 use crate::format::exp2;
 use crate::spec::{Overrides, Spec};
@@ -203,6 +204,9 @@ fn reachable(spec: &Spec, adc: f64, noise: f64) -> Result<(), DesignError> {
     )
 }
 
+/// What is said in five digits is accepted.
+const ROUNDED: f64 = 1.0001;
+
 /// Where a word of the user's misses the budget, the others add no more than this.
 const MUCH_AS_GOOD: f64 = 1.05;
 
@@ -245,31 +249,39 @@ pub(super) fn choose(
         let longest = generous(o.signal_fraction.unwrap_or(SIGNAL_FRACTION_MAX));
         allowed.max(MUCH_AS_GOOD * arithmetic(&longest))
     };
+    // Met with the longest words, or with words of the user's, it is met with those that are settled first.
+    let too_fine = |longest: &Budget| {
+        let most = longest.terms.iter();
+        let most = most.max_by(|a, b| a.rms_periods.total_cmp(&b.rms_periods));
+        refuse(
+            "accuracy.rms_periods",
+            number(spec.accuracy.rms_periods),
+            format!(
+                "at least {}",
+                number(longest.arithmetic() / spec.accuracy.arithmetic_share * ROUNDED)
+            ),
+            format!(
+                "accuracy.arithmetic_share leaves {allowed:.3e} periods rms of it to the arithmetic, which adds {:.3e} with the \
+                 longest words that a chip may have; most of it: {}",
+                longest.arithmetic(),
+                most.map_or("", |term| term.source),
+            ),
+        )
+    };
     let pick = |key: &str, before: &Words, set: &dyn Fn(u32) -> Words| {
         let (low, high) = limits(key, before);
-        let field = || format!("formats.{key}").into();
         match o.given(key).map(|n| u32::try_from(n).unwrap_or(u32::MAX)) {
             Some(n) if (low..=high).contains(&n) => Ok(set(n)),
-            Some(n) => Err(DesignError::Field {
-                field: field(),
-                value: n.to_string(),
-                // The other end depends on the other words.
-                limit: if n > high {
-                    format!("at most {high}")
-                } else {
-                    format!("at least {low}")
-                },
-                reason: "the chip cannot be built with it".into(),
-            }),
+            Some(n) => refuse(
+                format!("formats.{key}"),
+                n,
+                format!("{low} … {high}, with the others as they are"),
+                BUDGET,
+            ),
             None => (low..=high)
                 .map(set)
                 .find(|w| arithmetic(w) <= enough)
-                .ok_or_else(|| DesignError::Field {
-                    field: field(),
-                    value: format!("more than {high} bits"),
-                    limit: format!("{high} bits"),
-                    reason: "the accuracy asked for needs longer words than the chip has".into(),
-                }),
+                .map_or_else(|| too_fine(&budget(&set(high), &followers(&set(high)))), Ok),
         }
     };
     let w = pick("signal_fraction", &generous(8), &generous)?;

@@ -91,13 +91,16 @@ fn of_budget(words: &Words, spec: &Spec) -> Vec<Limits> {
                 value: value.into(),
                 lowest: lowest.into(),
                 highest: highest.into(),
-                why: "the chip cannot be built with it".into(),
+                why: BUDGET.into(),
                 absent: absent(key, spec),
             }
         })
         .collect()
 }
 
+/// Of the words that cost most.
+pub(super) const BUDGET: &str = "with fewer bits there is no angle left, and more fit no multiplier and no container; a phase is as fine as \
+                      what is made of it";
 const TABLE: &str =
     "a table's values hold half the last bit of what is read; below eight more bits nothing counts";
 const SLOPES: &str =
@@ -129,8 +132,10 @@ pub(super) fn of_followers(
     let most = |largest: f64, finest: u32| held(largest, 64, finest).format.width;
     let values = (h.saturating_add(1), h.saturating_add(8));
     let gathered = (8, gathered_most(spec));
-    let skew_rate = (4, most(speed_top(spec), p));
-    let skew = (4, most(skew_top(spec), f + 6));
+    // Where even the finest is shorter, that.
+    let delayed = |most: u32| (most.min(4), most);
+    let skew_rate = delayed(most(speed_top(spec), p));
+    let skew = delayed(most(skew_top(spec), f + 6));
     let rows = [
         (
             "sine_value_fraction",

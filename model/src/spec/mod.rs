@@ -180,10 +180,7 @@ impl Default for Chip {
 
 /// How many multipliers the chip may use; those that never have a product are not written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(
-    untagged,
-    expecting = "multipliers are a whole number from 1, or \"all\""
-)]
+#[serde(untagged, try_from = "toml::Value")]
 pub enum Multipliers {
     /// So many at most.
     Count(u32),
@@ -197,6 +194,19 @@ pub enum Multipliers {
 pub enum All {
     /// As many multipliers as are of use.
     All,
+}
+
+impl TryFrom<toml::Value> for Multipliers {
+    type Error = String;
+
+    fn try_from(value: toml::Value) -> Result<Self, String> {
+        match &value {
+            toml::Value::Integer(n) => u32::try_from(*n).ok().map(Self::Count),
+            toml::Value::String(word) => (word == "all").then_some(Self::All(All::All)),
+            _ => None,
+        }
+        .ok_or_else(|| format!("{value}: multipliers are a whole number from 1, or \"all\""))
+    }
 }
 
 impl Default for Multipliers {
