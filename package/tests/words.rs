@@ -89,7 +89,10 @@ fn the_page_of_word_lengths_is_fresh() {
          (`each_word_is_the_shortest` in\n`model/tests/word_lengths.rs`, for every kind of chip). First those that cost \
          most, the others as long as is of use; then the others,\none after the other. No accuracy is in the ranges of \
          parameters, which hold the promise and a quarter more, in `rate_high_bits`,\nwhich parts a factor in two, and \
-         in `lock_level_bits`, by which lock takes as long as the loop takes to settle.\n\n\
+         in `lock_level_bits`, by which lock takes as long as the loop takes to settle.\n\
+         Asked for twice the accuracy of the arithmetic, signals grow; another word may get shorter, where those before it leave it\nmore of the \
+         budget. The budget takes roundings for independent, which those of very short words are less: `build` simulates \
+         what comes of it.\n\n\
          The others are chosen around what you say. A word that misses the budget is built, with a note of what it \
          adds. One that cannot be\nis refused with its limits, a range that does not hold the promised sensor \
          with the parameter and the sensor's worst case. Within\nthe limits everything fits: interval analysis shows it for \

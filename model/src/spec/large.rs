@@ -19,7 +19,7 @@ pub(super) fn too_large(text: &str, span: Range<usize>, message: &str) -> Option
         "out of range (limit: -2147483648 … 2147483647)"
     } else if says("expected f64") {
         "so many digits are written with a point or an exponent (limit without: 9223372036854775807)"
-    } else if says("expected any value") || says("\"all\"") {
+    } else if says("expected any valid TOML value") || says("\"all\"") {
         "out of range (limit: 1 … 4294967295, or \"all\")"
     } else if says("integer number overflowed") {
         // Of more digits than the reader takes for any key.
