@@ -53,6 +53,33 @@ fn what_the_analysis_chooses_may_be_said() {
     assert_eq!(seen, all);
 }
 
+/// A delay that moves the sine by less than a last bit has words of two or three bits, which may be said like any other.
+#[test]
+fn the_shortest_words_of_a_small_skew_may_be_said() {
+    let mut spec = optical();
+    spec.sensor.amplitude = 0.7;
+    spec.sensor.speed_max_periods_per_s = 6000.0;
+    spec.adc.bits = 16;
+    spec.adc.full_scale = 1.6;
+    spec.adc.sample_rate_hz = 5e6;
+    spec.tracking.bandwidth_hz = 100e3;
+    spec.accuracy.rms_periods = 1.43e-2;
+    spec.accuracy.arithmetic_share = 0.77;
+    for delay in [3e-8, 1e-9] {
+        spec.correction.channel_skew_s = delay;
+        let chosen = Design::new(&spec).expect("a design that works");
+        let words = chosen.word_lengths();
+        let short = words.iter().filter(|word| word.value < 4).count();
+        assert!(short > 0, "{words:?}");
+        for word in words {
+            let within = word.lowest..=word.highest;
+            assert!(within.contains(&word.value), "{word:?}");
+        }
+        let said = Design::new(&all_said(&chosen)).expect("the same words");
+        assert_eq!(said.graph, chosen.graph);
+    }
+}
+
 /// One bit less than chosen, of any word of any chip, misses the budget or cannot be built. What costs no accuracy has what
 /// else decides it.
 #[test]
