@@ -133,6 +133,24 @@ fn calibrated(spec: &Spec, found: &Difference) {
     }
 }
 
+/// The finest words of all that the unrounded reading takes: tables, coefficients, and what saturates, which ends a last bit
+/// below its bound.
+fn finest(spec: &mut Spec) {
+    spec.formats.signal_fraction = Some(24);
+    spec.formats.sine_rows_log2 = Some(13);
+    spec.formats.coefficient_bits = Some(32);
+    spec.formats.gain_bits = Some(32);
+    if !spec.correction.harmonics.is_empty() {
+        spec.formats.harmonic_rows_log2 = Some(12);
+    }
+    if spec.calibration.is_on() {
+        spec.formats.residual_fraction = Some(24);
+    }
+    if spec.calibration.has_phase() {
+        spec.formats.cross_bits = Some(32);
+    }
+}
+
 /// The chip's equations are the paper's: with the finest sine table and coefficients the unrounded chip and the
 /// reference differ by the table's interpolation error and the coefficients' last bit, some 10⁻⁹ of a period, in
 /// every method, type and parameter set, through reversals and all of the convergence; where skew is corrected, by the rest
@@ -141,20 +159,7 @@ fn calibrated(spec: &Spec, found: &Difference) {
 fn the_equations_agree() {
     let mut largest = [0.0f64; 2];
     for (name, mut spec) in structures() {
-        spec.formats.signal_fraction = Some(24);
-        spec.formats.sine_rows_log2 = Some(13);
-        spec.formats.coefficient_bits = Some(32);
-        spec.formats.gain_bits = Some(32);
-        if spec.calibration.is_on() {
-            // What saturates ends a last bit below its bound.
-            spec.formats.residual_fraction = Some(24);
-        }
-        if spec.calibration.has_phase() {
-            spec.formats.cross_bits = Some(32);
-        }
-        if !spec.correction.harmonics.is_empty() {
-            spec.formats.harmonic_rows_log2 = Some(12);
-        }
+        finest(&mut spec);
         let design = Design::new(&spec).expect("a design that works");
         let found = compare(
             &design,
@@ -201,11 +206,7 @@ fn the_bits_agree_to_the_rounding() {
 #[test]
 fn a_small_difference_in_the_design_is_seen() {
     let mut spec = optical();
-    spec.formats.signal_fraction = Some(24);
-    spec.formats.sine_rows_log2 = Some(13);
-    spec.formats.coefficient_bits = Some(32);
-    spec.formats.residual_fraction = Some(24);
-    spec.formats.cross_bits = Some(32);
+    finest(&mut spec);
     let design = Design::new(&spec).expect("a design that works");
     let worst = WorstCase::of(&design, false);
     let mut wider = design.clone();

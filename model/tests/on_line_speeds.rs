@@ -88,7 +88,7 @@ fn locks_from_rest_at_any_promised_speed() {
 }
 
 /// Four samples a period show four places of the period, which cannot tell all five parameters: what they tell stays, and
-/// nothing drives the rest but what is lost in rounding the accumulators: half of it with each bit more. A quarter of a million
+/// nothing drives the rest but what is lost in rounding the steps: less with each bit more of the accumulators. A quarter of a million
 /// periods after calibration.
 #[test]
 fn four_samples_a_period_leave_the_parameters() {

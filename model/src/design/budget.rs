@@ -249,7 +249,7 @@ pub(super) fn choose(
         let longest = generous(o.signal_fraction.unwrap_or(SIGNAL_FRACTION_MAX));
         allowed.max(MUCH_AS_GOOD * arithmetic(&longest))
     };
-    // Met with the longest words, or with words of the user's, it is met with those that are settled first.
+    // The first word is settled with the longest others: where even that is not enough, it is the accuracy that nothing meets.
     let too_fine = |longest: &Budget| {
         let most = longest.terms.iter();
         let most = most.max_by(|a, b| a.rms_periods.total_cmp(&b.rms_periods));

@@ -2,7 +2,7 @@
 
 use super::DesignError;
 use super::budget::{RMS_MOST, SHARE_LEAST};
-use super::formats::{TRAVEL_SAMPLES_MAX, travel_samples};
+use super::formats::{TRAVEL_SAMPLES_MAX, slowest_completed_hz, travel_samples};
 use super::keywords::{KEYWORDS, SYSTEM_KEYWORDS};
 use super::refuse::{between, number, refuse};
 use crate::graph::Graph;
@@ -264,11 +264,10 @@ fn calibration(spec: &Spec) -> Result<(), DesignError> {
         );
     }
     if c.completed().is_some() && travel_samples(spec) > TRAVEL_SAMPLES_MAX {
-        let slowest = 5.0 * spec.adc.sample_rate_hz / f64::from(TRAVEL_SAMPLES_MAX);
         return refuse(
             "loop.bandwidth_hz",
             number(spec.tracking.bandwidth_hz),
-            format!("at least {}", number(slowest)),
+            format!("at least {}", number(slowest_completed_hz(spec))),
             "calibration.completion counts the samples of a period of travel at a fifth of it, so many at most",
         );
     }

@@ -111,7 +111,7 @@ impl Followers {
         }
     }
 
-    /// Each in turn as short as `keeps` to the budget, with the others as they are.
+    /// Each in turn as short as still `keeps` to the budget, with the others as they are.
     pub(super) fn shortened(
         self,
         words: &Words,

@@ -96,7 +96,6 @@ pub fn update<S: Signal, const PLAIN: bool>(
         .calibration
         .phase_settles()
         .then(|| gears::settled(state, k, structure));
-    seen.rho.begin(formula);
     let mut gradient = gradient::linear(seen, settled, k, structure);
     let mut bent =
         (!PLAIN && structure.calibration.has_bend()).then(|| gradient::bent(seen, k, structure));

@@ -91,9 +91,9 @@ pub fn linear<S: Signal>(
         y_s = S::select(start.running, sin, y_s).named("m_s");
     }
     let fifth = match settled {
-        _ if !structure.calibration.has_phase() => k.zero.widen(),
         Some(settled) => S::select(settled, y_c.scale(-1), y_c).named("y_5") * rho_s,
-        None => y_c * rho_s,
+        None if structure.calibration.has_phase() => y_c * rho_s,
+        None => k.zero.widen(),
     };
     [
         y_c * rho_c,
