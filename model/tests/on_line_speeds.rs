@@ -118,7 +118,7 @@ fn four_samples_a_period_leave_the_parameters() {
     }
     let [before, after] = worst.map(|x| 1e3 * x);
     figure(
-        "exactly 4 samples a period for 250 000 periods, calibrated before, accumulators of 26 bits behind the point: miscalibration before and after, mrad rms",
+        "exactly 4 samples a period for 250 000 periods, calibrated before, accumulators as chosen: miscalibration before and after, mrad rms",
         &format!("{before:.2}; {after:.2}"),
         TEST,
     );

@@ -7,27 +7,13 @@ use std::collections::BTreeSet;
 
 use graph_support::graph_equals_chip;
 use nonius_model::chip::Chip;
-use nonius_model::design::{Design, DesignError, Words};
+use nonius_model::design::{Design, DesignError};
 use nonius_model::kernel::Input;
-use nonius_model::spec::{CalibrationMethod, Coding, Overrides, Spec};
+use nonius_model::spec::{CalibrationMethod, Overrides};
 use proptest::prelude::*;
 use support::shipped::variants::{self, with_every_word};
 use support::shipped::words::{all_said, key, say, with};
-use support::{Encoder, optical, wrapped};
-
-/// Codes of a slow sweep of the sensor that the design is for.
-fn codes(spec: &Spec) -> impl Fn(u32) -> [i64; 2] {
-    let encoder = Encoder::miscalibrated(spec);
-    let middle = match spec.adc.coding {
-        Coding::OffsetBinary => 1i64 << (spec.adc.bits - 1),
-        Coding::TwosComplement => 0,
-    };
-    move |k| {
-        encoder
-            .codes(0.0173 * f64::from(k))
-            .map(|code| code + middle)
-    }
-}
+use support::{codes, optical, wrapped};
 
 #[test]
 fn what_the_analysis_chooses_may_be_said() {
@@ -77,115 +63,6 @@ fn the_shortest_words_of_a_small_skew_may_be_said() {
         }
         let said = Design::new(&all_said(&chosen)).expect("the same words");
         assert_eq!(said.graph, chosen.graph);
-    }
-}
-
-/// One bit less than chosen, of any word of any chip, misses the budget or cannot be built. What costs no accuracy has what
-/// else decides it.
-#[test]
-fn each_word_is_the_shortest() {
-    let mut misses = BTreeSet::new();
-    for chip in with_every_word() {
-        let chosen = chip.design();
-        let said = all_said(&chosen);
-        assert!(
-            chosen.budget.arithmetic() <= chosen.budget.allowed,
-            "{}",
-            chip.what
-        );
-        for word in chosen.word_lengths() {
-            let (what, name) = (&chip.what, key(&word));
-            let with_one_less = |spec: &Spec| with(spec, name, word.value - 1);
-            let shorter = with_one_less(&said);
-            if name.ends_with("_range_log2") {
-                let more = with_one_less(&promising_more(&said));
-                assert!(more.is_none(), "{what}: {name} holds a third more");
-            } else if name == "lock_level_bits" {
-                let settled = 4.0 / chosen.tracking.omega;
-                let full = 2f64.powi(word.value as i32);
-                assert!(full >= settled.min(4096.0), "{what}: {name}");
-                assert!(full / 2.0 < settled || shorter.is_none(), "{what}: {name}");
-            } else if name == "rate_high_bits" {
-                let shorter = shorter.expect("another place to part the rate at");
-                same_outputs(&chosen, &shorter);
-            } else if let Some(shorter) = shorter {
-                let (is, may) = (shorter.budget.arithmetic(), chosen.budget.allowed);
-                assert!(is > may, "{what}: {name} = {} is enough", word.value - 1);
-                misses.insert(name.to_owned());
-            } else {
-                assert_eq!(word.value, word.lowest, "{what}: {name}");
-            }
-        }
-    }
-    let never = Overrides::KEYS.iter().filter(|key| !misses.contains(**key));
-    let never: Vec<_> = never.copied().collect();
-    println!("never a matter of the budget: {never:?}");
-    assert_eq!(
-        never,
-        [
-            "gain_range_log2",
-            "offset_range_log2",
-            "cross_range_log2",
-            "bend_range_log2",
-            "rate_high_bits",
-            "lock_level_bits"
-        ]
-    );
-}
-
-/// Asked for twice the accuracy of its arithmetic, a chip of any kind has longer signals and none of the other words that cost most
-/// is shorter. Those that follow from them take what these leave of the budget, which may be more.
-#[test]
-fn twice_the_accuracy_takes_longer_words() {
-    for chip in with_every_word() {
-        let mut finer = chip.spec.clone();
-        finer.accuracy.arithmetic_share /= 2.0;
-        let finer = Design::new(&finer).expect("a design that works");
-        let (once, twice) = (chip.design().words, finer.words);
-        let what = &chip.what;
-        assert!(twice.signal_fraction > once.signal_fraction, "{what}");
-        let others = |w: &Words| {
-            [
-                w.phase_bits,
-                w.sine_phase_bits,
-                w.sine_rows_log2,
-                w.harmonic_rows_log2,
-                w.accumulator_fraction,
-            ]
-        };
-        let shorter = others(&twice)
-            .iter()
-            .zip(others(&once))
-            .any(|(two, one)| *two < one);
-        assert!(!shorter, "{what}: {once:?} {twice:?}");
-    }
-}
-
-/// Sensors a third worse than promised, which ranges hold no more where they are shorter.
-fn promising_more(spec: &Spec) -> Spec {
-    let mut spec = spec.clone();
-    let s = &mut spec.sensor;
-    for promise in [
-        &mut s.amplitude_tolerance,
-        &mut s.offset_max,
-        &mut s.phase_error_max_deg,
-        &mut s.bend_max,
-    ] {
-        *promise *= 4.0 / 3.0;
-    }
-    spec
-}
-
-/// Both chips say the same at every sample.
-fn same_outputs(one: &Design, other: &Design) {
-    let codes = codes(&one.spec);
-    let (mut one, mut other) = (Chip::bit_true(one), Chip::bit_true(other));
-    for k in 0..2000 {
-        let [cos, sin] = codes(k);
-        for chip in [&mut one, &mut other] {
-            chip.step_codes(cos, sin, false, true);
-        }
-        assert_eq!(one.position().to_bits(), other.position().to_bits(), "{k}");
     }
 }
 

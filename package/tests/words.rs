@@ -85,13 +85,14 @@ fn the_page_of_word_lengths_is_fresh() {
     let mut page = format!(
         "# Word lengths\n\nWritten by `{HOW}`; do not edit. Every word length that the analysis chooses\nmay be said in \
          `[formats]` of the design:\n\n    [formats]\n    signal_fraction = 18      # two bits more than the analysis \
-         takes for optical\n\nEach is the shortest with which all errors together keep to the budget, so one bit less misses it \
-         (`each_word_is_the_shortest` in\n`model/tests/word_lengths.rs`, for every kind of chip). First those that cost \
-         most, the others as long as is of use; then the others,\none after the other. No accuracy is in the ranges of \
+         takes for optical\n\nEach is the shortest with which all errors together keep to the budget: one bit less misses it or cannot be built, and more \
+         accuracy takes\nlonger words or as long ones, never shorter (`model/tests/shortest_words.rs`, for every kind of chip and any accuracy). \
+         Only the slopes of a table get\nshorter where it gets more rows, by no more bits than these. Signals and rows of the \
+         tables take their share of the budget first; the others are\nshortened from the longest on, always the one that adds least, \
+         until a bit of any would be too many.\nNo accuracy is in the ranges of \
          parameters, which hold the promise and a quarter more, in `rate_high_bits`,\nwhich parts a factor in two, and \
          in `lock_level_bits`, by which lock takes as long as the loop takes to settle.\n\
-         Asked for twice the accuracy of the arithmetic, signals grow; another word may get shorter, where those before it leave it\nmore of the \
-         budget. The budget takes roundings for independent, which those of very short words are less: `build` simulates \
+         The budget takes roundings for independent, which those of very short words are less: `build` simulates \
          what comes of it.\n\n\
          The others are chosen around what you say. A word that misses the budget is built, with a note of what it \
          adds. One that cannot be\nis refused with its limits, a range that does not hold the promised sensor \

@@ -1,30 +1,12 @@
-//! Word lengths by analysis: the shortest words whose errors together keep to the budget.
+//! Where the angle error comes from, and what may come from arithmetic.
 
 use std::f64::consts::TAU;
 
-use super::followers::Followers;
-use super::limits::BUDGET;
-use super::refuse::{between, number, refuse};
-use super::{DesignError, Loop, harmonics, normalisation, word};
+use super::lengths::{Followers, Lengths, Words};
+use super::refuse::between;
+use super::{DesignError, Loop, harmonics, normalisation};
 use crate::format::exp2;
-use crate::spec::{Overrides, Spec};
-
-/// The word lengths.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Words {
-    /// Fraction bits of the signals.
-    pub signal_fraction: u32,
-    /// Bits of the phase and its increments.
-    pub phase_bits: u32,
-    /// Bits of the phase in the sine.
-    pub sine_phase_bits: u32,
-    /// log2 of the rows of the quarter-wave table.
-    pub sine_rows_log2: u32,
-    /// log2 of the rows of the table of harmonics, where there is one.
-    pub harmonic_rows_log2: u32,
-    /// Fraction bits of the parameter accumulators.
-    pub accumulator_fraction: u32,
-}
+use crate::spec::Spec;
 
 /// One source of error and what it adds to the angle.
 #[derive(Clone, Debug, PartialEq)]
@@ -126,7 +108,8 @@ pub(super) fn dead_band(fraction: u32) -> f64 {
     exp2(-i64::from(fraction) - 1) / 3f64.sqrt()
 }
 
-fn terms(words: &Words, follow: &Followers, spec: &Spec, tracking: &Loop) -> Vec<Term> {
+fn terms(all: &Lengths, spec: &Spec, tracking: &Loop) -> Vec<Term> {
+    let Lengths { words, followers } = all;
     let f = words.signal_fraction;
     // Smallest change of the rate is half its last bit: errors below that die in the integrator.
     let rate = dead_band(words.phase_bits) / tracking.ab;
@@ -148,8 +131,8 @@ fn terms(words: &Words, follow: &Followers, spec: &Spec, tracking: &Loop) -> Vec
     if spec.correction.has_skew() {
         list.push(("channel skew", skew));
     }
-    list.extend(harmonics::terms(words, follow, spec));
-    let of = |key: &&str| follow.term(key, words, spec, tracking);
+    list.extend(harmonics::terms(words, followers, spec));
+    let of = |key: &&str| followers.term(key, words, spec, tracking);
     list.extend(Followers::KEYS.iter().filter_map(of));
     list.into_iter()
         .map(|(source, radians)| Term {
@@ -173,7 +156,8 @@ pub(super) const RMS_MOST: f64 = 0.1;
 pub(super) const SHARE_LEAST: f64 = 1e-3;
 
 /// Refuses an accuracy that ADC and noise leave no room for, in periods rms.
-fn reachable(spec: &Spec, adc: f64, noise: f64) -> Result<(), DesignError> {
+pub(super) fn reachable(spec: &Spec, tracking: &Loop) -> Result<(), DesignError> {
+    let (adc, noise) = given(spec, tracking);
     let (rms, share) = (spec.accuracy.rms_periods, spec.accuracy.arithmetic_share);
     let floor = adc.hypot(noise);
     let made = format!(
@@ -204,121 +188,23 @@ fn reachable(spec: &Spec, adc: f64, noise: f64) -> Result<(), DesignError> {
     )
 }
 
-/// What is said in five digits is accepted.
-const ROUNDED: f64 = 1.0001;
-
-/// Where a word of the user's misses the budget, the others add no more than this.
-const MUCH_AS_GOOD: f64 = 1.05;
-
-/// Chooses the shortest words, one after the other, that keep the sum of all errors within what is allowed: first those of
-/// the budget with followers as long as they can make worth it, then the followers.
-pub(super) fn choose(
-    spec: &Spec,
-    tracking: &Loop,
-) -> Result<(Words, Followers, Budget), DesignError> {
-    word::plausible(spec)?;
-    let (amplitude, power) = normalisation(spec);
-    let adc = rounding(spec.adc.bits - 1 - power) / amplitude / TAU;
-    let noise = spec.sensor.noise_rms / TAU * tracking.noise_gain.sqrt();
-    let allowed = spec.accuracy.rms_periods * spec.accuracy.arithmetic_share;
-    reachable(spec, adc, noise)?;
-    let budget = |words: &Words, followers: &Followers| Budget {
+/// Where the angle error of a chip with these words comes from.
+pub(super) fn of(all: &Lengths, spec: &Spec, tracking: &Loop) -> Budget {
+    let (adc, noise) = given(spec, tracking);
+    Budget {
         adc,
         noise,
         calibration: calibration(spec, adc * TAU),
         uncorrected: uncorrected(spec),
-        allowed,
-        terms: terms(words, followers, spec, tracking),
-    };
-    let followers = |words: &Words| Followers::generous(words, spec, tracking);
-    let arithmetic = |words: &Words| budget(words, &followers(words)).arithmetic();
-    let o = &spec.formats;
-    let generous = |f: u32| Words {
-        signal_fraction: f,
-        phase_bits: o.phase_bits.unwrap_or(44),
-        sine_phase_bits: o.sine_phase_bits.unwrap_or((f + 8).min(30)),
-        sine_rows_log2: o.sine_rows_log2.unwrap_or(13),
-        harmonic_rows_log2: o.harmonic_rows_log2.unwrap_or(harmonics::ROWS_LOG2_MAX),
-        accumulator_fraction: o.accumulator_fraction.unwrap_or(44),
-    };
-    // What is missed with the longest words is missed because of a word that the user chose: then the others are as
-    // long as adds little to that.
-    let enough = if *o == Overrides::default() {
-        allowed
-    } else {
-        let longest = generous(o.signal_fraction.unwrap_or(SIGNAL_FRACTION_MAX));
-        allowed.max(MUCH_AS_GOOD * arithmetic(&longest))
-    };
-    // The first word is settled with the longest others: where even that is not enough, it is the accuracy that nothing meets.
-    let too_fine = |longest: &Budget| {
-        let most = longest.terms.iter();
-        let most = most.max_by(|a, b| a.rms_periods.total_cmp(&b.rms_periods));
-        refuse(
-            "accuracy.rms_periods",
-            number(spec.accuracy.rms_periods),
-            format!(
-                "at least {}",
-                number(longest.arithmetic() / spec.accuracy.arithmetic_share * ROUNDED)
-            ),
-            format!(
-                "accuracy.arithmetic_share leaves {allowed:.3e} periods rms of it to the arithmetic, which adds {:.3e} with the \
-                 longest words that a chip may have; most of it: {}",
-                longest.arithmetic(),
-                most.map_or("", |term| term.source),
-            ),
-        )
-    };
-    let pick = |key: &str, before: &Words, set: &dyn Fn(u32) -> Words| {
-        let (low, high) = limits(key, before);
-        match o.given(key).map(|n| u32::try_from(n).unwrap_or(u32::MAX)) {
-            Some(n) if (low..=high).contains(&n) => Ok(set(n)),
-            Some(n) => refuse(
-                format!("formats.{key}"),
-                n,
-                format!("{low} … {high}, with the others as they are"),
-                BUDGET,
-            ),
-            None => (low..=high)
-                .map(set)
-                .find(|w| arithmetic(w) <= enough)
-                .map_or_else(|| too_fine(&budget(&set(high), &followers(&set(high)))), Ok),
-        }
-    };
-    let w = pick("signal_fraction", &generous(8), &generous)?;
-    let w = pick("sine_rows_log2", &w, &|n| Words {
-        sine_rows_log2: n,
-        ..w
-    })?;
-    let w = pick("harmonic_rows_log2", &w, &|n| Words {
-        harmonic_rows_log2: n,
-        ..w
-    })?;
-    let w = pick("sine_phase_bits", &w, &|n| Words {
-        sine_phase_bits: n,
-        ..w
-    })?;
-    let w = pick("phase_bits", &w, &|n| Words { phase_bits: n, ..w })?;
-    let words = pick("accumulator_fraction", &w, &|n| Words {
-        accumulator_fraction: n,
-        ..w
-    })?;
-    let followers = followers(&words).shortened(&words, spec, |shorter| {
-        budget(&words, shorter).arithmetic() <= enough
-    });
-    Ok((words, followers, budget(&words, &followers)))
+        allowed: spec.accuracy.rms_periods * spec.accuracy.arithmetic_share,
+        terms: terms(all, spec, tracking),
+    }
 }
 
-/// Most fraction bits of a signal.
-const SIGNAL_FRACTION_MAX: u32 = 24;
-
-/// What a word of the budget may be, with those that are settled before it as they are.
-pub(super) fn limits(key: &str, w: &Words) -> (u32, u32) {
-    match key {
-        "signal_fraction" => (8, SIGNAL_FRACTION_MAX),
-        "sine_rows_log2" => (4, 13),
-        "harmonic_rows_log2" => (4, harmonics::ROWS_LOG2_MAX),
-        "sine_phase_bits" => ((w.sine_rows_log2 + 3).max(w.harmonic_rows_log2 + 1), 30),
-        "phase_bits" => (w.sine_phase_bits.max(w.signal_fraction + 3), 44),
-        _ => (w.signal_fraction, 44),
-    }
+/// What the ADC and the sensor's noise through the loop make of the angle, periods rms.
+fn given(spec: &Spec, tracking: &Loop) -> (f64, f64) {
+    let (amplitude, power) = normalisation(spec);
+    let adc = rounding(spec.adc.bits - 1 - power) / amplitude / TAU;
+    let noise = spec.sensor.noise_rms / TAU * tracking.noise_gain.sqrt();
+    (adc, noise)
 }

@@ -3,142 +3,24 @@
 use std::f64::consts::TAU;
 
 use super::budget::{dead_band, rounding};
-use super::formats::{held, level_bits, lock_window, multiplied, skew_top, speed_top};
-use super::limits::{absent, gathered_most, of_followers};
+use super::formats::{held, lock_window, multiplied, skew_top, speed_top};
+use super::lengths::{Followers, Words};
+use super::limits::absent;
 use super::ranges::ranges;
 use super::skew::{delay, phase_max};
-use super::{Loop, Words, normalisation};
+use super::{Loop, normalisation};
 use crate::format::{Quantiser, exp2};
 use crate::spec::{CalibrationMethod, Spec};
 
-macro_rules! followers {
-    ($($key:ident),* $(,)?) => {
-        /// The words; see [`Overrides`](crate::spec::Overrides) for what each is.
-        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-        #[allow(missing_docs, reason = "described where the user gives them")]
-        pub struct Followers {
-            $(pub $key: u32,)*
-        }
-
-        impl Followers {
-            /// Their keys, in the order in which they are shortened.
-            pub(super) const KEYS: &'static [&'static str] = &[$(stringify!($key)),*];
-
-            /// The word of `key`; 0 where there is none.
-            pub(super) fn word(&self, key: &str) -> u32 {
-                match key {
-                    $(stringify!($key) => self.$key,)*
-                    _ => 0,
-                }
-            }
-
-            /// With another word of `key`.
-            pub(super) fn with(mut self, key: &str, bits: u32) -> Self {
-                match key {
-                    $(stringify!($key) => self.$key = bits,)*
-                    _ => {}
-                }
-                self
-            }
-        }
-    };
-}
-
-followers! {
-    sine_value_fraction,
-    sine_slope_fraction,
-    harmonic_fraction,
-    harmonic_value_fraction,
-    harmonic_slope_fraction,
-    gain_bits,
-    cross_bits,
-    bend_bits,
-    cubic_bits,
-    coefficient_bits,
-    rate_high_bits,
-    residual_fraction,
-    sensitivity_fraction,
-    gathered_fraction,
-    skew_rate_bits,
-    skew_bits,
-    lock_level_bits,
+/// Whether a shorter word of `key` costs accuracy. The upper part of a rate is parted from the lower, whose product counts
+/// as well; and lock takes as long as the loop takes to settle.
+pub(super) fn adds(key: &str) -> bool {
+    !matches!(key, "rate_high_bits" | "lock_level_bits")
 }
 
 impl Followers {
-    /// As the user says, else as long as the words of the budget can make worth it: two bits below a signal's last in a
-    /// table, as wide as a signal where one multiplier serves all.
-    pub(super) fn generous(words: &Words, spec: &Spec, tracking: &Loop) -> Self {
-        let (o, f) = (&spec.formats, words.signal_fraction);
-        let or = |given: Option<u32>, chosen: u32| given.unwrap_or(chosen);
-        let slope = |fraction: u32, rows: u32| fraction.saturating_sub(rows).max(1);
-        let harmonic = or(o.harmonic_fraction, f);
-        let width = f + 2;
-        Self {
-            sine_value_fraction: or(o.sine_value_fraction, f + 2),
-            sine_slope_fraction: or(o.sine_slope_fraction, slope(f + 1, words.sine_rows_log2)),
-            harmonic_fraction: harmonic,
-            harmonic_value_fraction: or(o.harmonic_value_fraction, harmonic + 2),
-            // A segment is so much longer than those of the quarter-wave table.
-            harmonic_slope_fraction: or(
-                o.harmonic_slope_fraction,
-                slope(harmonic + 3, words.harmonic_rows_log2),
-            ),
-            gain_bits: or(o.gain_bits, width),
-            cross_bits: or(o.cross_bits, width),
-            bend_bits: or(o.bend_bits, width),
-            cubic_bits: or(o.cubic_bits, width),
-            coefficient_bits: or(o.coefficient_bits, width),
-            rate_high_bits: or(
-                o.rate_high_bits,
-                width.min(words.phase_bits.saturating_sub(2)),
-            ),
-            residual_fraction: or(o.residual_fraction, f),
-            sensitivity_fraction: or(o.sensitivity_fraction, words.phase_bits),
-            gathered_fraction: or(
-                o.gathered_fraction,
-                if spec.calibration.starts() {
-                    f
-                } else {
-                    words.accumulator_fraction.min(gathered_most(spec))
-                },
-            ),
-            skew_rate_bits: or(
-                o.skew_rate_bits,
-                held(speed_top(spec), width, words.phase_bits).format.width,
-            ),
-            skew_bits: or(o.skew_bits, held(skew_top(spec), width, f + 6).format.width),
-            lock_level_bits: or(o.lock_level_bits, level_bits(tracking)),
-        }
-    }
-
-    /// Each in turn as short as still `keeps` to the budget, with the others as they are.
-    pub(super) fn shortened(
-        self,
-        words: &Words,
-        spec: &Spec,
-        keeps: impl Fn(&Self) -> bool,
-    ) -> Self {
-        Self::KEYS.iter().fold(self, |all, key| {
-            if !Self::adds(key) || spec.formats.given(key).is_some() || absent(key, spec).is_some()
-            {
-                return all;
-            }
-            let limits = of_followers(&all, words, spec);
-            let lowest = limits.iter().find(|l| l.key == *key).map(|l| l.lowest);
-            let lowest = lowest.and_then(|n| u32::try_from(n).ok()).unwrap_or(0);
-            let mut shorter = (lowest..all.word(key)).map(|n| all.with(key, n));
-            shorter.find(|f| keeps(f)).unwrap_or(all)
-        })
-    }
-
-    /// Whether a shorter word of `key` costs accuracy. The upper part of a rate is parted from the lower, whose product counts
-    /// as well; and lock takes as long as the loop takes to settle.
-    pub(super) fn adds(key: &str) -> bool {
-        !matches!(key, "rate_high_bits" | "lock_level_bits")
-    }
-
     /// What the word of `key` adds to the angle, radians rms, with its source; `None` where the chip has no such word, where
-    /// it [adds](Self::adds) nothing, and for harmonics as they are read, which are counted [together](super::harmonics::terms).
+    /// it [adds] nothing, and for harmonics as they are read, which are counted [together](super::harmonics::terms).
     pub(super) fn term(
         &self,
         key: &str,

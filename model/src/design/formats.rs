@@ -2,9 +2,8 @@
 
 use std::f64::consts::{SQRT_2, TAU};
 
-use super::followers::Followers;
 use super::ranges::ranges;
-use super::{Acquisition, DesignError, Loop, Words, harmonics, normalisation, skew};
+use super::{Acquisition, DesignError, Followers, Loop, Words, harmonics, normalisation, skew};
 use crate::format::{CONTAINER_INTEGER, Format, Quantiser, exp2};
 use crate::kernel::gears::HELD;
 use crate::kernel::skew::Order;

@@ -3,10 +3,9 @@
 use std::f64::consts::TAU;
 
 use super::budget::rounding;
-use super::followers::Followers;
 use super::promised::{Promised, errors, promised};
 use super::refuse::{between, number, refuse};
-use super::{Budget, DesignError, Words};
+use super::{Budget, DesignError, Followers, Words};
 use crate::format::{Format, exp2};
 use crate::kernel::harmonics::{Harmonics as Stored, Order, correct};
 use crate::kernel::{Coefficients, Constant, Structure};

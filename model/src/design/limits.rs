@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use super::formats::{gathered_power, held, power_of, skew_top, speed_top};
 use super::ranges::{just, needs, ranges};
 use super::refuse::number;
-use super::{Followers, Words, budget};
+use super::{Followers, Words, harmonics};
 use crate::format::exp2;
 use crate::spec::Spec;
 
@@ -30,7 +30,7 @@ pub(super) fn all(words: &Words, followers: &Followers, spec: &Spec) -> Vec<Limi
 }
 
 /// Most fraction bits of a gathered gradient.
-pub(super) fn gathered_most(spec: &Spec) -> u32 {
+fn gathered_most(spec: &Spec) -> u32 {
     44 - gathered_power(spec).unsigned_abs()
 }
 
@@ -73,33 +73,39 @@ pub(super) fn absent(key: &str, spec: &Spec) -> Option<&'static str> {
 }
 
 /// The words of the budget, each with those before it as they are.
-fn of_budget(words: &Words, spec: &Spec) -> Vec<Limits> {
-    let values = [
-        ("signal_fraction", words.signal_fraction),
-        ("phase_bits", words.phase_bits),
-        ("sine_phase_bits", words.sine_phase_bits),
-        ("sine_rows_log2", words.sine_rows_log2),
-        ("harmonic_rows_log2", words.harmonic_rows_log2),
-        ("accumulator_fraction", words.accumulator_fraction),
-    ];
-    values
-        .into_iter()
-        .map(|(key, value)| {
-            let (lowest, highest) = budget::limits(key, words);
-            Limits {
-                key,
-                value: value.into(),
-                lowest: lowest.into(),
-                highest: highest.into(),
-                why: BUDGET.into(),
-                absent: absent(key, spec),
-            }
-        })
-        .collect()
+pub(super) fn of_budget(words: &Words, spec: &Spec) -> Vec<Limits> {
+    let keys = Words::KEYS.iter();
+    keys.map(|key| {
+        let (lowest, highest) = ends(key, words);
+        Limits {
+            key,
+            value: words.word(key).unwrap_or(0).into(),
+            lowest: lowest.into(),
+            highest: highest.into(),
+            why: BUDGET.into(),
+            absent: absent(key, spec),
+        }
+    })
+    .collect()
+}
+
+/// Most fraction bits of a signal.
+const SIGNAL_FRACTION_MAX: u32 = 24;
+
+/// What a word of the budget may be, with those before it as they are.
+fn ends(key: &str, w: &Words) -> (u32, u32) {
+    match key {
+        "signal_fraction" => (8, SIGNAL_FRACTION_MAX),
+        "sine_rows_log2" => (4, 13),
+        "harmonic_rows_log2" => (4, harmonics::ROWS_LOG2_MAX),
+        "sine_phase_bits" => ((w.sine_rows_log2 + 3).max(w.harmonic_rows_log2 + 1), 30),
+        "phase_bits" => (w.sine_phase_bits.max(w.signal_fraction + 3), 44),
+        _ => (w.signal_fraction, 44),
+    }
 }
 
 /// Of the words that cost most.
-pub(super) const BUDGET: &str = "with fewer bits there is no angle left, and more fit no multiplier and no container; a phase is as fine as \
+const BUDGET: &str = "with fewer bits there is no angle left, and more fit no multiplier and no container; a phase is as fine as \
                       what is made of it";
 const TABLE: &str =
     "a table's values hold half the last bit of what is read; below eight more bits nothing counts";
@@ -177,7 +183,12 @@ pub(super) fn of_followers(
             (8, f + 8),
             COEFFICIENT,
         ),
-        ("rate_high_bits", w.rate_high_bits, (4, p - 2), UPPER),
+        (
+            "rate_high_bits",
+            w.rate_high_bits,
+            (4, p.saturating_sub(2)),
+            UPPER,
+        ),
         ("residual_fraction", w.residual_fraction, (4, f), RESIDUAL),
         (
             "sensitivity_fraction",

@@ -6,17 +6,19 @@ mod followers;
 mod formats;
 mod harmonics;
 mod keywords;
+mod lengths;
 mod limits;
 mod poles;
 mod promised;
 mod ranges;
 mod refuse;
+mod shortest;
 mod skew;
 mod word;
 
-pub use budget::{Budget, Term, Words};
-pub use followers::Followers;
+pub use budget::{Budget, Term};
 pub use harmonics::{Harmonics, ORDER_MAX};
+pub use lengths::{Followers, Words};
 pub use poles::{Acquisition, Loop};
 pub use skew::{PHASE_MAX, Skew};
 pub use word::Word;
@@ -25,6 +27,7 @@ use std::borrow::Cow;
 
 use thiserror::Error;
 
+use self::lengths::Lengths;
 use crate::chip::{chip_kernel, record};
 use crate::graph::{Graph, RangeError};
 use crate::kernel::{Coefficients, Constant, Structure};
@@ -116,7 +119,10 @@ impl Design {
         skew::check(spec, &tracking)?;
         harmonics::check(spec)?;
         let acquisition = Acquisition::new(spec, &tracking);
-        let (words, followers, mut budget) = budget::choose(spec, &tracking)?;
+        word::plausible(spec)?;
+        budget::reachable(spec, &tracking)?;
+        let (lengths, mut budget) = shortest::choose(spec, &tracking)?;
+        let Lengths { words, followers } = lengths;
         let limits = limits::all(&words, &followers, spec);
         word::present(spec, &limits)?;
         word::inside(spec, &limits)?;

@@ -7,7 +7,7 @@ pub(crate) mod shipped;
 #[allow(unused_imports, reason = "each test binary uses its own part")]
 pub(crate) use shipped::optical;
 
-use nonius_model::spec::{Harmonic, Spec};
+use nonius_model::spec::{Coding, Harmonic, Spec};
 
 /// Equation (4), as fractions of the ADC's range, and the ADC.
 pub(crate) struct Encoder {
@@ -73,4 +73,18 @@ impl Encoder {
 /// Difference of two angles in turns, to the nearest turn.
 pub(crate) fn wrapped(x: f64) -> f64 {
     x - x.round()
+}
+
+/// Codes of a slow sweep of the sensor that the design is for.
+pub(crate) fn codes(spec: &Spec) -> impl Fn(u32) -> [i64; 2] {
+    let encoder = Encoder::miscalibrated(spec);
+    let middle = match spec.adc.coding {
+        Coding::OffsetBinary => 1i64 << (spec.adc.bits - 1),
+        Coding::TwosComplement => 0,
+    };
+    move |k| {
+        encoder
+            .codes(0.0173 * f64::from(k))
+            .map(|code| code + middle)
+    }
 }
