@@ -19,11 +19,11 @@ module optical_example (
 
     wire signed [58:0] position;
     wire valid;
-    wire signed [17:0] theta_1;
+    wire signed [15:0] theta_1;
     wire signed [24:0] theta_2;
-    wire signed [17:0] theta_3;
+    wire signed [15:0] theta_3;
     wire signed [24:0] theta_4;
-    wire signed [17:0] theta_5;
+    wire signed [13:0] theta_5;
     wire signed [25:0] speed;
     wire locked;
     wire lock_lost;

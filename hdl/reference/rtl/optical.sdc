@@ -1,4 +1,4 @@
-# Timing constraints of optical (design 17fbca86931a), for Vivado, Quartus and every tool that reads SDC.
+# Timing constraints of optical (design dc4787841aa1), for Vivado, Quartus and every tool that reads SDC.
 #
 # 19 clocks per sample at 1000000 samples per second: the clock needs at least 19000000 Hz.
 # For nextpnr: --freq 19.000

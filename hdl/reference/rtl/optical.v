@@ -6,7 +6,7 @@
 // far, is 2^-4 at first and 2^-10 after 6 gears.
 // After S. Balemi, "Automatic calibration of sinusoidal encoder signals", IFAC 2005; equation numbers are the paper's.
 //
-// Design 17fbca86931a: 16 products on 1 multiplier, 19 clocks per sample.
+// Design dc4787841aa1: 16 products on 1 multiplier, 19 clocks per sample.
 //
 // Formats: sW.F is a two's complement number of W bits, F of them behind the point; uW.F has no sign and is kept here
 // with a zero in front, so that every number is signed. Angles are in turns of a scale period. A signal that saturates
@@ -55,12 +55,12 @@
 //
 // Coefficients, by name in the comments below:
 //     loop_a                 0.014132976531982422    Loop coefficient a, turns per radian.
-//     loop_ab                0.0006010159850120544   Loop coefficients a + b, turns per radian.
+//     loop_ab                0.0006010085344314575   Loop coefficients a + b, turns per radian.
 //     theta_1_nominal        1.25                    Nominal θ1.
 //     theta_3_nominal        1.25                    Nominal θ3.
 //     quarter_turn           0.24999618530273438     A quarter turn, less one bit of the sine phase.
 //     half_bit               0.0000019073486328125   Half a bit of the sine phase: what was cut off, on average.
-//     half_segment           0.001953125             Half a sine table segment.
+//     half_segment           0.0009765625            Half a sine table segment.
 //     lock_error             0.4375                  Largest |e| in lock, radians.
 //     weak_signal            0.25                    Corrected signals below this are lost.
 //     restart_residual       0.25                    |ρ| above this begins the search again.
@@ -103,11 +103,11 @@ module optical (
     input  wire preset, // this sample's period becomes number 0; clears lock_lost
     input  wire calibrate, // this sample may move the parameters
     output wire signed [58:0] position, // periods, s59.27: whole periods and alpha_hat for the next sample
-    output reg signed [17:0] theta_1, // θ1 as multiplied. s18.16
+    output reg signed [15:0] theta_1, // θ1 as multiplied. s16.14
     output reg signed [24:0] theta_2, // θ2. s25.26
-    output reg signed [17:0] theta_3, // θ3 as multiplied. s18.16
+    output reg signed [15:0] theta_3, // θ3 as multiplied. s16.14
     output reg signed [24:0] theta_4, // θ4. s25.26
-    output reg signed [17:0] theta_5, // θ5 as multiplied. s18.19
+    output reg signed [13:0] theta_5, // θ5 as multiplied. s14.15
     output reg signed [25:0] speed, // Position increment of this sample, turns: the speed. s26.27
     output reg locked, // The loop follows.
     output reg lock_lost, // The lock was lost since the last zero preset or reset.
@@ -147,16 +147,16 @@ module optical (
 
     // Values that later steps or the testbench read
     reg upper_half;
-    reg signed [10:0] sin_inside;
+    reg signed [9:0] sin_inside;
     reg signed [18:0] sin_value;
-    reg signed [13:0] sin_slope;
+    reg signed [8:0] sin_slope;
     reg signed [16:0] cos_address;
-    reg signed [10:0] cos_inside;
+    reg signed [9:0] cos_inside;
     reg signed [18:0] cos_value;
     reg signed [17:0] sin_hat;
     reg cos_negative;
     reg signed [17:0] cos_hat;
-    reg signed [28:0] s_exact_sum;
+    reg signed [27:0] s_exact_sum;
     reg signed [17:0] c;
     reg signed [17:0] s;
     reg c_below_weak_signal;
@@ -281,16 +281,16 @@ module optical (
             calibrate_held <= calibrate;
         end
 
-    // Table sine_table: 64 rows of 31 bits, a row is there one step after its address
-    reg [30:0] sine_table [0:63];
+    // Table sine_table: 128 rows of 26 bits, a row is there one step after its address
+    reg [25:0] sine_table [0:127];
     initial $readmemh("coefficients/sine_table.mem", sine_table);
-    reg [5:0] sine_table_address;
-    reg [30:0] sine_table_row;
+    reg [6:0] sine_table_address;
+    reg [25:0] sine_table_row;
 
     always @*
         case (step)
-            5'd0: sine_table_address = sin_address[15:10];
-            default: sine_table_address = cos_address[15:10];
+            5'd0: sine_table_address = sin_address[15:9];
+            default: sine_table_address = cos_address[15:9];
         endcase
 
     always @(posedge clk)
@@ -306,25 +306,25 @@ module optical (
     wire signed [16:0] quarter_phase = {1'b0, sine_phase[15:0]}; // u16.18, step 0
     wire signed [16:0] quarter_phase_mirrored = {1'b0, ~quarter_phase[15:0]}; // s17.18, step 0, with quarter_turn
     wire signed [16:0] sin_address = odd_quadrant ? quarter_phase_mirrored : quarter_phase; // s17.18, step 0
-    wire signed [10:0] sin_inside_bits = {1'b0, sin_address[9:0]}; // u10.18, step 0
-    wire signed [11:0] sin_inside_sum = {sin_inside_bits, 1'h1}; // s12.19, step 0, with half_bit
-    wire signed [10:0] sin_inside_now = sin_inside_sum[10:0] - 11'sh400; // s11.19, step 0, with half_segment
-    wire signed [18:0] sin_value_now = {1'b0, sine_table_row[30:13]}; // u18.17, step 1
-    wire signed [13:0] sin_slope_now = {1'b0, sine_table_row[12:0]}; // u13.10, step 1
-    wire signed [23:0] sin_slope_times_sin_inside = product_0[23:0]; // s24.29, step 6
-    wire signed [30:0] sin_magnitude_sum = // s31.29, step 6
-        {{7{sin_slope_times_sin_inside[23]}}, sin_slope_times_sin_inside} + {sin_value, 12'b0};
-    wire signed [17:0] sin_magnitude = sin_magnitude_sum[30:13]; // s18.16, step 6
+    wire signed [9:0] sin_inside_bits = {1'b0, sin_address[8:0]}; // u9.18, step 0
+    wire signed [10:0] sin_inside_sum = {sin_inside_bits, 1'h1}; // s11.19, step 0, with half_bit
+    wire signed [9:0] sin_inside_now = sin_inside_sum[9:0] - 10'sh200; // s10.19, step 0, with half_segment
+    wire signed [18:0] sin_value_now = {1'b0, sine_table_row[25:8]}; // u18.17, step 1
+    wire signed [8:0] sin_slope_now = {1'b0, sine_table_row[7:0]}; // u8.5, step 1
+    wire signed [17:0] sin_slope_times_sin_inside = product_0[17:0]; // s18.24, step 6
+    wire signed [25:0] sin_magnitude_sum = // s26.24, step 6
+        {{8{sin_slope_times_sin_inside[17]}}, sin_slope_times_sin_inside} + {sin_value, 7'b0};
+    wire signed [17:0] sin_magnitude = sin_magnitude_sum[25:8]; // s18.16, step 6
     wire signed [16:0] cos_address_now = odd_quadrant ? quarter_phase : quarter_phase_mirrored; // s17.18, step 0
-    wire signed [10:0] cos_inside_bits = {1'b0, cos_address_now[9:0]}; // u10.18, step 0
-    wire signed [11:0] cos_inside_sum = {cos_inside_bits, 1'h1}; // s12.19, step 0, with half_bit
-    wire signed [10:0] cos_inside_now = cos_inside_sum[10:0] - 11'sh400; // s11.19, step 0, with half_segment
-    wire signed [18:0] cos_value_now = {1'b0, sine_table_row[30:13]}; // u18.17, step 2
-    wire signed [13:0] cos_slope = {1'b0, sine_table_row[12:0]}; // u13.10, step 2
-    wire signed [23:0] cos_slope_times_cos_inside = product_0[23:0]; // s24.29, step 4
-    wire signed [30:0] cos_magnitude_sum = // s31.29, step 4
-        {{7{cos_slope_times_cos_inside[23]}}, cos_slope_times_cos_inside} + {cos_value, 12'b0};
-    wire signed [17:0] cos_magnitude = cos_magnitude_sum[30:13]; // s18.16, step 4
+    wire signed [9:0] cos_inside_bits = {1'b0, cos_address_now[8:0]}; // u9.18, step 0
+    wire signed [10:0] cos_inside_sum = {cos_inside_bits, 1'h1}; // s11.19, step 0, with half_bit
+    wire signed [9:0] cos_inside_now = cos_inside_sum[9:0] - 10'sh200; // s10.19, step 0, with half_segment
+    wire signed [18:0] cos_value_now = {1'b0, sine_table_row[25:8]}; // u18.17, step 2
+    wire signed [8:0] cos_slope = {1'b0, sine_table_row[7:0]}; // u8.5, step 2
+    wire signed [17:0] cos_slope_times_cos_inside = product_0[17:0]; // s18.24, step 4
+    wire signed [25:0] cos_magnitude_sum = // s26.24, step 4
+        {{8{cos_slope_times_cos_inside[17]}}, cos_slope_times_cos_inside} + {cos_value, 7'b0};
+    wire signed [17:0] cos_magnitude = cos_magnitude_sum[25:8]; // s18.16, step 4
     wire signed [17:0] sin_hat_negated = -sin_magnitude; // s18.16, step 6
     wire signed [17:0] sin_hat_now = upper_half ? sin_hat_negated : sin_magnitude; // s18.16, step 6
     wire cos_negative_now = upper_half_now ^ odd_quadrant; // step 0
@@ -340,32 +340,32 @@ module optical (
     // Parameters as multiplied
     //   theta = nominal + deviation, rounded to what the multiplier takes
     //   (paper section 5.3)
-    wire signed [27:0] theta_1_rounded = 28'sh5000200 + {{2{theta_1_deviation[25]}}, theta_1_deviation};
-    wire signed [17:0] theta_1_now = theta_1_rounded[27:10]; // s18.16, step 0, with theta_1_nominal
-    wire signed [27:0] theta_3_rounded = 28'sh5000200 + {{2{theta_3_deviation[25]}}, theta_3_deviation};
-    wire signed [17:0] theta_3_now = theta_3_rounded[27:10]; // s18.16, step 0, with theta_3_nominal
-    wire signed [18:0] theta_5_rounded =
-        {theta_5_deviation[24], theta_5_deviation[24:7]} + {18'b0, theta_5_deviation[6]};
-    wire signed [17:0] theta_5_now = // s18.19, step 0
-        ((&theta_5_rounded[18:17]) | ~(|theta_5_rounded[18:17]))
-            ? theta_5_rounded[17:0]
-            : {theta_5_rounded[18], {17{~theta_5_rounded[18]}}};
+    wire signed [27:0] theta_1_rounded = 28'sh5000800 + {{2{theta_1_deviation[25]}}, theta_1_deviation};
+    wire signed [15:0] theta_1_now = theta_1_rounded[27:12]; // s16.14, step 0, with theta_1_nominal
+    wire signed [27:0] theta_3_rounded = 28'sh5000800 + {{2{theta_3_deviation[25]}}, theta_3_deviation};
+    wire signed [15:0] theta_3_now = theta_3_rounded[27:12]; // s16.14, step 0, with theta_3_nominal
+    wire signed [14:0] theta_5_rounded =
+        {theta_5_deviation[24], theta_5_deviation[24:11]} + {14'b0, theta_5_deviation[10]};
+    wire signed [13:0] theta_5_now = // s14.15, step 0
+        ((&theta_5_rounded[14:13]) | ~(|theta_5_rounded[14:13]))
+            ? theta_5_rounded[13:0]
+            : {theta_5_rounded[14], {13{~theta_5_rounded[14]}}};
 
     // Correction
     //   c = theta_1 y_c + theta_2, s = theta_3 y_s + theta_4 + theta_5 y_c
     //   (paper section 5.3)
-    wire signed [28:0] theta_1_times_y_c = product_0[28:0]; // s29.27, step 3
-    wire signed [28:0] c_exact = // s29.27, step 3
-        theta_1_times_y_c + {{3{theta_2_deviation[24]}}, theta_2_deviation, 1'b0};
-    wire signed [28:0] theta_3_times_y_s = product_0[28:0]; // s29.27, step 5
-    wire signed [28:0] s_exact_sum_now = // s29.27, step 5
-        theta_3_times_y_s + {{3{theta_4_deviation[24]}}, theta_4_deviation, 1'b0};
-    wire signed [29:0] theta_5_times_y_c = product_0[29:0]; // s30.30, step 7
-    wire signed [32:0] s_exact = // s33.30, step 7
-        {s_exact_sum[28], s_exact_sum, 3'b0} + {{3{theta_5_times_y_c[29]}}, theta_5_times_y_c};
-    wire signed [17:0] c_rounded = c_exact[28:11] + {17'b0, c_exact[10]};
+    wire signed [26:0] theta_1_times_y_c = product_0[26:0]; // s27.25, step 3
+    wire signed [27:0] c_exact = // s28.26, step 3
+        {theta_1_times_y_c, 1'b0} + {{3{theta_2_deviation[24]}}, theta_2_deviation};
+    wire signed [26:0] theta_3_times_y_s = product_0[26:0]; // s27.25, step 5
+    wire signed [27:0] s_exact_sum_now = // s28.26, step 5
+        {theta_3_times_y_s, 1'b0} + {{3{theta_4_deviation[24]}}, theta_4_deviation};
+    wire signed [25:0] theta_5_times_y_c = product_0[25:0]; // s26.26, step 7
+    wire signed [28:0] s_exact = // s29.26, step 7
+        {s_exact_sum[27], s_exact_sum} + {{3{theta_5_times_y_c[25]}}, theta_5_times_y_c};
+    wire signed [17:0] c_rounded = c_exact[27:10] + {17'b0, c_exact[9]};
     wire signed [17:0] c_now = c_rounded; // s18.16, step 3
-    wire signed [18:0] s_rounded = s_exact[32:14] + {18'b0, s_exact[13]};
+    wire signed [18:0] s_rounded = s_exact[28:10] + {18'b0, s_exact[9]};
     wire signed [17:0] s_now = // s18.16, step 7
         ((&s_rounded[18:17]) | ~(|s_rounded[18:17])) ? s_rounded[17:0] : {s_rounded[18], {17{~s_rounded[18]}}};
 
@@ -448,15 +448,15 @@ module optical (
         ((&e_change_difference[18:17]) | ~(|e_change_difference[18:17]))
             ? e_change_difference[17:0]
             : {e_change_difference[18], {17{~e_change_difference[18]}}};
-    wire signed [34:0] loop_a_times_e_change = product_0[34:0]; // s35.39, step 14
-    wire signed [34:0] kick_scaled = loop_a_times_e_change; // s35.36, step 14
-    wire signed [26:0] kick_unshifted = kick_scaled[34:8];
+    wire signed [33:0] loop_a_times_e_change = product_0[33:0]; // s34.38, step 14
+    wire signed [33:0] kick_scaled = loop_a_times_e_change; // s34.35, step 14
+    wire signed [26:0] kick_unshifted = kick_scaled[33:7];
     wire signed [26:0] kick_shifted = kick_unshifted >>> loop_gear[1:0];
     wire signed [25:0] kick_rounded = kick_shifted[26:1] + {25'b0, kick_shifted[0]};
     wire signed [25:0] kick_now = kick_rounded; // s26.27, step 14
-    wire signed [34:0] loop_ab_times_error_previous = product_0[34:0]; // s35.43, step 2
-    wire signed [34:0] drift_scaled = loop_ab_times_error_previous; // s35.37, step 2
-    wire signed [25:0] drift_unshifted = drift_scaled[34:9];
+    wire signed [33:0] loop_ab_times_error_previous = product_0[33:0]; // s34.42, step 2
+    wire signed [33:0] drift_scaled = loop_ab_times_error_previous; // s34.36, step 2
+    wire signed [25:0] drift_unshifted = drift_scaled[33:8];
     wire signed [25:0] drift_shifted = drift_unshifted >>> {loop_gear[1:0], 1'b0};
     wire signed [24:0] drift_rounded = drift_shifted[25:1] + {24'b0, drift_shifted[0]};
     wire signed [25:0] drift_now = {drift_rounded[24], drift_rounded}; // s26.27, step 2
@@ -681,25 +681,25 @@ module optical (
         case (step)
             5'd0: operand_a_0 <= error_previous;
             5'd1, 5'd5, 5'd13: operand_a_0 <= {{6{y_c[11]}}, y_c};
-            5'd2: operand_a_0 <= {{7{cos_inside[10]}}, cos_inside};
-            5'd3: operand_a_0 <= theta_3;
-            5'd4: operand_a_0 <= {{4{sin_slope[13]}}, sin_slope};
+            5'd2: operand_a_0 <= {{8{cos_inside[9]}}, cos_inside};
+            5'd3: operand_a_0 <= {{2{theta_3[15]}}, theta_3};
+            5'd4: operand_a_0 <= {{9{sin_slope[8]}}, sin_slope};
             5'd6, 5'd9: operand_a_0 <= c;
             5'd7: operand_a_0 <= s_now;
             5'd8: operand_a_0 <= s;
             5'd10, 5'd11: operand_a_0 <= {{3{rho_limited[14]}}, rho_limited};
-            5'd12: operand_a_0 <= 18'sh1cf1c; // loop_a
+            5'd12: operand_a_0 <= 18'she78e; // loop_a
             default: operand_a_0 <= rho_s;
         endcase
 
     always @(posedge clk)
         case (step)
-            5'd0: operand_b_0 <= 18'sh13b1b; // loop_ab
-            5'd1: operand_b_0 <= theta_1;
-            5'd2: operand_b_0 <= {{4{cos_slope[13]}}, cos_slope};
+            5'd0: operand_b_0 <= 18'sh9d8d; // loop_ab
+            5'd1: operand_b_0 <= {{2{theta_1[15]}}, theta_1};
+            5'd2: operand_b_0 <= {{9{cos_slope[8]}}, cos_slope};
             5'd3, 5'd14: operand_b_0 <= {{6{y_s[11]}}, y_s};
-            5'd4: operand_b_0 <= {{7{sin_inside[10]}}, sin_inside};
-            5'd5: operand_b_0 <= theta_5;
+            5'd4: operand_b_0 <= {{8{sin_inside[9]}}, sin_inside};
+            5'd5: operand_b_0 <= {{4{theta_5[13]}}, theta_5};
             5'd6, 5'd8, 5'd10: operand_b_0 <= cos_hat;
             5'd7, 5'd9, 5'd11: operand_b_0 <= sin_hat;
             5'd12: operand_b_0 <= e_change;
@@ -920,23 +920,23 @@ module optical (
         1'b0,
         odd_quadrant_bits[15:0],
         sin_address[16],
-        sin_inside_sum[11],
-        sin_magnitude_sum[12:0],
-        cos_address[9:0],
+        sin_inside_sum[10],
+        sin_magnitude_sum[7:0],
+        cos_address[8:0],
         cos_address[16],
-        cos_inside_sum[11],
-        cos_magnitude_sum[12:0],
-        theta_1_rounded[9:0],
-        theta_3_rounded[9:0],
-        c_exact[9:0],
-        s_exact[12:0],
+        cos_inside_sum[10],
+        cos_magnitude_sum[7:0],
+        theta_1_rounded[11:0],
+        theta_3_rounded[11:0],
+        c_exact[8:0],
+        s_exact[8:0],
         rho_exact[15:0],
         rho,
         e_exact[14:0],
         in_window,
         loop_gear_next_sum[3:2],
-        kick_scaled[7:0],
-        drift_scaled[8:0],
+        kick_scaled[6:0],
+        drift_scaled[7:0],
         carry[2],
         count_next_sum[32],
         sector_relative_difference[8],

@@ -19,11 +19,11 @@ module chip_tb;
     reg calibrate = 1'b0;
     wire valid;
     wire signed [58:0] position;
-    wire signed [17:0] theta_1;
+    wire signed [15:0] theta_1;
     wire signed [24:0] theta_2;
-    wire signed [17:0] theta_3;
+    wire signed [15:0] theta_3;
     wire signed [24:0] theta_4;
-    wire signed [17:0] theta_5;
+    wire signed [13:0] theta_5;
     wire signed [25:0] speed;
     wire locked;
     wire lock_lost;
@@ -55,11 +55,11 @@ module chip_tb;
     // What the model says
     reg signed [11:0] expect_y_c;
     reg signed [11:0] expect_y_s;
-    reg signed [17:0] expect_theta_1;
+    reg signed [15:0] expect_theta_1;
     reg signed [24:0] expect_theta_2;
-    reg signed [17:0] expect_theta_3;
+    reg signed [15:0] expect_theta_3;
     reg signed [24:0] expect_theta_4;
-    reg signed [17:0] expect_theta_5;
+    reg signed [13:0] expect_theta_5;
     reg signed [17:0] expect_c;
     reg signed [17:0] expect_s;
     reg signed [17:0] expect_cos_hat;
@@ -210,13 +210,13 @@ module chip_tb;
                             {116'd0, expect_y_s}, {116'd0, chip.y_s});
                     if (theta_1 !== expect_theta_1)
                         check_failed("theta_1",
-                            {110'd0, expect_theta_1}, {110'd0, theta_1});
+                            {112'd0, expect_theta_1}, {112'd0, theta_1});
                     if (theta_3 !== expect_theta_3)
                         check_failed("theta_3",
-                            {110'd0, expect_theta_3}, {110'd0, theta_3});
+                            {112'd0, expect_theta_3}, {112'd0, theta_3});
                     if (theta_5 !== expect_theta_5)
                         check_failed("theta_5",
-                            {110'd0, expect_theta_5}, {110'd0, theta_5});
+                            {114'd0, expect_theta_5}, {114'd0, theta_5});
                     if (chip.c !== expect_c)
                         check_failed("c",
                             {110'd0, expect_c}, {110'd0, chip.c});
@@ -338,13 +338,13 @@ module chip_tb;
                                 {103'd0, expect_theta_4}, {103'd0, theta_4});
                         if (theta_1 !== expect_theta_1)
                             check_failed("theta_1",
-                                {110'd0, expect_theta_1}, {110'd0, theta_1});
+                                {112'd0, expect_theta_1}, {112'd0, theta_1});
                         if (theta_3 !== expect_theta_3)
                             check_failed("theta_3",
-                                {110'd0, expect_theta_3}, {110'd0, theta_3});
+                                {112'd0, expect_theta_3}, {112'd0, theta_3});
                         if (theta_5 !== expect_theta_5)
                             check_failed("theta_5",
-                                {110'd0, expect_theta_5}, {110'd0, theta_5});
+                                {114'd0, expect_theta_5}, {114'd0, theta_5});
                         if (signal_lost !== expect_signal_lost)
                             check_failed("signal_lost",
                                 {127'd0, expect_signal_lost}, {127'd0, signal_lost});

@@ -52,19 +52,34 @@ fn another_last_step(verilog: &str, by: i32) -> String {
     replaced(verilog, &["wire last ="], &step, &other.to_string())
 }
 
-/// The chip that rounds `name` to the nearest, but exact halves down in place of up.
-fn half_down(verilog: &str, name: &str) -> String {
+/// The chip with another number in place of the hexadecimal one in the one line that holds all of `words`.
+fn another_literal(verilog: &str, words: &[&str], change: fn(u64) -> u64) -> String {
+    let line = line_with(verilog, words);
+    let (_, rest) = line.split_once("'sh").expect("a hexadecimal number");
+    let end = rest.find(|c: char| !c.is_ascii_hexdigit());
+    let digits = &rest[..end.unwrap_or(rest.len())];
+    let number = u64::from_str_radix(digits, 16).expect("a number");
+    let other = format!("'sh{:x}", change(number));
+    verilog.replacen(line, &line.replacen(&format!("'sh{digits}"), &other, 1), 1)
+}
+
+/// The bit by which `name` is rounded, and the one below it.
+fn guard(verilog: &str, name: &str) -> (String, String) {
     let words = ["wire", &format!(" {name}_rounded =")];
     let guard = between(verilog, &words, "'b0, ", "};");
     let (signal, bit) = guard.trim_end_matches(']').split_once('[').expect("a bit");
     let below = bit.parse::<u32>().expect("a number") - 1;
-    let down = format!("{guard} & (|{signal}[{below}:0])");
-    replaced(
-        verilog,
-        &words,
-        &format!("{guard}}};"),
-        &format!("{down}}};"),
-    )
+    let below = format!("{signal}[{below}]");
+    (guard, below)
+}
+
+/// The chip that rounds `name` to the nearest, but exact halves down in place of up.
+fn half_down(verilog: &str, name: &str) -> String {
+    let (guard, below) = guard(verilog, name);
+    let down = format!("{guard} & (|{}:0])", below.trim_end_matches(']'));
+    let words = ["wire", &format!(" {name}_rounded =")];
+    let [from, to] = [guard, down].map(|bit| format!("{bit}}};"));
+    replaced(verilog, &words, &from, &to)
 }
 
 /// The chip that fills the first operand up with zeros in place of its sign.
@@ -101,30 +116,21 @@ pub(crate) fn faults() -> Vec<Fault> {
             "6'sh1f",
             "6'sh1e",
         ),
-        swap(
-            "rounding of the phase error: by the wrong bit",
-            &["wire", " e_seen_rounded ="],
-            "e_exact[15]}",
-            "e_exact[14]}",
-        ),
-        swap(
-            "rounding of c: cut off",
-            &["wire", " c_rounded ="],
-            "c_exact[10]",
-            "1'b0",
-        ),
-        swap(
-            "rounding of theta_1: cut off",
-            &["wire", " theta_1_rounded ="],
-            "200 +",
-            "000 +",
-        ),
-        swap(
-            "half of theta_1's last bit rounds down",
-            &["wire", " theta_1_rounded ="],
-            "5000200 +",
-            "50001ff +",
-        ),
+        fault("rounding of the phase error: by the wrong bit", |v| {
+            let (guard, below) = guard(v, "e_seen");
+            replaced(v, &["wire", " e_seen_rounded ="], &guard, &below)
+        }),
+        fault("rounding of c: cut off", |v| {
+            let (guard, _) = guard(v, "c");
+            replaced(v, &["wire", " c_rounded ="], &guard, "1'b0")
+        }),
+        // Its nominal value carries half of a last bit, which is its lowest one.
+        fault("rounding of theta_1: cut off", |v| {
+            another_literal(v, &["wire", " theta_1_rounded ="], |n| n & (n - 1))
+        }),
+        fault("half of theta_1's last bit rounds down", |v| {
+            another_literal(v, &["wire", " theta_1_rounded ="], |n| n - 1)
+        }),
         fault("half of theta_5's last bit rounds down", |v| {
             half_down(v, "theta_5")
         }),
@@ -153,8 +159,8 @@ pub(crate) fn faults() -> Vec<Fault> {
         swap(
             "saturation of theta_4: at the other end",
             &["wire", " theta_4_deviation_next_bits = "],
-            "{24{~",
-            "{24{",
+            "{~",
+            "{",
         ),
         fault("sign extension of a product", |v| {
             zero_extended(v, &["wire", " sin_magnitude_sum ="])
@@ -196,18 +202,12 @@ pub(crate) fn faults() -> Vec<Fault> {
             "else if (start | (step != 5'd0))",
             "else",
         ),
-        swap(
-            "last bit of the coefficient a",
-            &["operand_", "sh1cf1c"],
-            "sh1cf1c",
-            "sh1cf1d",
-        ),
-        swap(
-            "last bit of the coefficient a + b",
-            &["operand_", "sh13b1b"],
-            "sh13b1b",
-            "sh13b1a",
-        ),
+        fault("last bit of the coefficient a", |v| {
+            another_literal(v, &["operand_a", "// loop_a"], |n| n ^ 1)
+        }),
+        fault("last bit of the coefficient a + b", |v| {
+            another_literal(v, &["operand_b", "// loop_ab"], |n| n ^ 1)
+        }),
         swap(
             "last bit of the lock limit",
             &["wire e_in_window ="],
@@ -229,8 +229,8 @@ pub(crate) fn faults() -> Vec<Fault> {
         swap(
             "direction forwards from twice the speed on",
             &["wire not_forwards_now ="],
-            "< 15'sd1;",
-            "< 15'sd2;",
+            "'sd1;",
+            "'sd2;",
         ),
         swap(
             "sectors counted again by turning back behind",
