@@ -221,6 +221,46 @@ proptest! {
     }
 }
 
+proptest! {
+    /// What a refusal says may be said is accepted.
+    #[test]
+    fn the_limit_that_is_named_is_accepted(
+        bandwidth_log10 in 1.0..5.0f64,
+        rate_log10 in 4.0..7.0f64,
+        rms_log10 in -8.0..-3.0f64,
+        type_1 in any::<bool>(),
+        parameters in prop_oneof![Just(0), Just(5), Just(9)],
+    ) {
+        let mut spec = optical();
+        spec.adc.sample_rate_hz = 10f64.powf(rate_log10);
+        spec.sensor.speed_max_periods_per_s = spec.adc.sample_rate_hz / 10.0;
+        spec.tracking.bandwidth_hz = 10f64.powf(bandwidth_log10);
+        spec.tracking.filter_type = if type_1 { 1 } else { 2 };
+        spec.calibration.parameters = parameters;
+        spec.accuracy.rms_periods = 10f64.powf(rms_log10);
+        // One thing after the other.
+        for _ in 0..4 {
+            let Err(DesignError::Field { field, limit, .. }) = Design::new(&spec) else {
+                return Ok(());
+            };
+            let said = match field.as_ref() {
+                "sensor.speed_max_periods_per_s" => &mut spec.sensor.speed_max_periods_per_s,
+                "loop.bandwidth_hz" => &mut spec.tracking.bandwidth_hz,
+                "accuracy.rms_periods" => &mut spec.accuracy.rms_periods,
+                _ => return Ok(()),
+            };
+            let (before, number) = (*said, |word: &str| word.parse::<f64>().ok());
+            let ends: Vec<f64> = limit.split(' ').filter_map(number).collect();
+            // The nearer end.
+            let nearer = ends.iter().copied().reduce(|a, b| if before > b { b } else { a });
+            *said = nearer.expect("a limit with a number");
+            if let Err(DesignError::Field { field: again, limit, .. }) = Design::new(&spec) {
+                prop_assert!(again != field, "{field} = {nearer:?}: {limit}");
+            }
+        }
+    }
+}
+
 /// The completion counts the samples of a period of travel at a fifth of the loop's bandwidth.
 #[test]
 fn a_loop_too_slow_for_the_completion_is_refused() {

@@ -4,7 +4,7 @@ use super::DesignError;
 use super::budget::{RMS_MOST, SHARE_LEAST};
 use super::formats::{TRAVEL_SAMPLES_MAX, slowest_completed_hz, travel_samples};
 use super::keywords::{KEYWORDS, SYSTEM_KEYWORDS};
-use super::refuse::{between, number, refuse};
+use super::refuse::{at_least, between, number, refuse};
 use crate::graph::Graph;
 use crate::spec::{Calibration, CalibrationMethod, Multipliers, Spec};
 
@@ -267,7 +267,7 @@ fn calibration(spec: &Spec) -> Result<(), DesignError> {
         return refuse(
             "loop.bandwidth_hz",
             number(spec.tracking.bandwidth_hz),
-            format!("at least {}", number(slowest_completed_hz(spec))),
+            at_least(slowest_completed_hz(spec)),
             "calibration.completion counts the samples of a period of travel at a fifth of it, so many at most",
         );
     }

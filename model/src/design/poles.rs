@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use super::DesignError;
-use super::refuse::{between, limits, refuse};
+use super::refuse::{at_most, between, limits, refuse};
 use crate::spec::Spec;
 
 /// The tracking loop in real numbers.
@@ -133,7 +133,7 @@ impl Loop {
             return refuse(
                 "sensor.speed_max_periods_per_s",
                 spec.sensor.speed_max_periods_per_s,
-                format!("{limit:.4} with this loop"),
+                format!("{} with this loop", at_most(limit)),
                 "a type 1 loop lags at speed, and here by more than 0.3 rad; take type 2 or a wider loop",
             );
         }

@@ -43,15 +43,26 @@ pub(super) fn between(
 
 /// Both ends in short, rounded to what is allowed.
 pub(super) fn limits(low: f64, high: f64) -> String {
-    let inwards = |end: f64, up: bool| {
-        let short = number(end).parse().unwrap_or(end);
-        if short == end || (short > end) == up {
-            return number(end);
-        }
-        let last = 10f64.powf(end.abs().log10().floor() - 4.0);
-        number(if up { short + last } else { short - last })
-    };
     format!("{} … {}", inwards(low, true), inwards(high, false))
+}
+
+/// In short, and not below.
+pub(super) fn at_least(low: f64) -> String {
+    format!("at least {}", inwards(low, true))
+}
+
+/// In short, and not above.
+pub(super) fn at_most(high: f64) -> String {
+    format!("at most {}", inwards(high, false))
+}
+
+fn inwards(end: f64, up: bool) -> String {
+    let short = number(end).parse().unwrap_or(end);
+    if short == end || (short > end) == up {
+        return number(end);
+    }
+    let last = 10f64.powf(end.abs().log10().floor() - 4.0);
+    number(if up { short + last } else { short - last })
 }
 
 /// Short, whatever its size.
