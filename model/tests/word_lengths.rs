@@ -149,6 +149,22 @@ fn a_shorter_word_costs_what_the_budget_says() {
     }
 }
 
+/// What is said of a table's values decides how long the signals are that are made of them, not the other way round.
+#[test]
+fn a_word_that_is_said_has_its_place() {
+    let chosen = Design::new(&optical()).expect("a shipped design");
+    for fraction in 9..=32 {
+        let mut spec = optical();
+        spec.formats.sine_value_fraction = Some(fraction);
+        let design = Design::new(&spec).expect("signals that fit it");
+        let signal = design.words.signal_fraction;
+        assert!((signal + 1..=signal + 8).contains(&fraction));
+        if fraction <= chosen.followers.sine_value_fraction {
+            assert_eq!(signal, fraction - 1);
+        }
+    }
+}
+
 /// Refused at its ends, with both of them.
 #[test]
 fn what_cannot_be_is_refused_with_its_limits() {

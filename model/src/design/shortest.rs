@@ -6,7 +6,7 @@ use super::formats::level_bits;
 use super::lengths::Lengths;
 use super::limits::absent;
 use super::refuse::{number, refuse};
-use super::{DesignError, Loop};
+use super::{DesignError, Loop, word};
 use crate::spec::{Overrides, Spec};
 
 /// What is said in five digits is accepted.
@@ -52,9 +52,14 @@ pub(super) fn choose(spec: &Spec, tracking: &Loop) -> Result<(Lengths, Budget), 
         let others = adds_up(&all).powi(2);
         let most = others + share * (enough.powi(2) - others);
         let (low, high) = all.ends(key, &spec);
-        let shorter = (low..high).map(|bits| saying(&spec, key, bits));
-        let mut fits = shorter.filter(|spec| adds_up(&longest(spec, tracking)).powi(2) <= most);
-        fits.next().unwrap_or_else(|| saying(&spec, key, high))
+        let each = (low..=high).map(|bits| saying(&spec, key, bits));
+        // Where what the user says of others can be, if anywhere.
+        let (beside, not): (Vec<Spec>, Vec<Spec>) = each
+            .partition(|spec| word::inside(spec, &longest(spec, tracking).limits(spec)).is_ok());
+        let mut may = if beside.is_empty() { not } else { beside };
+        let fits = |spec: &Spec| adds_up(&longest(spec, tracking)).powi(2) <= most;
+        let first = may.iter().position(fits);
+        may.swap_remove(first.unwrap_or(may.len() - 1))
     });
     let mut all = longest(&settled, tracking);
     loop {
