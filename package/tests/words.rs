@@ -85,9 +85,8 @@ fn the_page_of_word_lengths_is_fresh() {
     let mut page = format!(
         "# Word lengths\n\nWritten by `{HOW}`; do not edit. Every word length that the analysis chooses\nmay be said in \
          `[formats]` of the design:\n\n    [formats]\n    signal_fraction = 18      # two bits more than the analysis \
-         takes for optical\n\nEach is the shortest with which all errors together keep to the budget: one bit less misses it or cannot be built, and more \
-         accuracy takes\nlonger words or as long ones, never shorter (`model/tests/shortest_words.rs`, for every kind of chip and any accuracy). \
-         Only the slopes of a table get\nshorter where it gets more rows, by no more bits than these. Signals and rows of the \
+         takes for optical\n\nEach is the shortest with which all errors together keep to the budget: one bit less, with the others as they are, misses it or cannot be built. Twice the\naccuracy takes longer words and no shorter one but slopes of a table that gets more rows, by no more bits than these \
+         (`model/tests/shortest_words.rs`, for every\nkind of chip and any accuracy); a step of less than two that makes signals or rows longer may shorten another word by a bit. Signals and rows of the \
          tables take their share of the budget first; the others are\nshortened from the longest on, always the one that adds least, \
          until a bit of any would be too many.\nNo accuracy is in the ranges of \
          parameters, which hold the promise and a quarter more, in `rate_high_bits`,\nwhich parts a factor in two, and \

@@ -27,8 +27,8 @@ const FIRST: [(&str, f64); 3] = [
 /// Chooses the words that keep the sum of all errors within what is allowed, each so short that one bit less would not.
 ///
 /// The [`FIRST`] take their share. From the longest on, the others get shorter by a bit at a time, always the one that adds least,
-/// until that is more than is left: then it is for each. Which one adds least does not hang on what is allowed, so more
-/// accuracy stops sooner on the same way, and no word gets shorter by asking for more.
+/// until that is more than is left: then it is for each. Which one adds least does not hang on what is allowed, so with the same
+/// signals and rows more accuracy stops sooner on the same way; and twice the accuracy shortens no word, whatever these are then.
 pub(super) fn choose(spec: &Spec, tracking: &Loop) -> Result<(Lengths, Budget), DesignError> {
     let kept = |all: &Lengths| budget::of(all, spec, tracking);
     let adds_up = |all: &Lengths| kept(all).arithmetic();
