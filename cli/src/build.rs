@@ -186,10 +186,11 @@ fn summary(j: &DesignJson, output: &Path, shown: &str) {
     if let Some(why) = &uncorrected {
         say!("  note        {why}");
     }
-    // With short words of the user's and with errors that stay it is said above.
-    if j.misses() && j.budget.arithmetic <= j.budget.arithmetic_allowed && uncorrected.is_none() {
+    if j.misses() && uncorrected.is_none() {
         let why = if !j.simulated.locked {
             "the loop does not lock on the sensor that the design promises"
+        } else if j.budget.arithmetic > j.budget.arithmetic_allowed {
+            "longer words in [formats] would help"
         } else if j.simulated.rms_periods > 2.0 * j.budget.total {
             "worse than the budget: the calibration has not converged at this speed, the loop lags behind the \
              acceleration of the run (a wider one lags less), or the signals clip"
