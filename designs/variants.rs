@@ -373,6 +373,30 @@ pub(crate) fn recalls() -> Vec<Variant> {
     .into()
 }
 
+/// From one gear of gamma, which is never shifted, to sixteen.
+pub(crate) fn gears() -> Vec<Variant> {
+    let one = Multipliers::Count(1);
+    let of = |(parameters, method, (first, last), multipliers): (u32, _, (u32, u32), _)| {
+        Variant::of(format!("gamma 2^-{first} to 2^-{last}"), |spec| {
+            spec.calibration.parameters = parameters;
+            spec.calibration.method = method;
+            spec.calibration.gamma_first = first;
+            spec.calibration.gamma_last = last;
+            spec.calibration.gear_periods = Some(1);
+            spec.chip.multipliers = multipliers;
+        })
+    };
+    [
+        (5, Final, (8, 8), one),
+        (9, Final, (8, 8), ALL),
+        (4, SumOfSquares, (9, 9), one),
+        (5, Exact, (8, 9), Multipliers::Count(2)),
+        (5, Batch, (3, 18), one),
+    ]
+    .map(of)
+    .into()
+}
+
 /// All of these.
 pub(crate) fn everything() -> Vec<Variant> {
     let mut list = shipped();
@@ -389,6 +413,7 @@ pub(crate) fn everything() -> Vec<Variant> {
         skewed(),
         harmonics(),
         recalls(),
+        gears(),
     ] {
         list.extend(part);
     }

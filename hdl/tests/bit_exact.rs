@@ -134,6 +134,11 @@ fn recalls_in_icarus_and_verilator() {
     });
 }
 
+#[test]
+fn gears_in_icarus_and_verilator() {
+    agree(&variants::gears(), 5);
+}
+
 /// Two tables in a chip, one of them with words that have a sign.
 #[test]
 fn harmonics_in_icarus_and_verilator() {

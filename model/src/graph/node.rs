@@ -130,6 +130,10 @@ impl<'g> Wide for WideNode<'g> {
         self.0.quantise(to)
     }
     fn quantise_geared(self, gear: Node<'g>, stride: u32, last: u32, to: &Quantiser) -> Node<'g> {
+        // What has one gear alone is never shifted.
+        if last == 0 {
+            return self.quantise(to);
+        }
         self.0.with(Op::QuantiseGeared {
             value: self.0.id,
             gear: gear.id,
