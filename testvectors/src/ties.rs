@@ -15,6 +15,8 @@ use crate::stimulus::Sample;
 const REACH: i64 = 8;
 /// The farthest, as a fraction of the amplitude, across the radius: what is rare needs a phase error of some size.
 const ACROSS: f64 = 0.1;
+/// Most codes tried across the radius, spread evenly: of an ADC of many bits there would be too many for a build of seconds.
+const TRIED: usize = 1536;
 
 /// A value that is rounded to the nearest.
 #[derive(Clone, Copy, Debug)]
@@ -220,7 +222,8 @@ impl<'a> Ties<'a> {
                 let t = t as f64 / c.hypot(s).max(1.0);
                 ((-s * t).round() as i64, (c * t).round() as i64)
             };
-            (-far..=far).map(turned)
+            let apart = (2 * far as usize + 1).div_ceil(TRIED);
+            (-far..=far).step_by(apart).map(turned)
         };
         let mut chip = Chip::bit_true(design);
         let mut counts = vec![0u32; self.rounded.len()];
