@@ -10,7 +10,7 @@ use nonius_model::spec::{Overrides, Spec};
 use proptest::prelude::*;
 use support::codes;
 use support::shipped::variants::with_every_word;
-use support::shipped::words::{all_said, key, with};
+use support::shipped::words::{all_said, key, say, with};
 
 /// One bit less than chosen, of any word of any chip, misses the budget or cannot be built, as values of a table coarser than what
 /// is read of them. What costs no accuracy has what else decides it.
@@ -159,10 +159,17 @@ fn longer_words(coarse: &Design, finer: &Design) -> Result<Vec<String>, String> 
     Ok(once.keys().filter(|name| more(name) > 0).cloned().collect())
 }
 
+const RANGES: [&str; 4] = [
+    "gain_range_log2",
+    "offset_range_log2",
+    "cross_range_log2",
+    "bend_range_log2",
+];
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(300))]
 
-    /// Whatever is asked of whatever chip.
+    /// Whatever is asked of whatever chip, with a range of its parameters said or not.
     #[test]
     fn so_it_is_for_any_accuracy(
         chip in 0..64usize,
@@ -171,6 +178,10 @@ proptest! {
         bits in 8..=18u32,
         noise in prop_oneof![Just(0.0), 1e-4..1e-2f64],
         bandwidth_log2 in -2.0..1.0f64,
+        range in prop_oneof![
+            3 => Just(None),
+            1 => (prop::sample::select(RANGES.to_vec()), -2..=4i64).prop_map(Some),
+        ],
     ) {
         let chips = with_every_word();
         let mut spec = chips[chip % chips.len()].spec.clone();
@@ -179,6 +190,9 @@ proptest! {
         spec.tracking.bandwidth_hz *= bandwidth_log2.exp2();
         spec.accuracy.rms_periods *= rms_log2.exp2();
         spec.accuracy.arithmetic_share = share_log2.exp2();
+        if let Some((range, wide)) = range {
+            say(&mut spec, range, wide);
+        }
         let mut finer = spec.clone();
         finer.accuracy.arithmetic_share /= 2.0;
         if let Ok(chosen) = Design::new(&spec) {

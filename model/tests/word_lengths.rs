@@ -192,6 +192,46 @@ fn what_cannot_be_is_refused_with_its_limits() {
     }
 }
 
+/// Of a word that is said alone, the limits are those of every chip that can be built around it: no more is accepted, and no less.
+#[test]
+fn the_limits_of_a_word_are_all_that_is_accepted() {
+    let mut seen = BTreeSet::new();
+    for chip in with_every_word() {
+        for word in chip.design().word_lengths() {
+            // Each once.
+            if !seen.insert(word.key.clone()) {
+                continue;
+            }
+            let saying = |value: i64| {
+                let mut spec = chip.spec.clone();
+                say(&mut spec, key(&word), value);
+                Design::new(&spec).map_err(|refused| match refused {
+                    DesignError::Field { field, limit, .. } if field == word.key => limit,
+                    other => panic!("{}: {other}", chip.what),
+                })
+            };
+            let limits = |value: i64| saying(value).err().unwrap_or_else(|| panic!("{value}"));
+            let absurd = if word.key.ends_with("_range_log2") {
+                -100
+            } else {
+                0
+            };
+            let said = limits(absurd);
+            let ends: Vec<i64> = said.split(" … ").flat_map(str::parse).collect();
+            let [lowest, highest] = ends[..] else {
+                panic!("{said}");
+            };
+            assert!(lowest <= word.lowest && word.highest <= highest, "{said}");
+            for beyond in [absurd, lowest - 1, highest + 1, 100] {
+                assert_eq!(limits(beyond), said, "{}: {word:?}", chip.what);
+            }
+            for within in lowest..=highest {
+                assert!(saying(within).is_ok(), "{}: {word:?}: {within}", chip.what);
+            }
+        }
+    }
+}
+
 /// Ranges that do not hold what is promised name the registers and the worst case.
 #[test]
 fn a_range_that_does_not_hold_the_promise_names_the_parameter_and_the_sensor() {

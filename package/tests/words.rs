@@ -78,30 +78,43 @@ fn check(what: &str, chosen: &Design) {
 
 const HOW: &str = "NONIUS_BLESS=1 cargo test -p nonius-package --test words";
 
+const WHAT_THEY_ARE: &str =
+    "Every word length that the analysis chooses may be said
+in `[formats]` of the design:
+
+    [formats]
+    signal_fraction = 18      # two bits more than the analysis takes for optical
+
+Each is the shortest with which all errors together keep to the budget: one bit less, with the others as they are, misses it
+or cannot be built. Twice the accuracy takes longer words and no shorter one but slopes of a table that gets more rows, by no
+more bits than these (`model/tests/shortest_words.rs`, for every kind of chip and any accuracy). A step of less than two that
+makes signals or rows longer may shorten another word by a bit; so may any where a word that is said misses the budget, which
+the others then do not fill.
+Signals and rows of the tables take their share of the budget first; the others are shortened from the longest on, always the
+one that adds least, until a bit of any would be too many. No accuracy is in the ranges of parameters, which hold the promise
+and a quarter more, in `rate_high_bits`, which parts a factor in two, and in `lock_level_bits`, by which lock takes as long as
+the loop takes to settle. The budget takes roundings for independent, which those of very short words are less: `build`
+simulates what comes of it.
+
+The others are chosen around what you say. A word that misses the budget is built, with a note of what it adds. One that
+cannot be is refused with all that it may be beside the other words that are said, a range that does not hold the promised
+sensor with the parameter and the sensor's worst case. Within the limits everything fits: interval analysis shows it for every
+value of the chip. Words that a chip does not have are refused: a chip without harmonics has no table of them. `design.json`
+holds them under `budget.words`, what they add under `budget.terms`, and names beside each signal the keys that set its format
+(`set_by`).
+
+Chosen for the shipped designs, and for optical with a loop of type 1, nine parameters by the sum of squares, skew and
+harmonics (what they may be is of the last one, with its other words as they are):
+
+| key | what it is | optical | magnetic | interferometer | with everything | may be |
+|---|---|---|---|---|---|---|
+";
+
 #[test]
 fn the_page_of_word_lengths_is_fresh() {
     let designs: Vec<Design> = shipped::NAMES.map(shipped::design).into();
     let all = everything();
-    let mut page = format!(
-        "# Word lengths\n\nWritten by `{HOW}`; do not edit. Every word length that the analysis chooses\nmay be said in \
-         `[formats]` of the design:\n\n    [formats]\n    signal_fraction = 18      # two bits more than the analysis \
-         takes for optical\n\nEach is the shortest with which all errors together keep to the budget: one bit less, with the others as they are, misses it or cannot be built. Twice the\naccuracy takes longer words and no shorter one but slopes of a table that gets more rows, by no more bits than these \
-         (`model/tests/shortest_words.rs`, for every\nkind of chip and any accuracy); a step of less than two that makes signals or rows longer may shorten another word by a bit. Signals and rows of the \
-         tables take their share of the budget first; the others are\nshortened from the longest on, always the one that adds least, \
-         until a bit of any would be too many.\nNo accuracy is in the ranges of \
-         parameters, which hold the promise and a quarter more, in `rate_high_bits`,\nwhich parts a factor in two, and \
-         in `lock_level_bits`, by which lock takes as long as the loop takes to settle.\n\
-         The budget takes roundings for independent, which those of very short words are less: `build` simulates \
-         what comes of it.\n\n\
-         The others are chosen around what you say. A word that misses the budget is built, with a note of what it \
-         adds. One that cannot be\nis refused with its limits, a range that does not hold the promised sensor \
-         with the parameter and the sensor's worst case. Within\nthe limits everything fits: interval analysis shows it for \
-         every value of the chip. Words that a chip does not have are refused: a\nchip without harmonics has no table of \
-         them. `design.json` holds them under `budget.words`, what they add under `budget.terms`,\nand names beside each \
-         signal the keys that set its format (`set_by`).\n\nChosen for the shipped designs, and for optical with a loop of \
-         type 1, nine parameters by the sum of squares, skew and harmonics\n(what they may be is of the last one):\n\n\
-         | key | what it is | optical | magnetic | interferometer | with everything | may be |\n|---|---|---|---|---|---|---|\n"
-    );
+    let mut page = format!("# Word lengths\n\nWritten by `{HOW}`; do not edit. {WHAT_THEY_ARE}");
     let of =
         |design: &Design, name: &str| design.word_lengths().into_iter().find(|w| key(w) == name);
     for name in Overrides::KEYS {

@@ -90,7 +90,7 @@ pub(super) fn check(spec: &Spec) -> Result<(), DesignError> {
     between(
         "sensor.amplitude",
         spec.sensor.amplitude,
-        0.0,
+        low,
         1.25 * spec.adc.full_scale / spec.sensor.reach(),
         "with its tolerance and its offset the signal goes too far beyond the ADC's range",
     )?;

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{SQRT_2, TAU};
 
-use super::ranges::ranges;
+use super::ranges::{multiplied_top, ranges};
 use super::{Acquisition, DesignError, Followers, Loop, Words, harmonics, normalisation, skew};
 use crate::format::{CONTAINER_INTEGER, Format, Quantiser, exp2};
 use crate::kernel::gears::HELD;
@@ -103,17 +103,15 @@ pub(super) struct Multiplied {
 
 /// Their points as far left as their ranges allow.
 pub(super) fn multiplied(spec: &Spec, follow: &Followers) -> Multiplied {
-    let r = ranges(spec);
-    let word = |largest: f64, width: u32| {
-        let format = Format::signed(width, bits(width as i32 - 1 - power_of(largest)));
-        Quantiser::saturating(format)
+    let word = |key: &str, width: u32| {
+        let power = power_of(multiplied_top(key, spec));
+        Quantiser::saturating(Format::signed(width, bits(width as i32 - 1 - power)))
     };
-    let reach = |n: usize| exp2(r.deviation[n].into());
-    let gain = word(r.nominal + reach(0), follow.gain_bits);
+    let gain = word("gain_bits", follow.gain_bits);
     Multiplied {
-        theta: [gain, gain, word(reach(4), follow.cross_bits)],
-        bend: word(reach(5), follow.bend_bits),
-        cubic: word(8.0 * reach(7), follow.cubic_bits),
+        theta: [gain, gain, word("cross_bits", follow.cross_bits)],
+        bend: word("bend_bits", follow.bend_bits),
+        cubic: word("cubic_bits", follow.cubic_bits),
     }
 }
 

@@ -1,6 +1,6 @@
 //! Every word length that the analysis chooses, by the key that it has in `[formats]`.
 
-use super::limits::{Limits, of_budget, of_followers};
+use super::limits::of_lengths;
 use crate::spec::Spec;
 
 macro_rules! keyed {
@@ -104,17 +104,10 @@ impl Lengths {
         }
     }
 
-    /// What each may be, with the others as they are.
-    pub(super) fn limits(&self, spec: &Spec) -> Vec<Limits> {
-        let mut list = of_budget(&self.words, spec);
-        list.extend(of_followers(&self.followers, &self.words, spec));
-        list
-    }
-
     /// What the word of `key` may be.
     pub(super) fn ends(&self, key: &str, spec: &Spec) -> (u32, u32) {
         let bits = |n: i64| u32::try_from(n).unwrap_or(0);
-        let list = self.limits(spec);
+        let list = of_lengths(self, spec);
         let own = list.iter().find(|l| l.key == key);
         own.map_or((0, 0), |l| (bits(l.lowest), bits(l.highest)))
     }

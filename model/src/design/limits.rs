@@ -3,10 +3,10 @@
 use std::borrow::Cow;
 
 use super::formats::{gathered_power, held, power_of, skew_top, speed_top};
-use super::ranges::{just, needs, ranges};
+use super::lengths::Lengths;
+use super::ranges::{just, multiplied_top, needs, ranges};
 use super::refuse::number;
 use super::{Followers, Words, harmonics};
-use crate::format::exp2;
 use crate::spec::Spec;
 
 /// A word length and its ends.
@@ -21,11 +21,17 @@ pub(super) struct Limits {
     pub(super) absent: Option<&'static str>,
 }
 
-/// Of every word, each with the others as they are.
-pub(super) fn all(words: &Words, followers: &Followers, spec: &Spec) -> Vec<Limits> {
-    let mut list = of_budget(words, spec);
-    list.extend(of_followers(followers, words, spec));
-    list.extend(of_ranges(spec));
+/// Of every word, each with the others as they are; ranges first, which the others hold.
+pub(super) fn all(lengths: &Lengths, spec: &Spec) -> Vec<Limits> {
+    let mut list = of_ranges(spec);
+    list.extend(of_lengths(lengths, spec));
+    list
+}
+
+/// Of every word but the ranges, those of the budget first.
+pub(super) fn of_lengths(lengths: &Lengths, spec: &Spec) -> Vec<Limits> {
+    let mut list = of_budget(&lengths.words, spec);
+    list.extend(of_followers(&lengths.followers, &lengths.words, spec));
     list
 }
 
@@ -73,16 +79,16 @@ pub(super) fn absent(key: &str, spec: &Spec) -> Option<&'static str> {
 }
 
 /// The words of the budget, each with those before it as they are.
-pub(super) fn of_budget(words: &Words, spec: &Spec) -> Vec<Limits> {
+fn of_budget(words: &Words, spec: &Spec) -> Vec<Limits> {
     let keys = Words::KEYS.iter();
     keys.map(|key| {
-        let (lowest, highest) = ends(key, words);
+        let (lowest, highest, why) = ends(key, words);
         Limits {
             key,
             value: words.word(key).unwrap_or(0).into(),
             lowest: lowest.into(),
             highest: highest.into(),
-            why: BUDGET.into(),
+            why: why.into(),
             absent: absent(key, spec),
         }
     })
@@ -92,21 +98,26 @@ pub(super) fn of_budget(words: &Words, spec: &Spec) -> Vec<Limits> {
 /// Most fraction bits of a signal.
 const SIGNAL_FRACTION_MAX: u32 = 24;
 
-/// What a word of the budget may be, with those before it as they are.
-fn ends(key: &str, w: &Words) -> (u32, u32) {
+/// What a word of the budget may be, with those before it as they are, and why.
+fn ends(key: &str, w: &Words) -> (u32, u32, &'static str) {
+    let (rows, harmonic_rows, f) = (w.sine_rows_log2, w.harmonic_rows_log2, w.signal_fraction);
     match key {
-        "signal_fraction" => (8, SIGNAL_FRACTION_MAX),
-        "sine_rows_log2" => (4, 13),
-        "harmonic_rows_log2" => (4, harmonics::ROWS_LOG2_MAX),
-        "sine_phase_bits" => ((w.sine_rows_log2 + 3).max(w.harmonic_rows_log2 + 1), 30),
-        "phase_bits" => (w.sine_phase_bits.max(w.signal_fraction + 3), 44),
-        _ => (w.signal_fraction, 44),
+        "signal_fraction" => (8, SIGNAL_FRACTION_MAX, SIGNAL),
+        "sine_rows_log2" => (4, 13, ROWS),
+        "harmonic_rows_log2" => (4, harmonics::ROWS_LOG2_MAX, ROWS),
+        "sine_phase_bits" => ((rows + 3).max(harmonic_rows + 1), 30, SINE_PHASE),
+        "phase_bits" => (w.sine_phase_bits.max(f + 3), 44, PHASE),
+        _ => (f, 44, ACCUMULATOR),
     }
 }
 
-/// Of the words that cost most.
-const BUDGET: &str = "with fewer bits there is no angle left, and more fit no multiplier and no container; a phase is as fine as \
-                      what is made of it";
+const SIGNAL: &str = "with fewer there is no angle left, and of more the products fit no container";
+const ROWS: &str = "with fewer the segments are no straight lines, and more make no angle finer";
+const SINE_PHASE: &str =
+    "they number the rows of the tables, with a bit between these, and more make no angle finer";
+const PHASE: &str = "the phase is as fine as what the sine reads of it and as the signals that move it, and more fit no container";
+const ACCUMULATOR: &str =
+    "a parameter is as fine as the signal that it corrects, and more fit no container";
 const TABLE: &str =
     "a table's values hold half the last bit of what is read; below eight more bits nothing counts";
 const SLOPES: &str =
@@ -123,17 +134,14 @@ const DELAY: &str = "fewer are no number, and more are finer than what they are 
 const LEVEL: &str = "lock takes as many samples as the loop takes to settle: 32 to 4096";
 
 /// The words that follow from those of the budget.
-pub(super) fn of_followers(
-    words_that_follow: &Followers,
-    words: &Words,
-    spec: &Spec,
-) -> Vec<Limits> {
+fn of_followers(words_that_follow: &Followers, words: &Words, spec: &Spec) -> Vec<Limits> {
     let w = words_that_follow;
     let (f, p, h) = (words.signal_fraction, words.phase_bits, w.harmonic_fraction);
-    let r = ranges(spec);
     let least = |largest: f64| u32::try_from(power_of(largest) + 2).unwrap_or(0).max(6);
-    let reach = |n: usize| exp2(r.deviation[n].into());
-    let factor = |largest: f64| (least(largest), f + 8);
+    let factor = |key| {
+        let largest = multiplied_top(key, spec);
+        (least(largest), f + 8)
+    };
     // As wide as its finest bit allows.
     let most = |largest: f64, finest: u32| held(largest, 64, finest).format.width;
     let values = (h.saturating_add(1), h.saturating_add(8));
@@ -168,15 +176,10 @@ pub(super) fn of_followers(
             (1, f + 8),
             SLOPES,
         ),
-        (
-            "gain_bits",
-            w.gain_bits,
-            factor(r.nominal + reach(0)),
-            FACTOR,
-        ),
-        ("cross_bits", w.cross_bits, factor(reach(4)), FACTOR),
-        ("bend_bits", w.bend_bits, factor(reach(5)), FACTOR),
-        ("cubic_bits", w.cubic_bits, factor(8.0 * reach(7)), FACTOR),
+        ("gain_bits", w.gain_bits, factor("gain_bits"), FACTOR),
+        ("cross_bits", w.cross_bits, factor("cross_bits"), FACTOR),
+        ("bend_bits", w.bend_bits, factor("bend_bits"), FACTOR),
+        ("cubic_bits", w.cubic_bits, factor("cubic_bits"), FACTOR),
         (
             "coefficient_bits",
             w.coefficient_bits,

@@ -119,13 +119,12 @@ impl Design {
         skew::check(spec, &tracking)?;
         harmonics::check(spec)?;
         let acquisition = Acquisition::new(spec, &tracking);
-        word::plausible(spec)?;
+        word::plausible(spec, &tracking)?;
         budget::reachable(spec, &tracking)?;
         let (lengths, mut budget) = shortest::choose(spec, &tracking)?;
+        word::present(spec, &limits::all(&lengths, spec))?;
+        word::inside(spec, &lengths, &tracking)?;
         let Lengths { words, followers } = lengths;
-        let limits = limits::all(&words, &followers, spec);
-        word::present(spec, &limits)?;
-        word::inside(spec, &limits)?;
         let all = (&words, &followers);
         let mut structure = formats::structure(spec, &acquisition, all)?;
         let constants = formats::constants(spec, &tracking, &acquisition, all, &structure);

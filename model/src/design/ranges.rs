@@ -1,6 +1,7 @@
 //! What the parameters can reach, by the design's promise.
 
 use super::normalisation;
+use crate::format::exp2;
 use crate::spec::Spec;
 
 /// What the promised sensors need of θ1 … θ9 at their worst: largest deviation from the nominal value.
@@ -62,5 +63,18 @@ pub(super) fn ranges(spec: &Spec) -> Ranges {
     Ranges {
         deviation: [gain, offset, gain, offset, cross, bend, bend, bend, bend],
         nominal: 1.0 / normalisation(spec).0,
+    }
+}
+
+/// The largest value in the word of `key`, which holds parameters as they are multiplied; coefficients are no larger than 1.
+pub(super) fn multiplied_top(key: &str, spec: &Spec) -> f64 {
+    let r = ranges(spec);
+    let reach = |n: usize| exp2(r.deviation[n].into());
+    match key {
+        "gain_bits" => r.nominal + reach(0),
+        "cross_bits" => reach(4),
+        "bend_bits" => reach(5),
+        "cubic_bits" => 8.0 * reach(7),
+        _ => 1.0,
     }
 }
