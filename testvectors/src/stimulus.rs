@@ -1,6 +1,7 @@
 //! Named stimuli: what the testbench plays.
 
 use nonius_model::design::Design;
+use nonius_model::kernel::gears::HELD;
 use rand::{Rng, SeedableRng, rngs::StdRng};
 
 use crate::ties::Ties;
@@ -38,6 +39,9 @@ fn sweep(t: f64) -> f64 {
         t => 1.0 - t,
     }
 }
+
+/// Periods of travel from a fade until the search has begun again and gamma, in gears of a period, has settled.
+const SETTLED: f64 = 12.0 + HELD as f64;
 
 /// All named stimuli, `rows` samples each, from one seed.
 #[must_use]
@@ -124,9 +128,17 @@ pub fn named(design: &Design, rows: usize) -> Vec<Stimulus> {
             };
             faded(pair(0.02 * k as f64 * (top / 0.1), 1.0, 0.0), gain)
         }),
-        // At top speed the signal fades once gamma has settled, and stays so until the search begins again.
+        // At top speed the signal fades once gamma has settled, and stays so until the search begins again; where there is recall it
+        // changes for some periods once gamma has settled on it, and is then back, and stronger.
         motion("fade", &|k| {
-            let gain = if 3 * k < rows { 1.0 } else { 0.88 };
+            let settled = (k as f64 - n / 3.0) * top - SETTLED;
+            let gain = match settled {
+                _ if 3 * k < rows => 1.0,
+                _ if !spec.calibration.recall => 0.88,
+                periods if periods > 6.0 => 1.15,
+                periods if periods > 0.0 && periods < 3.0 => 0.97,
+                _ => 0.88,
+            };
             faded(pair(top * k as f64, 1.0, 0.0), gain)
         }),
         motion("step", &|k| {

@@ -298,6 +298,9 @@ pub fn gtkw(name: &str, design: &Design, columns: &[Column], clocks: usize) -> S
                 "behind_used",
                 "moving",
                 "returning",
+                "fading",
+                "known",
+                "halfway",
             ]
             .contains(&n)
     };

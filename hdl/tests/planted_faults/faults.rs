@@ -335,33 +335,45 @@ pub(crate) fn harmonic_faults() -> Vec<Fault> {
 pub(crate) fn recall_faults() -> Vec<Fault> {
     vec![
         swap(
-            "recall before the last gear",
-            &["wire recall_now ="],
-            " & last_gamma_gear",
+            "recall while the search follows a fade",
+            &["wire proven_stand_now ="],
+            " & not_fading_now",
             "",
         ),
         swap(
             "recall of what is recent",
-            &["wire", " theta_2_deviation_next ="],
-            "recall ? proven_2",
-            "recall ? recent_2",
+            &["recall_any ? proven_2"],
+            "recall_any ? proven_2",
+            "recall_any ? recent_2",
         ),
         swap(
             "no recall of the phase",
-            &["wire", " theta_5_deviation_next ="],
-            "recall ?",
+            &["recall_any ? proven_5"],
+            "recall_any ?",
             "1'b0 ?",
         ),
         swap(
             "what is recent is proven in recall",
             &["wire remember_now ="],
-            " & ~recall_now",
+            " & ~recall",
             "",
         ),
         swap(
+            "remembered twice as often",
+            &["wire proved ="],
+            " & halfway",
+            "",
+        ),
+        swap(
+            "no recall where the signal is back",
+            &["wire recall_again ="],
+            "& known",
+            "& 1'b0",
+        ),
+        swap(
             "held for a period only",
-            &["wire returning_next_now ="],
-            "recall_now &",
+            &["wire return_goes_on ="],
+            "recall &",
             "1'b0 &",
         ),
         swap(

@@ -37,6 +37,8 @@ pub struct Gears<S: Signal> {
     pub passed: S::Bool,
     /// The search begins again.
     pub restart: S::Bool,
+    /// It does because the residual has stayed.
+    pub stayed: S::Bool,
     /// The residual was large in the running period.
     pub disturbed: S::Bool,
     /// The radius was too large in the running period.
@@ -54,7 +56,7 @@ pub struct Hold<S: Signal> {
     pub risen: S::Bool,
     /// No parameter moves.
     pub held: S::Bool,
-    /// Where there is recall: and γ is in its last gear.
+    /// Where there is recall: and what is proven is of this signal.
     pub recall: Option<S::Bool>,
 }
 
@@ -90,9 +92,10 @@ pub fn hold<S: Signal>(
         suspect
     };
     let held = suspect.and(settled).named("hold");
+    // γ is in its last gear then: where it leaves it nothing is known, or the signal may be fading.
     let recall = structure.calibration.recalls().then(|| {
-        let last = last_gear(state, k);
-        held.and(last).named("recall")
+        let proven = state.known.and(state.fading.not()).named("proven_stand");
+        held.and(proven).named("recall")
     });
     Hold {
         large,
@@ -104,7 +107,7 @@ pub fn hold<S: Signal>(
 
 /// γ is as small as it becomes.
 #[inline(always)]
-fn last_gear<S: Signal>(state: &State<S>, k: &Coefficients<S>) -> S::Bool {
+pub fn last_gear<S: Signal>(state: &State<S>, k: &Coefficients<S>) -> S::Bool {
     let before = state.gamma_gear.less_than(k.gamma_gear_last);
     before.not().named("last_gamma_gear")
 }
@@ -133,6 +136,13 @@ fn disturbed_period<S: Signal>(gate: Gate<S>, state: &State<S>) -> S::Bool {
     gate.tick.and(state.disturbed).named("disturbed_period")
 }
 
+/// The parameters have been held for as long as a signal that changes no more is waited for.
+#[inline(always)]
+fn long<S: Signal>(state: &State<S>, k: &Coefficients<S>) -> S::Bool {
+    let long = state.gear_periods.less_than(k.held_periods_last).not();
+    state.held.and(long).named("held_long")
+}
+
 /// The search begins again: the residual was large before γ had settled, or the radius too large, or the residual large for
 /// so long that the signal must have changed.
 #[inline(always)]
@@ -143,9 +153,10 @@ pub fn restart<S: Signal>(
     structure: &Structure,
 ) -> S::Bool {
     let early = settled(state, k, structure).not();
-    let long = state.gear_periods.less_than(k.held_periods_last).not();
-    let long = state.held.and(long).named("held_long");
-    let cause = early.or(state.risen).or(long).named("restart_cause");
+    let cause = early
+        .or(state.risen)
+        .or(long(state, k))
+        .named("restart_cause");
     disturbed_period(gate, state)
         .and(cause)
         .named("gamma_restart")
@@ -196,6 +207,7 @@ pub fn gears<S: Signal>(
         periods: S::select(again, k.zero, counted).quantise(&structure.formats.gear_periods),
         passed,
         restart,
+        stayed: restart.and(long(state, k)),
         // Where nothing counts, a new period begins without suspicion.
         disturbed: hold.large.or(state.disturbed.and(within)),
         risen: hold.risen.or(state.risen.and(within)),

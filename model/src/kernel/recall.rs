@@ -4,16 +4,20 @@
 //! they are held. So the chip remembers them as they were at the last two ends of `gear_periods` quiet periods of travel, and where they
 //! begin to be held it goes back to the older of the two. Only in the last gear: before it they still improve. A signal that
 //! comes back over some periods is nearly whole before it is whole: they stay held until as many quiet periods have passed.
+//!
+//! A slower fade outlasts the hold, and the search begins again and follows it. What is proven stays as it was until the search has
+//! come to its last gear again. Where the radius is far too large before that, the signal is back: what is proven comes back, with
+//! the last gear. So it does where the signal is lost in the first gear, with which nothing else is known.
 
 use super::calibration::Update;
-use super::gears::Gears;
+use super::gears::{Gears, last_gear, nominal};
 use super::{Coefficients, State, Structure};
 use crate::signal::{Formula, Logic, Signal};
 use crate::spec::CalibrationMethod;
 
 static RECALL: Formula = Formula {
     title: "Recall",
-    equation: "held in the last gear: theta = proven; after gear_periods quiet periods: proven' = recent, recent' = theta",
+    equation: "held where it is known, or back: theta = proven; after gear_periods quiet periods: recent' = theta, in the last gear proven' = recent",
     source: "",
 };
 
@@ -25,13 +29,19 @@ pub struct Memory<S: Signal> {
     pub proven: [S; 9],
     /// Parameters were recalled, and the periods of a gear have not passed quietly since.
     pub returning: S::Bool,
+    /// The search began again where the residual had stayed.
+    pub fading: S::Bool,
+    /// There are proven ones.
+    pub known: S::Bool,
+    /// The last gear has passed once since it was remembered what they are.
+    pub halfway: S::Bool,
 }
 
 /// Puts proven parameters in the place of the others where `recall` says so.
 pub fn recall<S: Signal>(
     updated: &mut Update<S>,
     recall: S::Bool,
-    gears: &Gears<S>,
+    gears: &mut Gears<S>,
     state: &State<S>,
     k: &Coefficients<S>,
     structure: &Structure,
@@ -39,19 +49,49 @@ pub fn recall<S: Signal>(
     state.gamma_gear.begin(&RECALL);
     let before = Memory::of(state);
     let passed = gears.passed;
-    updated.theta = std::array::from_fn(|i| S::select(recall, before.proven[i], updated.theta[i]));
+    let last = last_gear(state, k);
+    // The signal is back that the search had followed down, or it is lost before the search knew it again.
+    let risen = gears.restart.and(state.risen).named("restart_risen");
+    let back = risen.and(before.fading);
+    let lost = nominal(state, k);
+    let again = back.or(lost).and(before.known).named("recall_again");
+    let all = recall.or(again).named("recall_any");
+    updated.theta = std::array::from_fn(|i| S::select(all, before.proven[i], updated.theta[i]));
     if structure.calibration.method == CalibrationMethod::SumOfSquares {
         // A mean gradient of the way down would be the first to act on what was recalled.
-        updated.gathered = updated.gathered.map(|sum| S::select(recall, k.zero, sum));
+        updated.gathered = updated.gathered.map(|sum| S::select(all, k.zero, sum));
     }
-    // Periods that pass in recall make the recent ones proven; what was recent is of the way down.
-    let older = passed.and(recall.not()).named("remember");
-    let recent = |i: usize| S::select(passed, updated.theta[i], before.recent[i]);
+    if structure.calibration.starts() {
+        // What is proven need not be solved.
+        updated.start_periods = S::select(again, k.start_periods_last, updated.start_periods)
+            .quantise(&structure.formats.start_periods);
+    }
+    gears.gear =
+        S::select(again, k.gamma_gear_last, gears.gear).quantise(&structure.formats.gamma_gear);
+    let quiet = passed.and(last).named("last_gear_passed");
+    let proved = quiet.and(before.halfway).named("proved");
+    let older = proved.and(recall.not()).named("remember");
+    // What was recent where something is recalled is of the way down.
+    let newer = passed
+        .and(last.not())
+        .or(proved)
+        .or(all)
+        .named("remember_recent");
+    let recent = |i: usize| S::select(newer, updated.theta[i], before.recent[i]);
+    // What comes back over some periods is small again before it is whole.
+    let returns = passed.or(gears.restart).named("return_ends").not();
+    let returning = recall.and(returns).named("return_goes_on");
+    // A radius that rises all at once is another signal.
+    let another = risen.and(before.fading.not()).named("signal_changed");
+    let known = before.known.and(another.not()).named("still_known");
+    let fades = gears.stayed.or(before.fading).named("fades");
     Memory {
         recent: std::array::from_fn(recent),
         proven: std::array::from_fn(|i| S::select(older, before.recent[i], before.proven[i])),
-        // What comes back over some periods is small again before it is whole.
-        returning: recall.and(passed.or(gears.restart).not()),
+        returning: returning.or(again),
+        fading: fades.and(again.or(proved).named("fade_ends").not()),
+        halfway: before.halfway.xor(quiet),
+        known: known.or(older),
     }
 }
 
@@ -81,6 +121,9 @@ impl<S: Signal> Memory<S> {
                 state.proven_9,
             ],
             returning: state.returning,
+            fading: state.fading,
+            known: state.known,
+            halfway: state.halfway,
         }
     }
 
@@ -109,5 +152,8 @@ impl<S: Signal> Memory<S> {
             next.proven_9,
         ] = self.proven;
         next.returning = self.returning;
+        next.fading = self.fading;
+        next.known = self.known;
+        next.halfway = self.halfway;
     }
 }

@@ -162,10 +162,10 @@ fn advance_of<S: Signal, const PLAIN: bool>(
         let (old, nominal) = (state.theta_9_deviation, gears::nominal(state, k));
         updated.theta[8] = step::moved(old, completed.step, 8, nominal, k, structure);
     }
-    let gears = gears::gears(hold, gate, (counting, starting), state, k, structure);
+    let mut gears = gears::gears(hold, gate, (counting, starting), state, k, structure);
     let recalled = hold.recall.filter(|_| !PLAIN);
-    let memory =
-        recalled.map(|recall| recall::recall(&mut updated, recall, &gears, state, k, structure));
+    let memory = recalled
+        .map(|recall| recall::recall(&mut updated, recall, &mut gears, state, k, structure));
 
     rate.begin(&FLAGS);
     let lost_before = state.lock_lost.and(input.preset.not()).named("lost_before");

@@ -162,6 +162,12 @@ bundle! {
         moving,
         /// The parameters are held until the periods of a gear have passed quietly, too (recall).
         returning,
+        /// The search began again where the residual had stayed: the signal may have faded (recall).
+        fading,
+        /// Parameters have been remembered in the last gear (recall).
+        known,
+        /// Half of the way to where they are remembered next (recall).
+        halfway,
     }
 }
 

@@ -39,6 +39,12 @@ pub enum Verdict {
 pub struct Hold(Option<(f64, f64)>);
 
 impl Hold {
+    /// Held from here on, α̂ in radians.
+    #[must_use]
+    pub fn from(alpha_hat: f64) -> Self {
+        Self(Some((alpha_hat, alpha_hat)))
+    }
+
     /// Takes ρ and α̂ (radians, unwrapped) of a sample; `halvings` of γ so far, `None` without lock.
     pub fn step(
         &mut self,
@@ -72,12 +78,45 @@ impl Hold {
 }
 
 /// Θ of better days: where it begins to be held, a fade has already taken it along for some periods.
+///
+/// Where the residual stays, γ begins again, and Θ follows a signal that fades more slowly than that; where the radius is then far
+/// too large, the signal has come back, and where lock is lost, it is gone: Θ of before is taken again.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recall {
     recent: Theta,
     proven: Theta,
     /// α̂ where Θ was last remembered or held, radians.
     since: f64,
+    /// There is a proven Θ.
+    known: bool,
+    /// γ began again where the residual had stayed.
+    fading: bool,
+}
+
+/// What a sample means for what is remembered.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Seen {
+    /// What it means for the search.
+    pub verdict: Verdict,
+    /// ρ is far too large.
+    pub risen: bool,
+    /// γ has settled.
+    pub settled: bool,
+    /// The loop follows.
+    pub locked: bool,
+    /// γ is the last one.
+    pub last: bool,
+}
+
+/// What Θ is to be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Recalled {
+    /// As it is.
+    Nothing,
+    /// This, as long as it is held.
+    Held(Theta),
+    /// This, with the last γ.
+    Again(Theta),
 }
 
 impl Recall {
@@ -88,29 +127,41 @@ impl Recall {
             recent: theta,
             proven: theta,
             since: alpha_hat,
+            known: false,
+            fading: false,
         }
     }
 
-    /// Takes Θ of a sample; what it is to be, where it is held and has its `last` γ.
-    pub fn step(
-        &mut self,
-        periods: f64,
-        theta: &Theta,
-        alpha_hat: f64,
-        verdict: Verdict,
-        last: bool,
-    ) -> Option<Theta> {
-        if verdict == Verdict::Free {
-            if (alpha_hat - self.since).abs() >= periods * TAU {
-                (self.proven, self.recent) = (self.recent, *theta);
+    /// Takes Θ of a sample, to be remembered after `periods` of travel, with the last γ after twice as many.
+    pub fn step(&mut self, periods: f64, theta: &Theta, alpha_hat: f64, seen: Seen) -> Recalled {
+        let back = seen.risen || !seen.locked;
+        if self.fading && self.known && back && !seen.settled {
+            self.fading = false;
+            self.since = alpha_hat;
+            return Recalled::Again(self.proven);
+        }
+        if seen.verdict == Verdict::Free {
+            let apart = if seen.last { 2.0 * periods } else { periods };
+            if (alpha_hat - self.since).abs() >= apart * TAU {
+                if seen.last {
+                    self.proven = self.recent;
+                    (self.known, self.fading) = (true, false);
+                }
+                self.recent = *theta;
                 self.since = alpha_hat;
             }
-            return None;
+            return Recalled::Nothing;
         }
         self.since = alpha_hat;
-        last.then(|| {
-            self.recent = self.proven;
-            self.proven
-        })
+        let proven = self.known && !self.fading;
+        if seen.verdict == Verdict::Changed {
+            self.known &= self.fading || !seen.risen;
+            self.fading |= !seen.risen;
+        }
+        if !proven {
+            return Recalled::Nothing;
+        }
+        self.recent = self.proven;
+        Recalled::Held(self.proven)
     }
 }

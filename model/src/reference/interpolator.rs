@@ -9,7 +9,7 @@ use super::completed::Completion;
 pub use super::config::{Config, Gamma, Search, Steps};
 use super::gate::{Gate, GateState, Window};
 use super::gradient::{Observation, ResidualGradient};
-use super::hold::{Hold, Recall, Verdict};
+use super::hold::{self, Hold, Recall, Recalled, Verdict};
 use super::loops::Loop;
 use super::recursive::LeastSquaresStart;
 use super::solved::Solved;
@@ -285,18 +285,29 @@ impl Reference {
         let alpha_hat = self.tracking.alpha_hat();
         let halvings = locked.then_some(self.geared.0);
         let verdict = self.hold.step(config, rho, alpha_hat, halvings);
+        let mut again = false;
         if let Some(periods) = config.recall {
-            let last = self.geared.0 >= self.config.gamma.halvings;
-            let recalled = self
-                .recall
-                .step(periods, &self.theta, alpha_hat, verdict, last);
-            if let Some(theta) = recalled {
+            let seen = hold::Seen {
+                verdict,
+                risen: rho >= config.restart,
+                settled: self.geared.0 >= config.settled,
+                locked,
+                last: self.geared.0 >= self.config.gamma.halvings,
+            };
+            let recalled = self.recall.step(periods, &self.theta, alpha_hat, seen);
+            again = matches!(recalled, Recalled::Again(_));
+            if let Recalled::Held(theta) | Recalled::Again(theta) = recalled {
                 self.theta = theta;
                 // A mean of the way down would be the first to act on it.
                 if let Searching::SumOfSquares(sum) = &mut self.searching {
                     sum.clear();
                 }
             }
+        }
+        if again {
+            self.geared = (self.config.gamma.halvings, alpha_hat);
+            self.hold = Hold::from(alpha_hat);
+            return false;
         }
         if verdict == Verdict::Changed {
             self.geared = (0, alpha_hat);
