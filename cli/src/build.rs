@@ -200,11 +200,11 @@ fn summary(j: &DesignJson, output: &Path, shown: &str) {
         say!("  note        the simulated accuracy misses what was asked for: {why}");
     }
     let folder = output.display();
-    say!(
-        "  written     {folder}/: rtl, tb, vectors, waves, coefficients, design.json, report.html"
-    );
+    say!("  written     {folder}: rtl, tb, vectors, waves, coefficients, design.json, report.html");
     say!("next: nonius verify {folder}");
-    say!("      gtkwave {folder}/waves/{shown}.vcd {folder}/waves/{shown}.gtkw");
+    let waves = output.join("waves");
+    let [vcd, gtkw] = ["vcd", "gtkw"].map(|kind| waves.join(format!("{shown}.{kind}")));
+    say!("      gtkwave {} {}", vcd.display(), gtkw.display());
 }
 
 /// Why the accuracy is missed, where that is for errors of the sensor that stay.

@@ -106,8 +106,8 @@ fn settle(draft: &mut Draft) -> Result<Design> {
                 draft.accuracy = rounded_up(spared / MARGIN);
             }
             // A name is no number, and says itself what is wrong.
-            Err(error) if names_the_name(&error) => return Err(error),
-            Err(_) if draft.accuracy < COARSEST => {
+            Err(error) if is_of(&error, "name") => return Err(error),
+            Err(error) if is_of(&error, "accuracy.") && draft.accuracy < COARSEST => {
                 draft.accuracy = rounded_up(draft.accuracy * 1.1);
             }
             Err(error) => {
@@ -117,9 +117,10 @@ fn settle(draft: &mut Draft) -> Result<Design> {
     }
 }
 
-fn names_the_name(error: &anyhow::Error) -> bool {
+/// Whether a field of this beginning is refused.
+fn is_of(error: &anyhow::Error, beginning: &str) -> bool {
     let field = error.downcast_ref::<DesignError>();
-    matches!(field, Some(DesignError::Field { field, .. }) if field == "name")
+    matches!(field, Some(DesignError::Field { field, .. }) if field.starts_with(beginning))
 }
 
 fn designed(draft: &Draft) -> Result<Design> {

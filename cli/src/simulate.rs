@@ -32,7 +32,8 @@ pub(crate) struct Simulate {
     /// Also writes the waves of the bit-true chip (VCD), with the signal names of its Verilog.
     #[arg(long, value_name = "FILE", conflicts_with = "reference")]
     vcd: Option<PathBuf>,
-    /// The paper in floating point instead of the bit-true chip.
+    /// The paper in floating point instead of the bit-true chip. It counts periods from where its own loop begins, which may be one
+    /// before or behind the chip's.
     #[arg(long)]
     reference: bool,
     /// Plays a recording of whole turns so many times.
@@ -57,6 +58,12 @@ pub(crate) fn run(args: &Simulate) -> Result<()> {
     )?;
     play::check(spec, &recording, &path, args.repeat)?;
     let thetas = spec.calibration.thetas();
+    let c = &spec.calibration;
+    if args.reference && c.completed().is_some() && c.squares() {
+        eprintln!(
+            "note: completed, the paper's search runs along the radius, whatever calibration.method says"
+        );
+    }
     let mut interpolator: Box<dyn Interpolator> = if args.reference {
         Box::new(InFloatingPoint::of(&design)?)
     } else {

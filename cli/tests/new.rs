@@ -156,3 +156,16 @@ fn a_name_that_the_chip_has_is_told() {
         assert!(!dir.path().join(format!("{name}.toml")).exists());
     }
 }
+
+/// Not the accuracy, which is worked out.
+#[test]
+fn the_number_at_fault_is_named() {
+    let dir = tempfile::tempdir().expect("scratch");
+    let text = format!("# scale_period_m: 1e-20\n{}", recording(8000, 300.0));
+    fs::write(dir.path().join("r.csv"), text).expect("a recording");
+    let output = nonius(dir.path(), &["new", "it", "--from", "r.csv"]);
+    refused(
+        &output,
+        &["sensor.scale_period_m = ", "the number at fault"],
+    );
+}

@@ -46,8 +46,10 @@ pub(crate) fn purpose(spec: &Spec) -> Vec<String> {
         (false, _) => String::new(),
         (true, 0) => format!(" gamma, how far, is 2^-{}.", c.gamma_first),
         (true, gears) => format!(
-            " gamma, how far, is 2^-{} at first and 2^-{} after {gears} gears.",
-            c.gamma_first, c.gamma_last
+            " gamma, how far, is 2^-{} at first and 2^-{} after {gears} gear{}.",
+            c.gamma_first,
+            c.gamma_last,
+            if gears == 1 { "" } else { "s" }
         ),
     };
     wrap("", &format!("{LOOP} {search}{parameters}{gamma}"), COMMENT)

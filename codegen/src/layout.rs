@@ -89,9 +89,68 @@ pub(crate) fn wrap(first: &str, words: &str, columns: usize) -> Vec<String> {
     rows
 }
 
+/// Words by which tools take a comment that begins with one of them for an order.
+const ORDERS: [&str; 16] = [
+    "altera",
+    "ambit",
+    "cadence",
+    "coverage",
+    "exemplar",
+    "intel",
+    "lattice",
+    "leda",
+    "pragma",
+    "spyglass",
+    "synopsys",
+    "synplify",
+    "synthesis",
+    "vcs",
+    "verilator",
+    "xilinx",
+];
+
+fn is_order(line: &str) -> bool {
+    let small = line.to_ascii_lowercase();
+    ORDERS.iter().any(|order| small.starts_with(order))
+}
+
+/// A line of a comment in the user's words, which no tool takes for an order to it.
+pub(crate) fn no_order(line: &str) -> String {
+    let guard = if is_order(line) { "- " } else { "" };
+    format!("{guard}{line}")
+}
+
+/// Lines of a comment in the user's words.
+pub(crate) fn users_comment(words: &str) -> Vec<String> {
+    let lines = wrap("", words, COMMENT);
+    if !lines.iter().any(|line| is_order(line)) {
+        return lines;
+    }
+    // With room for what stands before an order.
+    let lines = wrap("", words, COMMENT - 2);
+    lines.iter().map(|line| no_order(line)).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn no_comment_of_the_users_is_an_order() {
+        for line in [
+            "verilator lint_off",
+            "Verilator_x: a chip",
+            "synopsys translate_off",
+        ] {
+            assert_eq!(no_order(line), format!("- {line}"));
+        }
+        assert_eq!(no_order("optical: verilator"), "optical: verilator");
+        let words = "a chip whose waves are looked at in the ".repeat(3) + "verilator";
+        for width in 0..60 {
+            let lines = users_comment(&format!("{}{words}", "x ".repeat(width)));
+            assert!(lines.iter().all(|l| !is_order(l) && l.len() <= COMMENT));
+        }
+    }
 
     #[test]
     fn what_fits_stays() {

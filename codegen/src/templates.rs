@@ -63,6 +63,8 @@ struct Testbench<'a> {
 #[template(path = "example.v")]
 struct Example<'a> {
     name: &'a str,
+    /// The name where a comment begins with it.
+    subject: String,
     clocks: usize,
     rate: f64,
     clock: f64,
@@ -244,11 +246,7 @@ pub fn generate(
     let kind = crate::about::kind(&design.spec);
     let description = design.spec.description.as_str();
     let separator = if description.is_empty() { "." } else { ": " };
-    let title = layout::wrap(
-        "",
-        &format!("{name}: {kind}{separator}{description}"),
-        layout::COMMENT,
-    );
+    let title = layout::users_comment(&format!("{name}: {kind}{separator}{description}"));
     let adc_msb = design.spec.adc.bits - 1;
     let f = &design.structure.formats;
     for (port, id, bits) in &columns {
@@ -326,6 +324,7 @@ pub fn generate(
     };
     let example = Example {
         name,
+        subject: layout::no_order(name),
         clocks,
         rate,
         clock,

@@ -1,6 +1,6 @@
 // How to instantiate ${ name }$: an ADC with a strobe on one side, a motion controller on the other.
 //
-// ${ name }$ needs ${ clocks }$ clocks per sample; at ${ rate }$ samples per second that is a clock of at least
+// ${ subject }$ needs ${ clocks }$ clocks per sample; at ${ rate }$ samples per second that is a clock of at least
 // ${ clock }$ Hz (see ${ name }$.sdc).
 
 `default_nettype none

@@ -60,10 +60,12 @@ fn what_is_wrong_is_named_with_its_section() {
         let error = Spec::from_toml(text, "d.toml").expect_err("wrong");
         error.to_string()
     };
-    assert_eq!(
-        message("adc = 3\n"),
-        "d.toml:1:7: adc: invalid type: `3`, expected a section"
-    );
+    for (text, place, section) in [("adc = 3\n", 7, "adc"), ("chip = [1]\n", 8, "chip")] {
+        assert_eq!(
+            message(text),
+            format!("d.toml:1:{place}: {section}: expected a section, [{section}], with its keys")
+        );
+    }
     let missing = message(&text().replace("bits = 12", ""));
     assert_eq!(missing, "d.toml:14:1: adc: missing field `bits`");
     let wrong = format!("{}\n[[correction.harmonics]]\norder = \"third\"\n", text());

@@ -24,7 +24,7 @@ fn numbers_in_messages_are_short() {
 #[test]
 fn what_cannot_work_names_the_field() {
     type Change = fn(&mut Spec);
-    let cases: [(&str, Change); 17] = [
+    let cases: [(&str, Change); 18] = [
         ("loop.type", |s| s.tracking.method = 2),
         ("loop.method", |s| s.tracking.method = 4),
         ("loop.bandwidth_hz", |s| s.tracking.bandwidth_hz = 4e5),
@@ -60,6 +60,10 @@ fn what_cannot_work_names_the_field() {
             s.accuracy.rms_periods = 1e-3;
         }),
         ("adc.bits", |s| s.adc.bits = 24),
+        // The last one is not said.
+        ("calibration.gamma_first", |s| {
+            s.calibration.gamma_first = 11
+        }),
         ("accuracy.rms_periods", |s| s.accuracy.rms_periods = 1e-6),
         ("formats.phase_bits", |s| s.formats.phase_bits = Some(60)),
         ("chip.multipliers", |s| {

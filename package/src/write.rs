@@ -10,6 +10,9 @@ pub enum WriteError {
     /// Something else is there.
     #[error("{} exists and was not written by this command; name another folder", .0.display())]
     NotOurs(PathBuf),
+    /// The folder that this command runs in, or one around it.
+    #[error("{} is replaced as a whole, and this command runs in it; run it from outside", .0.display())]
+    Inside(PathBuf),
     /// The operating system refuses.
     #[error("cannot write {}: {error}", path.display())]
     Io {
@@ -27,13 +30,23 @@ const MANIFEST: &str = ".nonius-files";
 /// there until the new one is complete, and files that were not written here stay.
 ///
 /// # Errors
-/// A folder of somebody else, or what the operating system says.
+/// A folder of somebody else, the one that the command runs in, or what the operating system says.
 pub fn write(files: &[(String, Vec<u8>)], output: &Path) -> Result<(), WriteError> {
     let refuse = |path: &Path| {
         let path = path.to_owned();
         move |error| WriteError::Io { path, error }
     };
-    let there = output.symlink_metadata().is_ok();
+    let meta = output.symlink_metadata().ok();
+    let there = meta.is_some();
+    if there && runs_in(output) {
+        return Err(WriteError::Inside(output.to_owned()));
+    }
+    // A link stays one: what it leads to is replaced.
+    let target = match meta {
+        Some(meta) if meta.is_symlink() => Some(fs::canonicalize(output).map_err(refuse(output))?),
+        _ => None,
+    };
+    let output = target.as_deref().unwrap_or(output);
     let manifest = fs::read_to_string(output.join(MANIFEST));
     if there && manifest.is_err() && !is_empty(output) {
         return Err(WriteError::NotOurs(output.to_owned()));
@@ -70,6 +83,13 @@ pub fn write(files: &[(String, Vec<u8>)], output: &Path) -> Result<(), WriteErro
     placed.map_err(refuse(output))
 }
 
+/// Whether the working directory is this folder or one in it.
+fn runs_in(folder: &Path) -> bool {
+    let here = std::env::current_dir().and_then(fs::canonicalize);
+    let folder = fs::canonicalize(folder);
+    matches!((here, folder), (Ok(here), Ok(folder)) if here.starts_with(&folder))
+}
+
 /// Puts `fresh` in the place of `output`. Where the system can exchange two names in one go, there is never nothing at the
 /// place; elsewhere the old one steps aside to `old`, and comes back if the new one cannot take its place.
 fn swap(fresh: &Path, output: &Path, old: &Path) -> io::Result<()> {
@@ -98,6 +118,15 @@ fn keep(from: &Path, to: &Path, ours: &[PathBuf]) -> Result<(), WriteError> {
             (entry.path(), entry.file_name())
         };
         let new = to.join(name);
+        #[cfg(unix)]
+        if old.is_symlink() {
+            if !ours.contains(&old) && new.symlink_metadata().is_err() {
+                fs::create_dir_all(to).map_err(refuse(to))?;
+                let leads_to = fs::read_link(&old).map_err(refuse(&old))?;
+                std::os::unix::fs::symlink(leads_to, &new).map_err(refuse(&old))?;
+            }
+            continue;
+        }
         if old.is_dir() {
             keep(&old, &new, ours)?;
         } else if !ours.contains(&old) && !new.exists() {
@@ -162,6 +191,29 @@ mod tests {
         let file = dir.path().join("file");
         fs::write(&file, "").expect("file");
         assert!(write(&files("4"), &file).is_err());
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn links_stay_links() {
+        use std::os::unix::fs::symlink;
+        let dir = tempfile::tempdir().expect("scratch");
+        let (out, link) = (dir.path().join("out"), dir.path().join("link"));
+        write(&files("1"), &out).expect("first");
+        symlink("nowhere", out.join("dangling")).expect("the user's own");
+        symlink(".", out.join("loop")).expect("the user's own");
+        symlink(&out, &link).expect("a link");
+        write(&files("2"), &link).expect("second");
+        assert!(
+            link.is_symlink() && out.join("dangling").is_symlink() && out.join("loop").is_symlink()
+        );
+        assert_eq!(fs::read_to_string(out.join("rtl/a.v")).expect("a.v"), "2");
+    }
+
+    #[test]
+    fn the_folder_that_the_command_runs_in_is_not_replaced() {
+        let refused = write(&files("1"), std::path::Path::new(".")).expect_err("in use");
+        assert!(matches!(refused, WriteError::Inside(_)), "{refused}");
     }
 
     #[test]

@@ -93,7 +93,8 @@ pub(super) fn fitted(
             "{}: the signals turn by up to {seen:.3} periods per sample; a chip needs four samples per period. Sample \
              at {:.4e} Hz or more.",
             file.display(),
-            seen * rate * 4.0
+            // Where it is just too fast the rate that it has is no advice.
+            1.01 * seen * rate * 4.0
         );
     }
     let speed = (seen * 1.3).clamp(1e-4, 0.25) * rate;

@@ -4,7 +4,7 @@ use super::DesignError;
 use super::budget::{RMS_MOST, SHARE_LEAST};
 use super::formats::{TRAVEL_SAMPLES_MAX, slowest_completed_hz, travel_samples};
 use super::keywords::{KEYWORDS, SYSTEM_KEYWORDS};
-use super::refuse::{at_least, between, number, refuse};
+use super::refuse::{at_least, at_most, between, number, refuse};
 use crate::graph::Graph;
 use crate::spec::{Calibration, CalibrationMethod, Multipliers, Spec};
 
@@ -144,10 +144,20 @@ pub(super) fn check(spec: &Spec) -> Result<(), DesignError> {
         12.0,
         "the sum of gamma over the 64 sectors of a period must stay below 8",
     )?;
+    let (first, last) = (spec.calibration.gamma_first, spec.calibration.gamma_last);
+    // What is not said is not to blame.
+    if last == Calibration::default().gamma_last && first > last {
+        return refuse(
+            "calibration.gamma_first",
+            first,
+            at_most(last.into()),
+            "the last gamma, gamma_last, is not larger than the first",
+        );
+    }
     between(
         "calibration.gamma_last",
-        spec.calibration.gamma_last.into(),
-        spec.calibration.gamma_first.into(),
+        last.into(),
+        first.into(),
         18.0,
         "the last gamma is not larger than the first",
     )?;

@@ -168,8 +168,17 @@ fn unknown_keys(table: &DeTable, text: &str, file: &str) -> Result<(), SpecError
     check(table, TOP, None, text, file)?;
     for (section, value) in table {
         let section: &str = section.get_ref();
-        let (Some(names), DeValue::Table(inner)) = (known(section), value.get_ref()) else {
+        let Some(names) = known(section) else {
             continue;
+        };
+        let DeValue::Table(inner) = value.get_ref() else {
+            let place = Place::of_byte(text, value.span().start);
+            return Err(SpecError::Form {
+                file: file.into(),
+                message: format!(
+                    "{place}: {section}: expected a section, [{section}], with its keys"
+                ),
+            });
         };
         check(inner, names, Some(section), text, file)?;
         for (key, value) in inner {
