@@ -138,7 +138,7 @@ mod tests {
     #[test]
     fn no_comment_of_the_users_is_an_order() {
         for line in [
-            "verilator lint_off",
+            "verilator waves of it",
             "Verilator_x: a chip",
             "synopsys translate_off",
         ] {

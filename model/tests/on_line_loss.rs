@@ -223,7 +223,7 @@ const HOW: &str = "NONIUS_BLESS=1 cargo test -p nonius-model --test on_line_loss
 /// A loss within a third of a period, or at standstill, leaves the parameters where they were, but for their own noise. Fades of
 /// three to 33 periods, which for some of the way are small changes of amplitude like any, do so with recall; without, they leave
 /// less than a tenth of a per cent of a period, and it goes away. After one of a hundred lock comes back and the calibration too; with
-/// recall it is there at once, from marks that may be some periods into the fade.
+/// recall it is there at once.
 #[test]
 fn the_signal_goes_and_comes_back() {
     let rows: Vec<String> = searches().par_iter().map(row).collect();
@@ -258,13 +258,9 @@ fn row(variant: &Variant) -> String {
     let recalled = FADES.map(|n| recalling([n * PERIOD; 2], true));
     let slow = recalling([100 * PERIOD, 0], true);
     println!("{name}, recall: {recalled:?} {slow:?}");
-    for seen in recalled {
+    for seen in recalled.iter().chain([&slow]) {
         assert!(seen.after < 1.5 * seen.before, "{name}, recall: {seen:?}");
     }
-    assert!(
-        slow.after < 2.0 * slow.before + 2e-4,
-        "{name}, recall: {slow:?}"
-    );
     let mut row = format!(
         "| {} | {parameters} | {:.2} |",
         variant.what,

@@ -43,7 +43,7 @@ fn each_word_is_the_shortest() {
 
 /// Whether a shorter word of `key` costs accuracy.
 fn costs(key: &str) -> bool {
-    !key.ends_with("_range_log2") && !matches!(key, "rate_high_bits" | "lock_level_bits")
+    !is_range(&key) && !matches!(key, "rate_high_bits" | "lock_level_bits")
 }
 
 /// The words of which one bit less misses the budget; or one that is neither one of these nor the shortest that can be.
@@ -72,7 +72,7 @@ fn others_have_another_reason(chosen: &Design, what: &str) {
     for word in chosen.word_lengths() {
         let name = key(&word);
         let with_one_less = |spec: &Spec| with(spec, name, word.value - 1);
-        if name.ends_with("_range_log2") {
+        if is_range(&name) {
             let more = with_one_less(&promising_more(&said));
             assert!(more.is_none(), "{what}: {name} holds a third more");
         } else if name == "lock_level_bits" {
@@ -133,7 +133,7 @@ fn twice_the_accuracy_takes_longer_words() {
         }
     }
     for name in Overrides::KEYS {
-        let free = name.ends_with("_range_log2") || *name == "lock_level_bits";
+        let free = is_range(name) || *name == "lock_level_bits";
         assert!(free || longer.contains(*name), "{name} is never longer");
     }
 }
@@ -159,12 +159,13 @@ fn longer_words(coarse: &Design, finer: &Design) -> Result<Vec<String>, String> 
     Ok(once.keys().filter(|name| more(name) > 0).cloned().collect())
 }
 
-const RANGES: [&str; 4] = [
-    "gain_range_log2",
-    "offset_range_log2",
-    "cross_range_log2",
-    "bend_range_log2",
-];
+fn is_range(key: &&str) -> bool {
+    key.ends_with("_range_log2")
+}
+
+fn ranges() -> Vec<&'static str> {
+    Overrides::KEYS.iter().copied().filter(is_range).collect()
+}
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(300))]
@@ -180,7 +181,7 @@ proptest! {
         bandwidth_log2 in -2.0..1.0f64,
         range in prop_oneof![
             3 => Just(None),
-            1 => (prop::sample::select(RANGES.to_vec()), -2..=4i64).prop_map(Some),
+            1 => (prop::sample::select(ranges()), -2..=4i64).prop_map(Some),
         ],
     ) {
         let chips = with_every_word();

@@ -118,23 +118,31 @@ fn keep(from: &Path, to: &Path, ours: &[PathBuf]) -> Result<(), WriteError> {
             (entry.path(), entry.file_name())
         };
         let new = to.join(name);
-        #[cfg(unix)]
-        if old.is_symlink() {
-            if !ours.contains(&old) && new.symlink_metadata().is_err() {
-                fs::create_dir_all(to).map_err(refuse(to))?;
-                let leads_to = fs::read_link(&old).map_err(refuse(&old))?;
-                std::os::unix::fs::symlink(leads_to, &new).map_err(refuse(&old))?;
-            }
-            continue;
-        }
-        if old.is_dir() {
+        let link = old.is_symlink();
+        if old.is_dir() && !link {
             keep(&old, &new, ours)?;
         } else if !ours.contains(&old) && !new.exists() {
             fs::create_dir_all(to).map_err(refuse(to))?;
-            fs::copy(&old, &new).map_err(refuse(&old))?;
+            let copied = if link {
+                copy_link(&old, &new)
+            } else {
+                fs::copy(&old, &new).map(drop)
+            };
+            copied.map_err(refuse(&old))?;
         }
     }
     Ok(())
+}
+
+#[cfg(unix)]
+fn copy_link(from: &Path, to: &Path) -> io::Result<()> {
+    std::os::unix::fs::symlink(fs::read_link(from)?, to)
+}
+
+/// Elsewhere a link has to know what it leads to: that is copied.
+#[cfg(not(unix))]
+fn copy_link(from: &Path, to: &Path) -> io::Result<()> {
+    fs::copy(from, to).map(drop)
 }
 
 fn is_empty(folder: &Path) -> bool {

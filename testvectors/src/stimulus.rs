@@ -41,7 +41,7 @@ fn sweep(t: f64) -> f64 {
 }
 
 /// Periods of travel from a fade until the search has begun again and gamma, in gears of a period, has settled.
-const SETTLED: f64 = 12.0 + HELD as f64;
+const FOLLOWED: f64 = 12.0 + HELD as f64;
 
 /// All named stimuli, `rows` samples each, from one seed.
 #[must_use]
@@ -131,8 +131,8 @@ pub fn named(design: &Design, rows: usize) -> Vec<Stimulus> {
         // At top speed the signal fades once gamma has settled, and stays so until the search begins again; where there is recall it
         // changes for some periods once gamma has settled on it, and is then back, and stronger.
         motion("fade", &|k| {
-            let settled = (k as f64 - n / 3.0) * top - SETTLED;
-            let gain = match settled {
+            let followed = (k as f64 - n / 3.0) * top - FOLLOWED;
+            let gain = match followed {
                 _ if 3 * k < rows => 1.0,
                 _ if !spec.calibration.recall => 0.88,
                 periods if periods > 6.0 => 1.15,

@@ -122,8 +122,9 @@ impl Design {
         word::plausible(spec, &tracking)?;
         budget::reachable(spec, &tracking)?;
         let (lengths, mut budget) = shortest::choose(spec, &tracking)?;
-        word::present(spec, &limits::all(&lengths, spec))?;
-        word::inside(spec, &lengths, &tracking)?;
+        let limits = limits::all(&lengths, spec);
+        word::present(spec, &limits)?;
+        word::inside(spec, &limits, &tracking)?;
         let Lengths { words, followers } = lengths;
         let all = (&words, &followers);
         let mut structure = formats::structure(spec, &acquisition, all)?;

@@ -71,10 +71,10 @@ fn with_share(spec: &Spec, tracking: &Loop, (key, share): (&str, f64), enough: f
     let others = added(&all, spec, tracking).powi(2);
     let most = others + share * (enough.powi(2) - others);
     let (low, high) = all.ends(key, spec);
-    let each = (low..=high).map(|bits| {
+    let each = (low..=high).map(|word| {
         let mut spec = spec.clone();
         // There is such a key, and it can be any such number.
-        let _ = spec.formats.set(key, Some(bits.into()));
+        let _ = spec.formats.set(key, Some(word.into()));
         let all = longest(&spec, tracking);
         (spec, all)
     });

@@ -85,9 +85,8 @@ pub(super) fn outside<'a>(spec: &Spec, list: &'a [Limits]) -> Option<&'a Limits>
 }
 
 /// Refuses a word of the user's outside its ends.
-pub(super) fn inside(spec: &Spec, lengths: &Lengths, tracking: &Loop) -> Result<(), DesignError> {
-    let list = limits::all(lengths, spec);
-    let Some(l) = outside(spec, &list) else {
+pub(super) fn inside(spec: &Spec, list: &[Limits], tracking: &Loop) -> Result<(), DesignError> {
+    let Some(l) = outside(spec, list) else {
         return Ok(());
     };
     let (lowest, highest) = accepted(spec, l.key, tracking).unwrap_or((l.lowest, l.highest));

@@ -1,8 +1,8 @@
 //! Recall: what the parameters were before the signal began to fade.
 //!
 //! A fade over some periods is a small change of the amplitude before it is a large one, and the parameters follow it until
-//! they are held. So the chip remembers them as they were at the last two ends of `gear_periods` quiet periods of travel, and where they
-//! begin to be held it goes back to the older of the two. Only in the last gear: before it they still improve. A signal that
+//! they are held. So the chip remembers them as they were at the last two ends of twice `gear_periods` quiet periods of travel, and where
+//! they begin to be held it goes back to the older of the two. Only in the last gear: before it they still improve. A signal that
 //! comes back over some periods is nearly whole before it is whole: they stay held until as many quiet periods have passed.
 //!
 //! A slower fade outlasts the hold, and the search begins again and follows it. What is proven stays as it was until the search has
@@ -17,7 +17,7 @@ use crate::spec::CalibrationMethod;
 
 static RECALL: Formula = Formula {
     title: "Recall",
-    equation: "held where it is known, or back: theta = proven; after gear_periods quiet periods: recent' = theta, in the last gear proven' = recent",
+    equation: "held where it is known, or back: theta = proven; after twice gear_periods quiet periods in the last gear: proven' = recent, recent' = theta",
     source: "",
 };
 

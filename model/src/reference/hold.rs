@@ -41,7 +41,7 @@ pub struct Hold(Option<(f64, f64)>);
 impl Hold {
     /// Held from here on, α̂ in radians.
     #[must_use]
-    pub fn from(alpha_hat: f64) -> Self {
+    pub fn held_from(alpha_hat: f64) -> Self {
         Self(Some((alpha_hat, alpha_hat)))
     }
 

@@ -285,7 +285,6 @@ impl Reference {
         let alpha_hat = self.tracking.alpha_hat();
         let halvings = locked.then_some(self.geared.0);
         let verdict = self.hold.step(config, rho, alpha_hat, halvings);
-        let mut again = false;
         if let Some(periods) = config.recall {
             let seen = hold::Seen {
                 verdict,
@@ -295,7 +294,6 @@ impl Reference {
                 last: self.geared.0 >= self.config.gamma.halvings,
             };
             let recalled = self.recall.step(periods, &self.theta, alpha_hat, seen);
-            again = matches!(recalled, Recalled::Again(_));
             if let Recalled::Held(theta) | Recalled::Again(theta) = recalled {
                 self.theta = theta;
                 // A mean of the way down would be the first to act on it.
@@ -303,11 +301,11 @@ impl Reference {
                     sum.clear();
                 }
             }
-        }
-        if again {
-            self.geared = (self.config.gamma.halvings, alpha_hat);
-            self.hold = Hold::from(alpha_hat);
-            return false;
+            if let Recalled::Again(_) = recalled {
+                self.geared = (self.config.gamma.halvings, alpha_hat);
+                self.hold = Hold::held_from(alpha_hat);
+                return false;
+            }
         }
         if verdict == Verdict::Changed {
             self.geared = (0, alpha_hat);
