@@ -102,12 +102,12 @@ pub(crate) fn fixed() -> Variant {
     Variant::of("fixed", |spec| spec.calibration.parameters = 0)
 }
 
-/// One of each kind: the shipped designs, no calibration, every search with its largest parameter set, and with recall.
+/// One of each kind: the shipped designs, no calibration, every search with its largest parameter set, and without recall.
 pub(crate) fn kinds() -> Vec<Variant> {
     let mut kinds = shipped();
     kinds.push(fixed());
     kinds.extend(searches().into_iter().filter(Variant::is_largest));
-    kinds.extend(recalls().pop());
+    kinds.extend(forgetful().pop());
     kinds
 }
 
@@ -250,25 +250,27 @@ pub(crate) fn multipliers() -> Vec<Variant> {
     list
 }
 
-/// A chip that recalls the parameters of before a fade.
-pub(crate) fn recalling(base: &Spec, parameters: u32) -> Variant {
-    let mut spec = base.clone();
-    spec.calibration.recall = true;
-    spec.calibration.parameters = parameters;
-    let what = "final form, recall".into();
-    Variant { what, spec }
+/// Chips that do not recall the parameters of before a fade.
+pub(crate) fn forgetful() -> Vec<Variant> {
+    let of = |parameters: u32| {
+        Variant::of("final form, no recall", |spec| {
+            spec.calibration.recall = Some(false);
+            spec.calibration.parameters = parameters;
+        })
+    };
+    [5, 9].map(of).into()
 }
 
-/// The same with each parameter set and few periods between the gears, so that the last one is soon reached.
+/// Few periods between the gears, so that the last one, where there is recall, is soon reached; with each parameter set.
 pub(crate) fn recalls() -> Vec<Variant> {
     let one = Multipliers::Count(1);
     let of = |(parameters, method, multipliers): (u32, CalibrationMethod, Multipliers)| {
-        let mut variant = recalling(&optical(), parameters);
-        variant.what = "recall".into();
-        variant.spec.calibration.gear_periods = Some(1);
-        variant.spec.calibration.method = method;
-        variant.spec.chip.multipliers = multipliers;
-        variant
+        Variant::of("recall", |spec| {
+            spec.calibration.parameters = parameters;
+            spec.calibration.gear_periods = Some(1);
+            spec.calibration.method = method;
+            spec.chip.multipliers = multipliers;
+        })
     };
     [
         (4, Exact, ALL),
@@ -320,6 +322,7 @@ pub(crate) fn everything() -> Vec<Variant> {
         skewed(),
         harmonics(),
         recalls(),
+        forgetful(),
         gears(),
     ] {
         list.extend(part);

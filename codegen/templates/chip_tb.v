@@ -89,6 +89,9 @@ module chip_tb;
                 if (got != ${ fields }$) begin
                     bad = 1'b1;
                     $display("row %0d of %0s cannot be read", played, name);
+                end else if (sample != played) begin
+                    bad = 1'b1;
+                    $display("row %0d of %0s is of sample %0d", played, name, sample);
                 end else begin
                     sample_valid = 1'b1;
                     @(negedge clk);

@@ -37,7 +37,7 @@ proptest! {
             (c.gamma_first, c.gamma_last) = (gamma_first, (gamma_first + gears).min(18));
             c.gear_periods = Some(gear_periods);
             (c.restart_residual, c.hold_residual) = residuals;
-            c.recall &= c.settles();
+            c.recall = c.recall.filter(|recall| !recall || c.settles());
         }
         spec.chip.count_bits = count_bits;
         spec.chip.multipliers = Multipliers::Count(multipliers);

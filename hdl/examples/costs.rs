@@ -17,8 +17,7 @@ use nonius_hdl::ChipDir;
 use nonius_hdl::place::{Device, place};
 use nonius_hdl::progress::silent;
 use nonius_model::spec::Calibration;
-use shipped::optical;
-use shipped::variants::{fixed, recalling, searches};
+use shipped::variants::{fixed, forgetful, searches};
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = env::args().skip(1).collect();
@@ -39,8 +38,7 @@ fn run(docs: &Path) -> Result<(), Box<dyn Error>> {
     let mut page = String::from(HEAD);
     let mut csv = String::from("method,start,parameters,completion,clocks,lut4\n");
     let mut bare = 0;
-    let recalling = [5, 9].map(|parameters| recalling(&optical(), parameters));
-    for variant in [fixed()].into_iter().chain(searches()).chain(recalling) {
+    for variant in [fixed()].into_iter().chain(searches()).chain(forgetful()) {
         let design = variant.design();
         let Calibration {
             method,
@@ -69,7 +67,7 @@ fn run(docs: &Path) -> Result<(), Box<dyn Error>> {
         )?;
         let (clocks, luts) = (package.json.clocks_per_sample, placed.chip.lut4);
         // The comparison of convergence knows no losses.
-        if !recall {
+        if recall.is_none() {
             writeln!(
                 csv,
                 "{method:?},{start:?},{parameters},{completion},{clocks},{luts}"

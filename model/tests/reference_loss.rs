@@ -83,7 +83,7 @@ fn recalled_parameters_know_nothing_of_a_fade() {
         spec.calibration.parameters = parameters;
         let left = |periods: u32, recall: bool| {
             let mut spec = spec.clone();
-            spec.calibration.recall = recall;
+            spec.calibration.recall = Some(recall);
             let [before, _, _, after] = around(&spec, periods * PERIOD);
             println!(
                 "{method:?}, {periods} periods, recall {recall}: {before:.1e} -> {after:.1e} rad"

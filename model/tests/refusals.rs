@@ -37,7 +37,7 @@ fn what_cannot_work_names_the_field() {
         }),
         // Parameters are held, and recalled, only after four gears.
         ("calibration.recall", |s| {
-            s.calibration.recall = true;
+            s.calibration.recall = Some(true);
             s.calibration.gamma_last = s.calibration.gamma_first + 3;
         }),
         ("correction.channel_skew_s", |s| {
@@ -343,7 +343,7 @@ fn keys_of_no_calibration_are_refused() {
         ("gear_periods", "3", "4"),
         ("restart_residual", "0.3", "0.25"),
         ("hold_residual", "0.125", "0.0625"),
-        ("recall", "true", "false"),
+        ("recall", "false", "true"),
     ] {
         assert!(with(&format!("{key} = {same}")).0.is_ok(), "{key}");
         let (refused, text) = with(&format!("{key} = {other}"));

@@ -134,7 +134,7 @@ pub fn named(design: &Design, rows: usize) -> Vec<Stimulus> {
             let followed = (k as f64 - n / 3.0) * top - FOLLOWED;
             let gain = match followed {
                 _ if 3 * k < rows => 1.0,
-                _ if !spec.calibration.recall => 0.88,
+                _ if !spec.calibration.recalls() => 0.88,
                 periods if periods > 6.0 => 1.15,
                 periods if periods > 0.0 && periods < 3.0 => 0.97,
                 _ => 0.88,

@@ -71,7 +71,7 @@ impl Draft {
             "5".into(),
             "0 (off), 4 (gains, offsets), 5 (and phase), 8, 9 (and bends)",
         );
-        out += "# recall = true                         # a signal that fades and comes back leaves nothing in the parameters\n";
+        out += "# recall = false                        # smaller; a signal that fades and comes back leaves its mark for some tens of periods\n";
         out += "\n# [correction]\n";
         out += "# channel_skew_s = 1e-6                 # sin is sampled so much later than cos\n";
         out += "# [[correction.harmonics]]              # one for each order: amplitude * cos(order * angle + phase) more\n";

@@ -6,7 +6,7 @@
 // far, is 2^-4 at first and 2^-10 after 6 gears.
 // After S. Balemi, "Automatic calibration of sinusoidal encoder signals", IFAC 2005; equation numbers are the paper's.
 //
-// Design dc4787841aa1: 16 products on 1 multiplier, 19 clocks per sample.
+// Design 467251f27415: 16 products on 1 multiplier, 20 clocks per sample.
 //
 // Formats: sW.F is a two's complement number of W bits, F of them behind the point; uW.F has no sign and is kept here
 // with a zero in front, so that every number is signed. Angles are in turns of a scale period. A signal that saturates
@@ -25,8 +25,8 @@
 //      |                          | sin_inside cos_address cos_inside cos_negative theta_1 theta_3 theta_5 last_gear
 //      |                          | periods_modulo_4 sector sector_relative period_ahead period_behind a_period_away
 //      |                          | reach_ahead reach_behind unseen_ahead may_add_ahead sector_ahead unseen_behind
-//      |                          | may_add_behind gamma_settled nominal held_long restart_cause quiet gear_done
-//      |                          | hold_begins hold_ends periods_count_ends
+//      |                          | may_add_behind gamma_settled proven_stand nominal held_long restart_cause
+//      |                          | last_gamma_gear quiet gear_done hold_begins hold_ends periods_count_ends
 //    1 | loop_ab * error_previous | sin_value sin_slope y_c y_s counting whole_period sector_behind travel_clear
 //      |                          | sector_added new_sector still_used_ahead used_up_ahead still_used_behind
 //      |                          | used_up_behind y_5 lost_before
@@ -44,14 +44,18 @@
 //   12 | sin_hat * rho_limited    | e_in_window in_window level_step e_change sample_counts counted residual_large
 //      |                          | disturbed_lately disturbed_or_held radius_large rho_c period_tick disturbed_period
 //      |                          | gamma_restart gear_passed gamma_shift gear_periods_up periods_end within_period
-//      |                          | still_held
-//   13 | loop_a * e_change        | level_moved level_full level_empty narrower loop_gear_up full_in_last_gear hold
-//      |                          | fresh rho_s gradient_2 step_2 gamma_gear_up gear_periods_again holding lock_falls
+//      |                          | still_held last_gear_passed
+//   13 | loop_a * e_change        | level_moved level_full level_empty narrower loop_gear_up full_in_last_gear
+//      |                          | hold_cause hold recall fresh rho_s gradient_2 step_2 gamma_gear_up
+//      |                          | gear_periods_again holding restart_risen recall_again recall_any proved remember
+//      |                          | remember_recent return_ends return_goes_on signal_changed still_known fades
+//      |                          | fade_ends lock_falls
 //   14 | y_c * rho_c              | kick gradient_4 step_4
 //   15 | y_s * rho_s              | speed backwards not_forwards gradient_1 step_1
 //   16 | y_5 * rho_s              | alpha_hat_sum carry count_before gradient_3 step_3
 //   17 | -                        | gradient_5 step_5
 //   18 | -                        |
+//   19 | -                        |
 //
 // Coefficients, by name in the comments below:
 //     loop_a                 0.014132976531982422    Loop coefficient a, turns per radian.
@@ -97,7 +101,7 @@
 module optical (
     input  wire clk, // every register changes at the rising edge
     input  wire rst_n, // asynchronous reset, active low
-    input  wire sample_valid, // one clock per sample, 19 clocks apart or more; the inputs below are valid
+    input  wire sample_valid, // one clock per sample, 20 clocks apart or more; the inputs below are valid
     input  wire [11:0] adc_cos, // code of the cosine channel, two's complement
     input  wire [11:0] adc_sin, // code of the sine channel, two's complement
     input  wire preset, // this sample's period becomes number 0; clears lock_lost
@@ -133,11 +137,25 @@ module optical (
     reg signed [7:0] travel_origin; // Position, modulo 4 periods, where the map of sectors was last cleared.
     reg signed [7:0] travel_low; // Lowest sector seen since, relative to the origin.
     reg signed [7:0] travel_high; // Highest sector seen since, relative to the origin.
+    reg signed [25:0] recent_1; // θ1 less its nominal value at the last end of some quiet periods of travel.
+    reg signed [24:0] recent_2; // θ2 less its nominal value at the last end of some quiet periods of travel.
+    reg signed [25:0] recent_3; // θ3 less its nominal value at the last end of some quiet periods of travel.
+    reg signed [24:0] recent_4; // θ4 less its nominal value at the last end of some quiet periods of travel.
+    reg signed [24:0] recent_5; // θ5 less its nominal value at the last end of some quiet periods of travel.
+    reg signed [25:0] proven_1; // θ1 less its nominal value at the end before.
+    reg signed [24:0] proven_2; // θ2 less its nominal value at the end before.
+    reg signed [25:0] proven_3; // θ3 less its nominal value at the end before.
+    reg signed [24:0] proven_4; // θ4 less its nominal value at the end before.
+    reg signed [24:0] proven_5; // θ5 less its nominal value at the end before.
     reg ahead_used; // The sectors ahead of the origin were used right before the map was cleared.
     reg behind_used; // The sectors behind the origin were used right before the map was cleared.
     reg disturbed; // The residual was large in this period of travel.
     reg risen; // The radius was too large in this period of travel.
     reg held; // The residual was large in the period before: the parameters are held.
+    reg returning; // The parameters are held until the periods of a gear have passed quietly, too (recall).
+    reg fading; // The search began again where the residual had stayed: the signal may have faded (recall).
+    reg known; // Parameters have been remembered in the last gear (recall).
+    reg halfway; // Half of the way to where they are remembered next (recall).
 
     // The sample's inputs, held
     reg signed [11:0] adc_cos_held; // ADC code of the cosine channel, as a fraction of the ADC's range.
@@ -201,6 +219,7 @@ module optical (
     reg sector_ahead;
     reg unseen_behind;
     reg may_add_behind;
+    reg not_counting;
     reg travel_clear;
     reg new_sector;
     reg signed [7:0] travel_low_next;
@@ -215,6 +234,8 @@ module optical (
     reg rho_too_large;
     reg residual_large;
     reg disturbed_or_held;
+    reg not_fading;
+    reg proven_stand;
     reg radius_large;
     reg fresh;
     reg signed [14:0] rho_limited;
@@ -223,30 +244,43 @@ module optical (
     reg signed [12:0] y_5;
     reg nominal;
     reg signed [25:0] step_5;
+    reg signed [24:0] theta_5_deviation_next_chosen;
     reg signed [22:0] step_1;
-    reg signed [25:0] theta_1_deviation_next;
+    reg signed [25:0] theta_1_deviation_next_chosen;
     reg signed [21:0] step_2;
-    reg signed [24:0] theta_2_deviation_next;
+    reg signed [24:0] theta_2_deviation_next_chosen;
     reg signed [22:0] step_3;
-    reg signed [25:0] theta_3_deviation_next;
+    reg signed [25:0] theta_3_deviation_next_chosen;
     reg signed [21:0] step_4;
-    reg signed [24:0] theta_4_deviation_next;
+    reg signed [24:0] theta_4_deviation_next_chosen;
+    reg held_long;
     reg restart_cause;
     reg disturbed_period;
     reg gamma_restart;
     reg gamma_gear_below_gamma_gear_last;
+    reg last_gamma_gear;
     reg gear_done;
+    reg gear_passed;
     reg gamma_shift;
     reg signed [1:0] gear_periods_up;
     reg periods_count_ends;
     reg periods_end;
     reg within_period;
     reg still_held;
-    reg signed [3:0] gamma_gear_next;
     reg signed [5:0] gear_periods_next;
     reg disturbed_next;
     reg risen_next;
     reg held_next;
+    reg recall_any;
+    reg signed [3:0] gamma_gear_next;
+    reg last_gear_passed;
+    reg remember;
+    reg remember_recent;
+    reg still_known;
+    reg returning_next;
+    reg fading_next;
+    reg halfway_next;
+    reg known_next;
     reg lost_before;
     reg lock_falls;
     reg lock_lost_next;
@@ -256,10 +290,10 @@ module optical (
     reg signed [17:0] operand_b_0;
     reg signed [35:0] product_0;
 
-    // Step counter: a sample starts in step 0 and takes 19 steps
+    // Step counter: a sample starts in step 0 and takes 20 steps
     reg [4:0] step;
     wire start = (step == 5'd0) & sample_valid;
-    wire last = step == 5'd18;
+    wire last = step == 5'd19;
 
     always @(posedge clk or negedge rst_n)
         if (!rst_n) begin
@@ -512,10 +546,11 @@ module optical (
     wire may_add_behind_now = // step 0, with minus_quarter
         ~(($signed(~sector_relative_now[7:4]) < 4'sd1) & behind_used);
     wire sector_behind = unseen_behind & may_add_behind; // step 1
-    wire travel_clear_now = whole_period_now | ~counting_now; // step 1
+    wire not_counting_now = ~counting_now; // step 1
+    wire travel_clear_now = whole_period_now | not_counting_now; // step 1
     wire sector_added = sector_ahead | sector_behind; // step 1
     wire new_sector_now = sector_added | travel_clear_now; // step 1
-    wire signed [7:0] travel_origin_next = travel_clear ? sector : travel_origin; // s8.6, step 18
+    wire signed [7:0] travel_origin_next = travel_clear ? sector : travel_origin; // s8.6, step 19
     wire signed [7:0] travel_low_next_chosen = sector_behind ? sector_relative : travel_low; // s8.6, step 1
     wire signed [7:0] travel_low_next_now = travel_clear_now ? 8'sd0 : travel_low_next_chosen; // s8.6, step 1
     wire signed [7:0] travel_high_next_chosen = sector_ahead ? sector_relative : travel_high; // s8.6, step 1
@@ -542,7 +577,11 @@ module optical (
     wire residual_large_now = rho_too_large & counted_now; // step 12
     wire disturbed_lately = residual_large_now | disturbed; // step 12
     wire disturbed_or_held_now = disturbed_lately | held; // step 12
-    wire hold = (disturbed_or_held | level_moved_below_lock_full) & gamma_settled; // step 13
+    wire hold_cause = (disturbed_or_held | level_moved_below_lock_full) | returning; // step 13
+    wire hold = hold_cause & gamma_settled; // step 13
+    wire not_fading_now = ~fading; // step 0
+    wire proven_stand_now = known & not_fading_now; // step 0
+    wire recall = hold & proven_stand; // step 13
     wire radius_large_now = rho_high & counted_now; // step 12
     wire fresh_now = counted & ~hold; // step 13
 
@@ -576,7 +615,8 @@ module optical (
         ((&theta_5_deviation_next_difference[26:24]) | ~(|theta_5_deviation_next_difference[26:24]))
             ? theta_5_deviation_next_difference[24:0]
             : {theta_5_deviation_next_difference[26], {24{~theta_5_deviation_next_difference[26]}}};
-    wire signed [24:0] theta_5_deviation_next = nominal ? 25'sd0 : theta_5_deviation_next_bits; // s25.26, step 18
+    wire signed [24:0] theta_5_deviation_next_chosen_now = // s25.26, step 18
+        nominal ? 25'sd0 : theta_5_deviation_next_bits;
     wire signed [26:0] gradient_1 = y_c_times_rho_c; // s27.30, step 15
     wire signed [25:0] step_1_geared = shifted_1; // s26.26, step 15
     wire signed [22:0] step_1_now = fresh ? step_1_geared[22:0] : 23'sd0; // s23.26, step 15
@@ -586,7 +626,8 @@ module optical (
         ((&theta_1_deviation_next_difference[26:25]) | ~(|theta_1_deviation_next_difference[26:25]))
             ? theta_1_deviation_next_difference[25:0]
             : {theta_1_deviation_next_difference[26], {25{~theta_1_deviation_next_difference[26]}}};
-    wire signed [25:0] theta_1_deviation_next_now = nominal ? 26'sd0 : theta_1_deviation_next_bits; // s26.26, step 16
+    wire signed [25:0] theta_1_deviation_next_chosen_now = // s26.26, step 16
+        nominal ? 26'sd0 : theta_1_deviation_next_bits;
     wire signed [15:0] gradient_2 = rho_c[15:0]; // s16.20, step 13
     wire signed [25:0] step_2_geared = shifted_1; // s26.26, step 13
     wire signed [21:0] step_2_now = fresh_now ? step_2_geared[21:0] : 22'sd0; // s22.26, step 13
@@ -596,7 +637,8 @@ module optical (
         ((&theta_2_deviation_next_difference[25:24]) | ~(|theta_2_deviation_next_difference[25:24]))
             ? theta_2_deviation_next_difference[24:0]
             : {theta_2_deviation_next_difference[25], {24{~theta_2_deviation_next_difference[25]}}};
-    wire signed [24:0] theta_2_deviation_next_now = nominal ? 25'sd0 : theta_2_deviation_next_bits; // s25.26, step 14
+    wire signed [24:0] theta_2_deviation_next_chosen_now = // s25.26, step 14
+        nominal ? 25'sd0 : theta_2_deviation_next_bits;
     wire signed [26:0] gradient_3 = y_s_times_rho_s; // s27.30, step 16
     wire signed [25:0] step_3_geared = shifted_1; // s26.26, step 16
     wire signed [22:0] step_3_now = fresh ? step_3_geared[22:0] : 23'sd0; // s23.26, step 16
@@ -606,7 +648,8 @@ module optical (
         ((&theta_3_deviation_next_difference[26:25]) | ~(|theta_3_deviation_next_difference[26:25]))
             ? theta_3_deviation_next_difference[25:0]
             : {theta_3_deviation_next_difference[26], {25{~theta_3_deviation_next_difference[26]}}};
-    wire signed [25:0] theta_3_deviation_next_now = nominal ? 26'sd0 : theta_3_deviation_next_bits; // s26.26, step 17
+    wire signed [25:0] theta_3_deviation_next_chosen_now = // s26.26, step 17
+        nominal ? 26'sd0 : theta_3_deviation_next_bits;
     wire signed [15:0] gradient_4 = rho_s[15:0]; // s16.20, step 14
     wire signed [25:0] step_4_geared = shifted_1; // s26.26, step 14
     wire signed [21:0] step_4_now = fresh ? step_4_geared[21:0] : 22'sd0; // s22.26, step 14
@@ -616,23 +659,25 @@ module optical (
         ((&theta_4_deviation_next_difference[25:24]) | ~(|theta_4_deviation_next_difference[25:24]))
             ? theta_4_deviation_next_difference[24:0]
             : {theta_4_deviation_next_difference[25], {24{~theta_4_deviation_next_difference[25]}}};
-    wire signed [24:0] theta_4_deviation_next_now = nominal ? 25'sd0 : theta_4_deviation_next_bits; // s25.26, step 15
+    wire signed [24:0] theta_4_deviation_next_chosen_now = // s25.26, step 15
+        nominal ? 25'sd0 : theta_4_deviation_next_bits;
 
     // Gears of gamma
     //   gamma halves after some periods of travel, starts again when the residual stays large
-    wire held_long = held & ~(gear_periods < 6'sh1f); // step 0, with held_periods_last
-    wire restart_cause_now = (gamma_gear_below_gamma_gear_settled | risen) | held_long; // step 0
+    wire held_long_now = held & ~(gear_periods < 6'sh1f); // step 0, with held_periods_last
+    wire restart_cause_now = (gamma_gear_below_gamma_gear_settled | risen) | held_long_now; // step 0
     wire disturbed_period_now = period_tick & disturbed; // step 12
     wire gamma_restart_now = disturbed_period_now & restart_cause; // step 12
     wire gamma_gear_below_gamma_gear_last_now = $signed(gamma_gear[3:1]) < 3'sd3; // step 0, with gamma_gear_last
+    wire last_gamma_gear_now = ~gamma_gear_below_gamma_gear_last_now; // step 0
     wire quiet = ~(disturbed | held); // step 0
     wire gear_done_now = ~(gear_periods < 6'sd3) & quiet; // step 0, with gear_periods_last
-    wire gear_passed = period_tick & gear_done; // step 12
-    wire gamma_shift_now = gear_passed & gamma_gear_below_gamma_gear_last; // step 12
+    wire gear_passed_now = period_tick & gear_done; // step 12
+    wire gamma_shift_now = gear_passed_now & gamma_gear_below_gamma_gear_last; // step 12
     wire signed [1:0] gamma_gear_up = gamma_shift ? 2'sd1 : 2'sd0; // s2.0, step 13
     wire signed [4:0] gamma_gear_next_sum = // s5.0, step 13
         {gamma_gear[3], gamma_gear} + {{3{gamma_gear_up[1]}}, gamma_gear_up};
-    wire signed [3:0] gamma_gear_next_bits = {1'b0, gamma_gear_next_sum[2:0]}; // u3.0, step 13
+    wire signed [3:0] gamma_gear_next_bits_2 = {1'b0, gamma_gear_next_sum[2:0]}; // u3.0, step 13
     wire signed [1:0] gear_periods_up_now = period_tick ? 2'sd1 : 2'sd0; // s2.0, step 12
     wire signed [6:0] gear_periods_next_sum = // s7.0, step 13
         {gear_periods[5], gear_periods} + {{5{gear_periods_up[1]}}, gear_periods_up};
@@ -641,17 +686,61 @@ module optical (
     wire hold_ends = held & ~disturbed; // step 0
     wire periods_count_ends_now = (gear_done_now | hold_begins) | hold_ends; // step 0
     wire periods_end_now = period_tick & periods_count_ends; // step 12
-    wire gear_periods_again = periods_end | gamma_restart; // step 13
+    wire gear_periods_again = (periods_end | gamma_restart) | not_counting; // step 13
     wire within_period_now = ~period_tick & counting; // step 12
     wire still_held_now = held & ~period_tick; // step 12
     wire holding = (disturbed_period & ~gamma_restart) | still_held; // step 13
-    wire signed [3:0] gamma_gear_next_chosen = gamma_restart ? 4'sd0 : gamma_gear_next_bits; // s4.0, step 13
-    wire signed [3:0] gamma_gear_next_now = gamma_gear_next_chosen; // u3.0, step 13
+    wire signed [3:0] gamma_gear_next_chosen_2 = gamma_restart ? 4'sd0 : gamma_gear_next_bits_2; // s4.0, step 13
+    wire signed [3:0] gamma_gear_next_bits = gamma_gear_next_chosen_2; // u3.0, step 13
     wire signed [5:0] gear_periods_next_chosen = gear_periods_again ? 6'sd0 : gear_periods_next_bits; // s6.0, step 13
     wire signed [5:0] gear_periods_next_now = gear_periods_next_chosen; // u5.0, step 13
     wire disturbed_next_now = residual_large | (disturbed & within_period); // step 13
     wire risen_next_now = radius_large | (risen & within_period); // step 13
     wire held_next_now = holding & counting; // step 13
+
+    // Recall
+    //   held where it is known, or back: theta = proven; after twice gear_periods quiet periods in the last gear:
+    //   proven' = recent, recent' = theta
+    wire restart_risen = gamma_restart & risen; // step 13
+    wire recall_again = ((restart_risen & fading) | nominal) & known; // step 13
+    wire recall_any_now = recall | recall_again; // step 13
+    wire signed [25:0] theta_1_deviation_next = // s26.26, step 19
+        recall_any ? proven_1 : theta_1_deviation_next_chosen;
+    wire signed [24:0] theta_2_deviation_next = // s25.26, step 19
+        recall_any ? proven_2 : theta_2_deviation_next_chosen;
+    wire signed [25:0] theta_3_deviation_next = // s26.26, step 19
+        recall_any ? proven_3 : theta_3_deviation_next_chosen;
+    wire signed [24:0] theta_4_deviation_next = // s25.26, step 19
+        recall_any ? proven_4 : theta_4_deviation_next_chosen;
+    wire signed [24:0] theta_5_deviation_next = // s25.26, step 19
+        recall_any ? proven_5 : theta_5_deviation_next_chosen;
+    wire signed [3:0] gamma_gear_next_chosen = // s4.0, step 13, with gamma_gear_last
+        recall_again ? 4'sd6 : gamma_gear_next_bits;
+    wire signed [3:0] gamma_gear_next_now = gamma_gear_next_chosen; // u3.0, step 13
+    wire last_gear_passed_now = gear_passed_now & last_gamma_gear; // step 12
+    wire proved = last_gear_passed & halfway; // step 13
+    wire remember_now = proved & ~recall; // step 13
+    wire remember_recent_now = (gamma_shift | proved) | recall_any_now; // step 13
+    wire return_ends = gear_passed | gamma_restart; // step 13
+    wire return_goes_on = recall & ~return_ends; // step 13
+    wire signal_changed = restart_risen & not_fading; // step 13
+    wire still_known_now = known & ~signal_changed; // step 13
+    wire fades = (gamma_restart & held_long) | fading; // step 13
+    wire signed [25:0] recent_1_next = remember_recent ? theta_1_deviation_next : recent_1; // s26.26, step 19
+    wire signed [24:0] recent_2_next = remember_recent ? theta_2_deviation_next : recent_2; // s25.26, step 19
+    wire signed [25:0] recent_3_next = remember_recent ? theta_3_deviation_next : recent_3; // s26.26, step 19
+    wire signed [24:0] recent_4_next = remember_recent ? theta_4_deviation_next : recent_4; // s25.26, step 19
+    wire signed [24:0] recent_5_next = remember_recent ? theta_5_deviation_next : recent_5; // s25.26, step 19
+    wire signed [25:0] proven_1_next = remember ? recent_1 : proven_1; // s26.26, step 19
+    wire signed [24:0] proven_2_next = remember ? recent_2 : proven_2; // s25.26, step 19
+    wire signed [25:0] proven_3_next = remember ? recent_3 : proven_3; // s26.26, step 19
+    wire signed [24:0] proven_4_next = remember ? recent_4 : proven_4; // s25.26, step 19
+    wire signed [24:0] proven_5_next = remember ? recent_5 : proven_5; // s25.26, step 19
+    wire returning_next_now = return_goes_on | recall_again; // step 13
+    wire fade_ends = recall_again | proved; // step 13
+    wire fading_next_now = fades & ~fade_ends; // step 13
+    wire halfway_next_now = halfway ^ last_gear_passed; // step 13
+    wire known_next_now = still_known | remember; // step 14
 
     // Flags
     //   what the machine control needs to know
@@ -729,9 +818,13 @@ module optical (
             unseen_behind <= unseen_behind_now;
             may_add_behind <= may_add_behind_now;
             gamma_settled <= gamma_settled_now;
+            not_fading <= not_fading_now;
+            proven_stand <= proven_stand_now;
             nominal <= nominal_now;
+            held_long <= held_long_now;
             restart_cause <= restart_cause_now;
             gamma_gear_below_gamma_gear_last <= gamma_gear_below_gamma_gear_last_now;
+            last_gamma_gear <= last_gamma_gear_now;
             gear_done <= gear_done_now;
             periods_count_ends <= periods_count_ends_now;
             theta_2 <= theta_2_deviation;
@@ -742,6 +835,7 @@ module optical (
             sin_slope <= sin_slope_now;
             counting <= counting_now;
             whole_period <= whole_period_now;
+            not_counting <= not_counting_now;
             travel_clear <= travel_clear_now;
             new_sector <= new_sector_now;
             travel_low_next <= travel_low_next_now;
@@ -809,11 +903,13 @@ module optical (
             rho_c <= rho_c_now;
             disturbed_period <= disturbed_period_now;
             gamma_restart <= gamma_restart_now;
+            gear_passed <= gear_passed_now;
             gamma_shift <= gamma_shift_now;
             gear_periods_up <= gear_periods_up_now;
             periods_end <= periods_end_now;
             within_period <= within_period_now;
             still_held <= still_held_now;
+            last_gear_passed <= last_gear_passed_now;
         end
         if (step == 5'd13) begin
             level_empty <= level_empty_now;
@@ -823,18 +919,26 @@ module optical (
             fresh <= fresh_now;
             rho_s <= rho_s_now;
             step_2 <= step_2_now;
-            gamma_gear_next <= gamma_gear_next_now;
             gear_periods_next <= gear_periods_next_now;
             disturbed_next <= disturbed_next_now;
             risen_next <= risen_next_now;
             held_next <= held_next_now;
+            recall_any <= recall_any_now;
+            gamma_gear_next <= gamma_gear_next_now;
+            remember <= remember_now;
+            remember_recent <= remember_recent_now;
+            still_known <= still_known_now;
+            returning_next <= returning_next_now;
+            fading_next <= fading_next_now;
+            halfway_next <= halfway_next_now;
             lock_falls <= lock_falls_now;
         end
         if (step == 5'd14) begin
             loop_gear_next <= loop_gear_next_now;
             kick <= kick_now;
-            theta_2_deviation_next <= theta_2_deviation_next_now;
+            theta_2_deviation_next_chosen <= theta_2_deviation_next_chosen_now;
             step_4 <= step_4_now;
+            known_next <= known_next_now;
             lock_lost_next <= lock_lost_next_now;
         end
         if (step == 5'd15) begin
@@ -842,18 +946,21 @@ module optical (
             backwards <= backwards_now;
             not_forwards <= not_forwards_now;
             step_1 <= step_1_now;
-            theta_4_deviation_next <= theta_4_deviation_next_now;
+            theta_4_deviation_next_chosen <= theta_4_deviation_next_chosen_now;
         end
         if (step == 5'd16) begin
             alpha_hat_next <= alpha_hat_next_now;
             count_next <= count_next_now;
             direction_next <= direction_next_now;
-            theta_1_deviation_next <= theta_1_deviation_next_now;
+            theta_1_deviation_next_chosen <= theta_1_deviation_next_chosen_now;
             step_3 <= step_3_now;
         end
         if (step == 5'd17) begin
             step_5 <= step_5_now;
-            theta_3_deviation_next <= theta_3_deviation_next_now;
+            theta_3_deviation_next_chosen <= theta_3_deviation_next_chosen_now;
+        end
+        if (step == 5'd18) begin
+            theta_5_deviation_next_chosen <= theta_5_deviation_next_chosen_now;
         end
     end
 
@@ -876,6 +983,16 @@ module optical (
             travel_origin <= 0;
             travel_low <= 0;
             travel_high <= 0;
+            recent_1 <= 0;
+            recent_2 <= 0;
+            recent_3 <= 0;
+            recent_4 <= 0;
+            recent_5 <= 0;
+            proven_1 <= 0;
+            proven_2 <= 0;
+            proven_3 <= 0;
+            proven_4 <= 0;
+            proven_5 <= 0;
             locked <= 0;
             lock_lost <= 0;
             signal_lost <= 0;
@@ -885,6 +1002,10 @@ module optical (
             disturbed <= 0;
             risen <= 0;
             held <= 0;
+            returning <= 0;
+            fading <= 0;
+            known <= 0;
+            halfway <= 0;
         end else if (last) begin
             alpha_hat <= alpha_hat_next;
             count <= count_next;
@@ -902,6 +1023,16 @@ module optical (
             travel_origin <= travel_origin_next;
             travel_low <= travel_low_next;
             travel_high <= travel_high_next;
+            recent_1 <= recent_1_next;
+            recent_2 <= recent_2_next;
+            recent_3 <= recent_3_next;
+            recent_4 <= recent_4_next;
+            recent_5 <= recent_5_next;
+            proven_1 <= proven_1_next;
+            proven_2 <= proven_2_next;
+            proven_3 <= proven_3_next;
+            proven_4 <= proven_4_next;
+            proven_5 <= proven_5_next;
             locked <= locked_next;
             lock_lost <= lock_lost_next;
             signal_lost <= signal_lost_next;
@@ -911,6 +1042,10 @@ module optical (
             disturbed <= disturbed_next;
             risen <= risen_next;
             held <= held_next;
+            returning <= returning_next;
+            fading <= fading_next;
+            known <= known_next;
+            halfway <= halfway_next;
         end
 
     assign position = {count, alpha_hat[26:0]};

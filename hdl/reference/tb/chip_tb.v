@@ -88,6 +88,16 @@ module chip_tb;
     reg signed [7:0] expect_travel_origin;
     reg signed [7:0] expect_travel_low;
     reg signed [7:0] expect_travel_high;
+    reg signed [25:0] expect_recent_1;
+    reg signed [24:0] expect_recent_2;
+    reg signed [25:0] expect_recent_3;
+    reg signed [24:0] expect_recent_4;
+    reg signed [24:0] expect_recent_5;
+    reg signed [25:0] expect_proven_1;
+    reg signed [24:0] expect_proven_2;
+    reg signed [25:0] expect_proven_3;
+    reg signed [24:0] expect_proven_4;
+    reg signed [24:0] expect_proven_5;
     reg expect_locked;
     reg expect_lock_lost;
     reg expect_signal_lost;
@@ -97,6 +107,10 @@ module chip_tb;
     reg expect_disturbed;
     reg expect_risen;
     reg expect_held;
+    reg expect_returning;
+    reg expect_fading;
+    reg expect_known;
+    reg expect_halfway;
     reg [58:0] expect_position;
 
     integer file;
@@ -158,18 +172,31 @@ module chip_tb;
                 got = got + $fscanf(file, "%h %h %h",
                     expect_gamma_gear, expect_gear_periods, expect_travel_origin);
                 got = got + $fscanf(file, "%h %h %h",
-                    expect_travel_low, expect_travel_high, expect_locked);
+                    expect_travel_low, expect_travel_high, expect_recent_1);
                 got = got + $fscanf(file, "%h %h %h",
-                    expect_lock_lost, expect_signal_lost, expect_direction);
+                    expect_recent_2, expect_recent_3, expect_recent_4);
                 got = got + $fscanf(file, "%h %h %h",
-                    expect_ahead_used, expect_behind_used, expect_disturbed);
-                got = got + $fscanf(file, "%h %h",
-                    expect_risen, expect_held);
+                    expect_recent_5, expect_proven_1, expect_proven_2);
+                got = got + $fscanf(file, "%h %h %h",
+                    expect_proven_3, expect_proven_4, expect_proven_5);
+                got = got + $fscanf(file, "%h %h %h",
+                    expect_locked, expect_lock_lost, expect_signal_lost);
+                got = got + $fscanf(file, "%h %h %h",
+                    expect_direction, expect_ahead_used, expect_behind_used);
+                got = got + $fscanf(file, "%h %h %h",
+                    expect_disturbed, expect_risen, expect_held);
+                got = got + $fscanf(file, "%h %h %h",
+                    expect_returning, expect_fading, expect_known);
+                got = got + $fscanf(file, "%h",
+                    expect_halfway);
                 // No wire: Verilator does not notice what $fscanf changes.
                 expect_position = {expect_count, expect_alpha_hat[26:0]};
-                if (got != 49) begin
+                if (got != 63) begin
                     bad = 1'b1;
                     $display("row %0d of %0s cannot be read", played, name);
+                end else if (sample != played) begin
+                    bad = 1'b1;
+                    $display("row %0d of %0s is of sample %0d", played, name, sample);
                 end else begin
                     sample_valid = 1'b1;
                     @(negedge clk);
@@ -181,14 +208,14 @@ module chip_tb;
                     calibrate = ~calibrate;
                     waited = 1;
                     // The watchdog: a chip that hangs is late.
-                    while (!valid && waited <= 19) begin
+                    while (!valid && waited <= 20) begin
                         // A strobe that comes too early must not matter either.
                         sample_valid = sample[2:0] == 3'd5 && waited == 1;
                         @(negedge clk);
                         sample_valid = 1'b0;
                         waited = waited + 1;
                     end
-                    if (waited != 19) check_failed("latency", 19, {96'd0, waited});
+                    if (waited != 20) check_failed("latency", 20, {96'd0, waited});
                     // In the order of the data flow: the first that differs is nearest to the cause.
                     if (theta_2 !== expect_theta_2)
                         check_failed("theta_2",
@@ -289,24 +316,6 @@ module chip_tb;
                     if (chip.rho_s !== expect_rho_s)
                         check_failed("rho_s",
                             {110'd0, expect_rho_s}, {110'd0, chip.rho_s});
-                    if (chip.theta_5_deviation !== expect_theta_5_deviation)
-                        check_failed("theta_5_deviation",
-                            {103'd0, expect_theta_5_deviation}, {103'd0, chip.theta_5_deviation});
-                    if (chip.theta_1_deviation !== expect_theta_1_deviation)
-                        check_failed("theta_1_deviation",
-                            {102'd0, expect_theta_1_deviation}, {102'd0, chip.theta_1_deviation});
-                    if (chip.theta_2_deviation !== expect_theta_2_deviation)
-                        check_failed("theta_2_deviation",
-                            {103'd0, expect_theta_2_deviation}, {103'd0, chip.theta_2_deviation});
-                    if (chip.theta_3_deviation !== expect_theta_3_deviation)
-                        check_failed("theta_3_deviation",
-                            {102'd0, expect_theta_3_deviation}, {102'd0, chip.theta_3_deviation});
-                    if (chip.theta_4_deviation !== expect_theta_4_deviation)
-                        check_failed("theta_4_deviation",
-                            {103'd0, expect_theta_4_deviation}, {103'd0, chip.theta_4_deviation});
-                    if (chip.gamma_gear !== expect_gamma_gear)
-                        check_failed("gamma_gear",
-                            {124'd0, expect_gamma_gear}, {124'd0, chip.gamma_gear});
                     if (chip.gear_periods !== expect_gear_periods)
                         check_failed("gear_periods",
                             {122'd0, expect_gear_periods}, {122'd0, chip.gear_periods});
@@ -319,6 +328,66 @@ module chip_tb;
                     if (chip.held !== expect_held)
                         check_failed("held",
                             {127'd0, expect_held}, {127'd0, chip.held});
+                    if (chip.theta_1_deviation !== expect_theta_1_deviation)
+                        check_failed("theta_1_deviation",
+                            {102'd0, expect_theta_1_deviation}, {102'd0, chip.theta_1_deviation});
+                    if (chip.theta_2_deviation !== expect_theta_2_deviation)
+                        check_failed("theta_2_deviation",
+                            {103'd0, expect_theta_2_deviation}, {103'd0, chip.theta_2_deviation});
+                    if (chip.theta_3_deviation !== expect_theta_3_deviation)
+                        check_failed("theta_3_deviation",
+                            {102'd0, expect_theta_3_deviation}, {102'd0, chip.theta_3_deviation});
+                    if (chip.theta_4_deviation !== expect_theta_4_deviation)
+                        check_failed("theta_4_deviation",
+                            {103'd0, expect_theta_4_deviation}, {103'd0, chip.theta_4_deviation});
+                    if (chip.theta_5_deviation !== expect_theta_5_deviation)
+                        check_failed("theta_5_deviation",
+                            {103'd0, expect_theta_5_deviation}, {103'd0, chip.theta_5_deviation});
+                    if (chip.gamma_gear !== expect_gamma_gear)
+                        check_failed("gamma_gear",
+                            {124'd0, expect_gamma_gear}, {124'd0, chip.gamma_gear});
+                    if (chip.recent_1 !== expect_recent_1)
+                        check_failed("recent_1",
+                            {102'd0, expect_recent_1}, {102'd0, chip.recent_1});
+                    if (chip.recent_2 !== expect_recent_2)
+                        check_failed("recent_2",
+                            {103'd0, expect_recent_2}, {103'd0, chip.recent_2});
+                    if (chip.recent_3 !== expect_recent_3)
+                        check_failed("recent_3",
+                            {102'd0, expect_recent_3}, {102'd0, chip.recent_3});
+                    if (chip.recent_4 !== expect_recent_4)
+                        check_failed("recent_4",
+                            {103'd0, expect_recent_4}, {103'd0, chip.recent_4});
+                    if (chip.recent_5 !== expect_recent_5)
+                        check_failed("recent_5",
+                            {103'd0, expect_recent_5}, {103'd0, chip.recent_5});
+                    if (chip.proven_1 !== expect_proven_1)
+                        check_failed("proven_1",
+                            {102'd0, expect_proven_1}, {102'd0, chip.proven_1});
+                    if (chip.proven_2 !== expect_proven_2)
+                        check_failed("proven_2",
+                            {103'd0, expect_proven_2}, {103'd0, chip.proven_2});
+                    if (chip.proven_3 !== expect_proven_3)
+                        check_failed("proven_3",
+                            {102'd0, expect_proven_3}, {102'd0, chip.proven_3});
+                    if (chip.proven_4 !== expect_proven_4)
+                        check_failed("proven_4",
+                            {103'd0, expect_proven_4}, {103'd0, chip.proven_4});
+                    if (chip.proven_5 !== expect_proven_5)
+                        check_failed("proven_5",
+                            {103'd0, expect_proven_5}, {103'd0, chip.proven_5});
+                    if (chip.returning !== expect_returning)
+                        check_failed("returning",
+                            {127'd0, expect_returning}, {127'd0, chip.returning});
+                    if (chip.fading !== expect_fading)
+                        check_failed("fading",
+                            {127'd0, expect_fading}, {127'd0, chip.fading});
+                    if (chip.halfway !== expect_halfway)
+                        check_failed("halfway",
+                            {127'd0, expect_halfway}, {127'd0, chip.halfway});
+                    if (chip.known !== expect_known)
+                        check_failed("known",
+                            {127'd0, expect_known}, {127'd0, chip.known});
                     if (lock_lost !== expect_lock_lost)
                         check_failed("lock_lost",
                             {127'd0, expect_lock_lost}, {127'd0, lock_lost});
@@ -326,7 +395,7 @@ module chip_tb;
                         check_failed("position", {69'd0, expect_position}, {69'd0, position});
                     // Some samples come later than they might: until then nothing moves, and valid is one clock long.
                     if (sample[1:0] == 2'd2) begin
-                        repeat (19 + 2) begin
+                        repeat (20 + 2) begin
                             @(negedge clk);
                             if (valid) check_failed("valid", 128'd0, 128'd1);
                         end

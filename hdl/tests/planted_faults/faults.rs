@@ -112,7 +112,7 @@ pub(crate) fn faults() -> Vec<Fault> {
     vec![
         swap(
             "periods that the parameters are held: one less",
-            &["wire held_long ="],
+            &["wire held_long_now ="],
             "6'sh1f",
             "6'sh1e",
         ),

@@ -254,7 +254,7 @@ fn calibration(spec: &Spec) -> Result<(), DesignError> {
             "the start is a batch of the radial residual; the sum of squares gathers another one",
         );
     }
-    if c.recall && !c.settles() {
+    if c.recall == Some(true) && !c.settles() {
         return refuse(
             "calibration.recall",
             true,
@@ -303,6 +303,7 @@ fn without(c: &Calibration) -> Result<(), DesignError> {
         let worked_out = Calibration {
             parameters: 0,
             gear_periods: Some(c.gear_periods()),
+            recall: Some(c.recall.unwrap_or(true)),
             ..c.clone()
         };
         toml::Table::try_from(worked_out).unwrap_or_default()

@@ -91,7 +91,7 @@ pub fn hold<S: Signal>(
     } else {
         suspect
     };
-    let held = suspect.and(settled).named("hold");
+    let held = suspect.named("hold_cause").and(settled).named("hold");
     // γ is in its last gear then: where it leaves it nothing is known, or the signal may be fading.
     let recall = structure.calibration.recalls().then(|| {
         let proven = state.known.and(state.fading.not()).named("proven_stand");

@@ -72,13 +72,12 @@ pub struct Structure {
 }
 
 impl Structure {
-    /// Neither bends, nor skew, nor harmonics, nor another gradient than the final form, nor another start than its gears, nor
-    /// recall.
+    /// Neither bends, nor skew, nor harmonics, nor another gradient than the final form, nor another start than its gears.
     #[must_use]
     pub fn is_plain(&self) -> bool {
         let c = &self.calibration;
         let known = self.skew.is_some() || self.harmonics.is_some();
-        c.is_linear_final() && !(known || c.starts() || c.recalls())
+        c.is_linear_final() && !(known || c.starts())
     }
 }
 

@@ -23,10 +23,10 @@ static RECALL: Formula = Formula {
 
 /// What is remembered of θ1 … θ9.
 pub struct Memory<S: Signal> {
-    /// As at the last end of so many quiet periods.
-    pub recent: [S; 9],
-    /// As at the end before it.
-    pub proven: [S; 9],
+    /// As at the last end of so many quiet periods; `None`: as before.
+    pub recent: Option<[S; 9]>,
+    /// As at the end before it; `None`: as before.
+    pub proven: Option<[S; 9]>,
     /// Parameters were recalled, and the periods of a gear have not passed quietly since.
     pub returning: S::Bool,
     /// The search began again where the residual had stayed.
@@ -47,16 +47,18 @@ pub fn recall<S: Signal>(
     structure: &Structure,
 ) -> Memory<S> {
     state.gamma_gear.begin(&RECALL);
-    let before = Memory::of(state);
     let passed = gears.passed;
     let last = last_gear(state, k);
     // The signal is back that the search had followed down, or it is lost before the search knew it again.
     let risen = gears.restart.and(state.risen).named("restart_risen");
-    let back = risen.and(before.fading);
+    let back = risen.and(state.fading);
     let lost = nominal(state, k);
-    let again = back.or(lost).and(before.known).named("recall_again");
+    let again = back.or(lost).and(state.known).named("recall_again");
     let all = recall.or(again).named("recall_any");
-    updated.theta = std::array::from_fn(|i| S::select(all, before.proven[i], updated.theta[i]));
+    if !all.is_known_false() {
+        let proven = proven(state);
+        updated.theta = std::array::from_fn(|i| S::select(all, proven[i], updated.theta[i]));
+    }
     if structure.calibration.method == CalibrationMethod::SumOfSquares {
         // A mean gradient of the way down would be the first to act on what was recalled.
         updated.gathered = updated.gathered.map(|sum| S::select(all, k.zero, sum));
@@ -69,7 +71,7 @@ pub fn recall<S: Signal>(
     gears.gear =
         S::select(again, k.gamma_gear_last, gears.gear).quantise(&structure.formats.gamma_gear);
     let quiet = passed.and(last).named("last_gear_passed");
-    let proved = quiet.and(before.halfway).named("proved");
+    let proved = quiet.and(state.halfway).named("proved");
     let older = proved.and(recall.not()).named("remember");
     // What was recent where something is recalled is of the way down.
     let newer = passed
@@ -77,80 +79,88 @@ pub fn recall<S: Signal>(
         .or(proved)
         .or(all)
         .named("remember_recent");
-    let recent = |i: usize| S::select(newer, updated.theta[i], before.recent[i]);
+    let recent = || {
+        let before = self::recent(state);
+        std::array::from_fn(|i| S::select(newer, updated.theta[i], before[i]))
+    };
+    let proven = || {
+        let (recent, before) = (self::recent(state), self::proven(state));
+        std::array::from_fn(|i| S::select(older, recent[i], before[i]))
+    };
     // What comes back over some periods is small again before it is whole.
     let returns = passed.or(gears.restart).named("return_ends").not();
     let returning = recall.and(returns).named("return_goes_on");
     // A radius that rises all at once is another signal.
-    let another = risen.and(before.fading.not()).named("signal_changed");
-    let known = before.known.and(another.not()).named("still_known");
-    let fades = gears.stayed.or(before.fading).named("fades");
+    let another = risen.and(state.fading.not()).named("signal_changed");
+    let known = state.known.and(another.not()).named("still_known");
+    let fades = gears.stayed.or(state.fading).named("fades");
     Memory {
-        recent: std::array::from_fn(recent),
-        proven: std::array::from_fn(|i| S::select(older, before.recent[i], before.proven[i])),
+        recent: (!newer.is_known_false()).then(recent),
+        proven: (!older.is_known_false()).then(proven),
         returning: returning.or(again),
         fading: fades.and(again.or(proved).named("fade_ends").not()),
-        halfway: before.halfway.xor(quiet),
+        halfway: state.halfway.xor(quiet),
         known: known.or(older),
     }
 }
 
-impl<S: Signal> Memory<S> {
-    fn of(state: &State<S>) -> Self {
-        Self {
-            recent: [
-                state.recent_1,
-                state.recent_2,
-                state.recent_3,
-                state.recent_4,
-                state.recent_5,
-                state.recent_6,
-                state.recent_7,
-                state.recent_8,
-                state.recent_9,
-            ],
-            proven: [
-                state.proven_1,
-                state.proven_2,
-                state.proven_3,
-                state.proven_4,
-                state.proven_5,
-                state.proven_6,
-                state.proven_7,
-                state.proven_8,
-                state.proven_9,
-            ],
-            returning: state.returning,
-            fading: state.fading,
-            known: state.known,
-            halfway: state.halfway,
-        }
-    }
+fn recent<S: Signal>(state: &State<S>) -> [S; 9] {
+    [
+        state.recent_1,
+        state.recent_2,
+        state.recent_3,
+        state.recent_4,
+        state.recent_5,
+        state.recent_6,
+        state.recent_7,
+        state.recent_8,
+        state.recent_9,
+    ]
+}
 
+fn proven<S: Signal>(state: &State<S>) -> [S; 9] {
+    [
+        state.proven_1,
+        state.proven_2,
+        state.proven_3,
+        state.proven_4,
+        state.proven_5,
+        state.proven_6,
+        state.proven_7,
+        state.proven_8,
+        state.proven_9,
+    ]
+}
+
+impl<S: Signal> Memory<S> {
     /// Into the registers.
     pub fn keep(self, next: &mut State<S>) {
-        [
-            next.recent_1,
-            next.recent_2,
-            next.recent_3,
-            next.recent_4,
-            next.recent_5,
-            next.recent_6,
-            next.recent_7,
-            next.recent_8,
-            next.recent_9,
-        ] = self.recent;
-        [
-            next.proven_1,
-            next.proven_2,
-            next.proven_3,
-            next.proven_4,
-            next.proven_5,
-            next.proven_6,
-            next.proven_7,
-            next.proven_8,
-            next.proven_9,
-        ] = self.proven;
+        if let Some(recent) = self.recent {
+            [
+                next.recent_1,
+                next.recent_2,
+                next.recent_3,
+                next.recent_4,
+                next.recent_5,
+                next.recent_6,
+                next.recent_7,
+                next.recent_8,
+                next.recent_9,
+            ] = recent;
+        }
+        if let Some(proven) = self.proven {
+            [
+                next.proven_1,
+                next.proven_2,
+                next.proven_3,
+                next.proven_4,
+                next.proven_5,
+                next.proven_6,
+                next.proven_7,
+                next.proven_8,
+                next.proven_9,
+            ] = proven;
+        }
         next.returning = self.returning;
         next.fading = self.fading;
         next.known = self.known;

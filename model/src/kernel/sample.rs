@@ -163,8 +163,8 @@ fn advance_of<S: Signal, const PLAIN: bool>(
         updated.theta[8] = step::moved(old, completed.step, 8, nominal, k, structure);
     }
     let mut gears = gears::gears(hold, gate, (counting, starting), state, k, structure);
-    let recalled = hold.recall.filter(|_| !PLAIN);
-    let memory = recalled
+    let memory = hold
+        .recall
         .map(|recall| recall::recall(&mut updated, recall, &mut gears, state, k, structure));
 
     rate.begin(&FLAGS);
@@ -214,9 +214,9 @@ fn advance_of<S: Signal, const PLAIN: bool>(
     if !PLAIN {
         remember(registers, &updated, completed.as_ref());
         registers.start_periods = updated.start_periods;
-        if let Some(memory) = memory {
-            memory.keep(registers);
-        }
+    }
+    if let Some(memory) = memory {
+        memory.keep(registers);
     }
     let [theta_1, theta_2, theta_3, theta_4, theta_5] = theta;
     let whole_period = travel.whole_period;

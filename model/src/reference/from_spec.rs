@@ -201,7 +201,7 @@ pub fn config(spec: &Spec) -> Result<Config, ReferenceError> {
             restart: k.restart_residual,
             settled: Calibration::SETTLED,
             periods: 32.0,
-            recall: k.recall.then_some(k.gear_periods().into()),
+            recall: k.recalls().then_some(k.gear_periods().into()),
         }),
         bound: Theta::repeat(1.0),
         start: Start::Arctangent {

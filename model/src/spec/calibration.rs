@@ -41,9 +41,9 @@ pub struct Calibration {
     #[serde(default = "hold")]
     pub hold_residual: f64,
     /// Where they begin to be held, the parameters go back to what they were some periods before: a fade of the signal takes
-    /// nothing along. Two registers for each parameter.
-    #[serde(default)]
-    pub recall: bool,
+    /// nothing along. Two registers for each parameter. Default: wherever parameters are held, see [`recalls`](Self::recalls).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub recall: Option<bool>,
 }
 
 fn five() -> u32 {
@@ -158,7 +158,7 @@ impl Calibration {
     /// Where parameters begin to be held, those of some periods before come back.
     #[must_use]
     pub fn recalls(&self) -> bool {
-        self.is_on() && self.recall
+        self.is_on() && self.recall.unwrap_or(self.settles())
     }
 
     /// γ = 2^-that of the direction that no radius shows; `None`: it is not learnt.
@@ -234,7 +234,7 @@ impl Default for Calibration {
             gear_periods: None,
             restart_residual: restart(),
             hold_residual: hold(),
-            recall: false,
+            recall: None,
         }
     }
 }
