@@ -193,7 +193,7 @@ fn attempted(
             snr: *asked,
         });
         let known = wish.reference && !effect.takes_reference_along();
-        let visible = Visible::new(&world, known)?;
+        let visible = Visible::new(&world, known, effect.moves_time())?;
         let (m, snr) = scaled(effect.as_ref(), &world, &visible, noise_seed, *asked)?;
         truths.push(HiddenCause {
             name: effect.name().into(),

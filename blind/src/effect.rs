@@ -114,6 +114,11 @@ pub(crate) trait Effect: Send + Sync {
         self.is_motion()
     }
 
+    /// Whether what follows comes a sample earlier or later.
+    fn moves_time(&self) -> bool {
+        false
+    }
+
     /// Whether it is real motion of the axis.
     fn is_motion(&self) -> bool {
         false

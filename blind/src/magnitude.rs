@@ -72,6 +72,11 @@ fn measure<'a>(
         if let Some(snr) = effect.noise_snr(m, world) {
             return snr;
         }
-        visible.difference(&simulate(world, &[(effect, m)], finish), &without)
+        let with = simulate(world, &[(effect, m)], finish);
+        if effect.moves_time() {
+            visible.moved(&with, &without)
+        } else {
+            visible.difference(&with, &without)
+        }
     }
 }

@@ -7,6 +7,7 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
+use crate::motion::State;
 use crate::rows::Rows;
 use crate::spectrum::weighted;
 use crate::world::World;
@@ -16,6 +17,8 @@ const INTERVALS: [usize; 14] = [4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 2
 
 /// What can be seen in an experiment.
 pub(crate) struct Visible {
+    /// Changes of the channels with the angle, V/rad, for each sample.
+    slope: Vec<[f64; 2]>,
     /// Unit vectors along the motion, for each sample.
     along: Vec<[f64; 2]>,
     /// Gain of each line of the tangential component.
@@ -27,11 +30,12 @@ pub(crate) struct Visible {
 }
 
 impl Visible {
-    /// Of an experiment; `known` where a reference shows the motion.
+    /// Of an experiment; `known` where a reference shows the motion. `late`: motion that comes a sample later from some
+    /// moment on is as smooth as motion is, and P takes it off; only the step at that moment is to be seen.
     ///
     /// None where the five parameters cannot be told apart from motion: the axis hardly moves.
     #[must_use]
-    pub(crate) fn new(world: &World, known: bool) -> Option<Self> {
+    pub(crate) fn new(world: &World, known: bool, late: bool) -> Option<Self> {
         let n = world.samples;
         let alpha: Vec<f64> = (0..n)
             .map(|k| world.axis(k as f64 / world.rate).alpha)
@@ -66,12 +70,13 @@ impl Visible {
         let motion = if known {
             vec![vec![1.0; n]]
         } else {
-            splines(world)
+            splines(world, late)
         };
         let calibration = tangents(world, &alpha);
         let columns = calibration.len() + motion.len();
         let mut nuisance = DMatrix::zeros(2 * n, columns);
         let mut seen = Self {
+            slope: slope.clone(),
             along,
             gain,
             nuisance: DMatrix::zeros(0, 0),
@@ -128,6 +133,15 @@ impl Visible {
         self.snr(&change)
     }
 
+    /// SNR of motion that comes earlier or later from some moments on. However far that is: it is motion wherever it is
+    /// smooth.
+    #[must_use]
+    pub(crate) fn moved(&self, with: &Rows, without: &Rows) -> f64 {
+        let pairs = || with.alpha.iter().zip(&without.alpha).zip(&self.slope);
+        let change = [0, 1].map(|c: usize| pairs().map(|((a, b), v)| (a - b) * v[c]).collect());
+        self.snr(&change)
+    }
+
     /// Along the motion (weighted), then across it.
     fn rotated(&self, change: &[Vec<f64>; 2]) -> DVector<f64> {
         let n = self.along.len();
@@ -168,12 +182,18 @@ fn tangents(world: &World, alpha: &[f64]) -> Vec<[Vec<f64>; 2]> {
         .collect()
 }
 
-/// Cubic B-splines on equal intervals, the fewest that follow the drive to a fifth of the noise.
-fn splines(world: &World) -> Vec<Vec<f64>> {
+/// Cubic B-splines on equal intervals, the fewest that follow the drive to a fifth of the noise, and where it may be late
+/// what one sample changes of it so well that all of it together is below that.
+fn splines(world: &World, late: bool) -> Vec<Vec<f64>> {
     let target = 0.2 * world.sigma() / world.mean_amplitude();
+    let all = (world.samples as f64).sqrt() / world.rate;
+    let follow = |count: &&usize| {
+        misfit(world, **count, |state| state.alpha) < target
+            && (!late || misfit(world, **count, |state| state.speed * all) < target)
+    };
     let few = *INTERVALS
         .iter()
-        .find(|count| misfit(world, **count) < target)
+        .find(follow)
         .unwrap_or(&INTERVALS[INTERVALS.len() - 1]);
     let n = world.samples;
     let mut all = vec![vec![0.0; n]; few + 3];
@@ -186,18 +206,14 @@ fn splines(world: &World) -> Vec<Vec<f64>> {
     all
 }
 
-/// Rms of what so many intervals leave of the drive, rad.
-fn misfit(world: &World, intervals: usize) -> f64 {
+/// Rms of what so many intervals leave of something of the drive, in its unit.
+fn misfit(world: &World, intervals: usize, of: impl Fn(&State) -> f64) -> f64 {
     let points = (8 * intervals).max(200);
     let columns = intervals + 3;
     let mut normal = DMatrix::<f64>::zeros(columns, columns);
     let mut right = DVector::<f64>::zeros(columns);
-    let value = |k: usize| {
-        world
-            .motion
-            .at(k as f64 / points as f64 * world.seconds())
-            .alpha
-    };
+    let moment = |k: usize| k as f64 / points as f64 * world.seconds();
+    let value = |k: usize| of(&world.motion.at(moment(k)));
     for k in 0..points {
         let (first, b) = basis(k as f64 / points as f64, intervals);
         for i in 0..4 {
@@ -273,7 +289,7 @@ mod tests {
     #[test]
     fn calibration_and_smooth_motion_are_invisible() {
         let world = world(false);
-        let visible = Visible::new(&world, false).expect("a world");
+        let visible = Visible::new(&world, false, false).expect("a world");
         let offset = change(&world, |_, _| [1e-3, 0.0]);
         assert!(visible.snr(&offset) < 1e-3, "{}", visible.snr(&offset));
         let slow = change(&world, |t, a| {
@@ -292,7 +308,9 @@ mod tests {
         let whole = |world: &World| {
             let harmonic = change(world, |_, a| [1e-3 * (5.0 * a).cos(), 0.0]);
             let size: f64 = harmonic[0].iter().map(|d| d * d).sum();
-            let seen = Visible::new(world, false).expect("a world").snr(&harmonic);
+            let seen = Visible::new(world, false, false)
+                .expect("a world")
+                .snr(&harmonic);
             seen / (size.sqrt() / world.sigma())
         };
         assert!((0.9..=1.0).contains(&whole(&still)), "{}", whole(&still));

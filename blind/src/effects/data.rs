@@ -108,6 +108,9 @@ impl Effect for Slips {
         }
     }
     fn takes_reference_along(&self) -> bool {
+        self.moves_time()
+    }
+    fn moves_time(&self) -> bool {
         !matches!(self.fate, Fate::Held)
     }
     fn limit(&self) -> f64 {
