@@ -166,6 +166,32 @@ fn isolated(channels: &[Vec<f64>; 2], which: usize, k: usize) -> bool {
     one > step
 }
 
+/// Whether a step of both channels before or after a sample explains clearly more than that the sample is off: of a jump of
+/// the time base, the samples farther away tell.
+fn steps(recording: &Recording, k: usize) -> bool {
+    /// Samples on either side, and the order of the curve through them.
+    const SIDE: usize = 8;
+    const ORDER: i32 = 5;
+    /// Share of what is left beside a sample that is off.
+    const CLEARLY: f64 = 0.7;
+    if k < SIDE || k + SIDE >= recording.samples() {
+        return false;
+    }
+    let place = |i: usize| (i as f64 - SIDE as f64) / SIDE as f64;
+    let column =
+        |f: &dyn Fn(f64) -> f64| -> Vec<f64> { (0..=2 * SIDE).map(|i| f(place(i))).collect() };
+    let left = |f: &dyn Fn(f64) -> f64| -> f64 {
+        let curve = (0..=ORDER).map(|order| column(&|x| x.powi(order)));
+        let shapes: Vec<Vec<f64>> = curve.chain([column(f)]).collect();
+        let channels = [&recording.cos, &recording.sin];
+        let rest = channels.map(|v| crate::solve::without(&v[k - SIDE..=k + SIDE], &shapes));
+        rest.iter().flatten().map(|r| r * r).sum()
+    };
+    let one = left(&|x| f64::from(x == 0.0));
+    let step = left(&|x| f64::from(x >= 0.0)).min(left(&|x| f64::from(x > 0.0)));
+    step < CLEARLY * one
+}
+
 /// Lowest and highest value.
 fn ends(values: &[f64]) -> (f64, f64) {
     let start = (f64::MAX, f64::MIN);
@@ -221,7 +247,8 @@ fn glitches(recording: &Recording, checked: &mut Checked) {
             // Across a gap in time there is no such curve.
             let step = |j: usize| recording.time_s[j] - recording.time_s[j - 1];
             let gap = (k + 1 - REACH..=k + REACH).any(|j| step(j) * rate > 1.5);
-            if sizes[k] > limit && isolated(&off, which, k) && !doubled && !gap {
+            let far = sizes[k] > limit && !doubled && !gap;
+            if far && isolated(&off, which, k) && !steps(recording, k) {
                 found.push((k, sizes[k]));
             }
         }

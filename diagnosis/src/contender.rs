@@ -32,10 +32,10 @@ const MOST_BESIDE: usize = 3;
 const NOTHING_NEW: f64 = 1e-3;
 
 /// The cause to accept and others that may turn out better where tangents are exact, or what cannot be named in its
-/// domain.
+/// domain and what looks most like it.
 pub(crate) enum Contender {
     Named(Box<Accepted>, Vec<Accepted>),
-    Unnamed(Unnamed, Domain, Vec<Shape>),
+    Unnamed(Unnamed, Domain, &'static str, Vec<Shape>),
 }
 
 /// The best cause that holds; one that explains nearly as much may hold where the first does not.
@@ -143,7 +143,8 @@ pub(crate) fn contender(
         }
         system.extend();
         let shapes = both(&own.candidate.shapes, &held.beyond);
-        first = Some(Contender::Unnamed(unnamed, own.candidate.domain, shapes));
+        let (domain, name) = (own.candidate.domain, own.candidate.name);
+        first = Some(Contender::Unnamed(unnamed, domain, name, shapes));
     }
     match (named, first) {
         (Some(cause), _) => Contender::Named(cause, others),
@@ -156,6 +157,7 @@ pub(crate) fn contender(
                 signature: String::new(),
             },
             Domain::Angle,
+            "",
             vec![],
         ),
     }

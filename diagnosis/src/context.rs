@@ -58,6 +58,8 @@ pub struct Context {
     pub periods_per_revolution: Option<u32>,
     /// The motion that is taken off the angle; none with a reference.
     pub spline: Option<Spline>,
+    /// The motion that the angle is followed by, where that is finer.
+    pub(crate) finer: Option<Spline>,
     periods_travelled: f64,
     top_speed: f64,
 }
@@ -125,6 +127,7 @@ impl Context {
             adc: recording.metadata.adc,
             periods_per_revolution: recording.metadata.periods_per_revolution,
             spline: None,
+            finer: None,
             periods_travelled: 0.0,
             top_speed: f64::MIN_POSITIVE,
         };
@@ -167,9 +170,12 @@ impl Context {
         if self.spline.is_none() {
             let per = self.periods_per_revolution;
             let spacing = crate::knots::spacing(&self.measured, &self.weight, per);
-            self.spline = Some(Spline::new(n, spacing, &self.weight));
+            let make = |spacing: f64| Spline::new(n, spacing, &self.weight);
+            self.spline = Some(make(spacing.motion));
+            let finer = spacing.followed < spacing.motion;
+            self.finer = finer.then(|| make(spacing.followed));
         }
-        if let Some(spline) = &self.spline {
+        if let Some(spline) = self.finer.as_ref().or(self.spline.as_ref()) {
             let slow: Vec<f64> = self.slow();
             let fit = spline.fit(&slow, &self.weight);
             let rate = self.rate;

@@ -226,6 +226,7 @@ fn followed(
         // Closer knots may have been needed for what is known now.
         if round == 0 {
             context.spline = spacing.map(|s| Spline::new(context.samples(), s, &context.weight));
+            context.finer = context.finer.filter(|_| spacing.is_some());
         }
         context.without(start.ellipse, known, reference);
     }

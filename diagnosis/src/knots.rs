@@ -1,7 +1,13 @@
 //! How close the knots of the motion's spline stand: as close as the likelihood asks for, and then a little closer.
+//!
+//! An axis that shakes adds noise of some colour to the motion of its drive. The shapes of causes are made where the axis
+//! really is, so the angle is followed through all of that; but what is taken off as motion, and with it whatever looks
+//! like it, ends where the spectrum falls no more.
 
+use std::f64::consts::PI;
 use std::ops::Range;
 
+use crate::lines::{median, spectrum, without_strongest};
 use crate::spline::Spline;
 
 /// Finest knot spacing, in samples.
@@ -16,10 +22,34 @@ const STRETCHES: usize = 4;
 /// So many halvings in a row that are worse end the search.
 const PATIENCE: usize = 3;
 
-/// The knot spacing, in samples, whose spline explains an angle (radians) best for its number of coefficients, with what
-/// repeats with the period taken off first, and the strongest line in time and in the revolution: real vibration and
-/// cogging are no reason for more knots.
-pub(crate) fn spacing(angle: &[f64], weight: &[f64], periods_per_revolution: Option<u32>) -> f64 {
+/// Above so many times what the spectrum has just above it, something of the drive is left.
+const STEEP: f64 = 1.5;
+/// The same of one line: of noise alone hardly one of a thousand is so high.
+const HIGH: f64 = 16.0;
+/// So many times the noise, as it stands at the highest frequencies, is an axis that shakes.
+const SHAKES: f64 = 2.0;
+/// Radians rms that a spline may leave: of more, the second order is no motion.
+const SMALL: f64 = 0.02;
+/// So many times farther apart than where the angle is followed, knots are worth to be.
+const FARTHER: f64 = 1.5;
+
+/// Knot spacings, in samples.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Spacing {
+    /// Of the spline that the angle is followed by.
+    pub(crate) followed: f64,
+    /// Of the spline that is taken off as motion: no cause can be told from it.
+    pub(crate) motion: f64,
+}
+
+/// The knot spacing whose spline explains an angle (radians) best for its number of coefficients, with what repeats with
+/// the period taken off first, and the strongest line in time and in the revolution: real vibration and cogging are no
+/// reason for more knots. And the spacing where the spectrum of what is left falls no more.
+pub(crate) fn spacing(
+    angle: &[f64],
+    weight: &[f64],
+    periods_per_revolution: Option<u32>,
+) -> Spacing {
     let n = angle.len();
     let stretches: Vec<Stretch> = stretches(n)
         .into_iter()
@@ -62,7 +92,32 @@ pub(crate) fn spacing(angle: &[f64], weight: &[f64], periods_per_revolution: Opt
             best = (now, spacing);
         }
     }
-    (best.1 / closer(n as f64, best.1)).max(FINEST)
+    let apart = |spacing: f64| (spacing / closer(n as f64, spacing)).max(FINEST);
+    let followed = apart(best.1);
+    let level = levels_off(&stretches, best.1).map_or(0.0, apart);
+    Spacing {
+        followed,
+        motion: if level > FARTHER * followed {
+            level
+        } else {
+            followed
+        },
+    }
+}
+
+/// The widest spacing, wider than `finest`, above which the spectrum of what the spline leaves falls no more.
+fn levels_off(stretches: &[Stretch], finest: f64) -> Option<f64> {
+    /// Most knots' spacings in a stretch; with fewer nothing is known of the spectrum.
+    const FEWEST: f64 = 12.0;
+    let longest = stretches.iter().map(|s| s.angle.len()).max()?;
+    let mut spacing = longest as f64 / FEWEST;
+    while spacing > finest {
+        if stretches.iter().all(|s| s.is_level(spacing)) {
+            return Some(spacing);
+        }
+        spacing /= 2f64.sqrt();
+    }
+    None
 }
 
 /// How much closer than the likelihood asks for. There, what the spline leaves of the motion raises the log-likelihood by
@@ -106,19 +161,70 @@ impl<'a> Stretch<'a> {
         }
     }
 
+    /// Whether the spectrum of what a spline with such knots leaves falls no more above them, but stands above the noise.
+    /// What is left of a drive stands about half their frequency and at it, with images about its multiples, which knots
+    /// half as far apart leave nothing of.
+    fn is_level(&self, spacing: f64) -> bool {
+        let band = |low: f64, high: f64, power: &[f64], length: usize| {
+            let index = |f: f64| ((f / spacing * length as f64) as usize).min(power.len() - 1);
+            power[index(low)..index(high)].to_vec()
+        };
+        let (power, length, rms) = self.spectrum(spacing);
+        let (below, above) = (
+            band(0.25, 0.75, &power, length),
+            band(0.75, 3.0, &power, length),
+        );
+        if below.is_empty() || above.is_empty() || rms > SMALL {
+            return false;
+        }
+        let level = median(&above);
+        let noise = median(&power[length / 4..]);
+        let mean = below.iter().sum::<f64>() / below.len() as f64;
+        let highest = band(0.0, 1.25, &power, length);
+        let highest = highest.iter().copied().fold(0.0, f64::max);
+        if mean > STEEP * level || highest > HIGH * level || level < SHAKES * noise {
+            return false;
+        }
+        let (closer, length, _) = self.spectrum(spacing / 2.0);
+        let same = |power: &[f64]| median(&band(1.5, 3.0, power, length));
+        same(&power) < STEEP * same(&closer)
+    }
+
+    /// Power spectrum of what a spline with such knots leaves, without what repeats with the period; its length, and the
+    /// rms of what is left.
+    fn spectrum(&self, spacing: f64) -> (Vec<f64>, usize, f64) {
+        let spline = Spline::new(self.angle.len(), spacing, self.weight);
+        let mut left = self.without_cycles(&spline);
+        let n = left.len() as f64;
+        let rms = (left.iter().map(|l| l * l).sum::<f64>() / n).sqrt();
+        for (k, value) in left.iter_mut().enumerate() {
+            *value *= (PI * (k as f64 + 0.5) / n).sin().powi(2);
+        }
+        let (power, length) = spectrum(&left);
+        (power, length, rms)
+    }
+
     /// Square of what a spline leaves of the angle.
     fn left(&self, spline: &Spline) -> f64 {
+        self.residual(spline).iter().map(|r| r * r).sum()
+    }
+
+    /// What a spline leaves of the angle.
+    fn residual(&self, spline: &Spline) -> Vec<f64> {
+        self.without_lines(&self.without_cycles(spline), spline)
+    }
+
+    /// What a spline leaves of the angle, without what repeats with the period.
+    fn without_cycles(&self, spline: &Spline) -> Vec<f64> {
         let mut columns = vec![self.angle];
         columns.extend(self.cyclic.iter().map(Vec::as_slice));
         let mut residuals = spline.residuals(&columns, self.weight);
         let shapes = residuals.split_off(1);
-        let left = crate::solve::without(&residuals[0], &shapes);
-        let left = self.without_lines(&left, spline);
-        left.iter().map(|r| r * r).sum()
+        crate::solve::without(&residuals[0], &shapes)
     }
 
     fn without_lines(&self, values: &[f64], spline: &Spline) -> Vec<f64> {
-        let left = crate::lines::without_strongest(values);
+        let left = without_strongest(values);
         let Some((per, phi)) = &self.revolution else {
             return left;
         };

@@ -45,7 +45,7 @@ pub(crate) fn pair_spectrum(a: &[f64], b: &[f64]) -> (Vec<f64>, usize) {
 }
 
 /// The median; of an even number, the upper of the two in the middle. 0 of nothing.
-fn median(values: &[f64]) -> f64 {
+pub(crate) fn median(values: &[f64]) -> f64 {
     let mut values = values.to_vec();
     let middle = values.len() / 2;
     if values.is_empty() {

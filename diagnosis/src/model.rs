@@ -5,7 +5,7 @@ mod residual;
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::causes::Catalogue;
+use crate::causes::{self, Catalogue};
 use crate::context::Context;
 use crate::flicker::{self, Flicker};
 use crate::library::{ROWS, Row, Shape};
@@ -15,7 +15,7 @@ use crate::sweep::Samples;
 use crate::whiten::Whitener;
 
 pub(crate) use halves::Halves;
-pub(crate) use residual::{Residual, above_motion};
+pub(crate) use residual::{Residual, Weighed, above_motion};
 
 /// Share of a function's square below which it is a rounding error.
 const NOTHING: f64 = 1e-18;
@@ -93,8 +93,15 @@ impl<'a> System<'a> {
         let shapes: Vec<Shape> = broad.iter().map(|i| Shape(vec![(*i, 1.0)])).collect();
         let x = this.total.of(&shapes).solve().x;
         let amounts: Vec<(usize, f64)> = broad.into_iter().zip(x).collect();
-        let left = this.samples.left(&amounts);
+        let mut left = this.samples.left(&amounts);
         this.flicker = flicker::find(context, &left[0]);
+        let fast = if left[2].is_empty() {
+            Row::Tangential
+        } else {
+            Row::Motion
+        };
+        let own = std::mem::take(&mut left[fast as usize]);
+        left[fast as usize] = causes::without_cogging(context, own);
         for (row, left) in ROWS.iter().zip(&left).filter(|(_, l)| !l.is_empty()) {
             let gone = match (&context.spline, row) {
                 (_, Row::Radial) => 0.0,
@@ -102,13 +109,15 @@ impl<'a> System<'a> {
                 (Some(spline), _) => 0.7 / spline.spacing(),
                 (None, _) => 0.0,
             };
-            this.samples.whiteners[*row as usize] = Whitener::of(left, gone);
-        }
-        // A reference without noise says nothing about how well a spline follows real motion: that is worth as much as
-        // the channels could show.
-        let noise = this.samples.whiteners[0].sigma;
-        for (whitener, share) in this.samples.whiteners.iter_mut().zip([1.0, 0.05, 1.0]) {
-            whitener.sigma = whitener.sigma.max(share * noise);
+            // A reference without noise says nothing about how well a spline follows real motion: that is worth as much
+            // as the channels could show, at every frequency.
+            let noise = this.samples.whiteners[Row::Radial as usize].sigma;
+            let least = if *row == Row::Motion { noise } else { 0.0 };
+            let mut whitener = Whitener::of(left, gone, least);
+            if *row == Row::Tangential {
+                whitener.sigma = whitener.sigma.max(0.05 * noise);
+            }
+            this.samples.whiteners[*row as usize] = whitener;
         }
         // White noise changes the scale of a row only.
         let white = this.samples.whiteners.iter().all(Whitener::is_white);

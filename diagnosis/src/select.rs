@@ -8,7 +8,7 @@ use crate::context::Context;
 use crate::doubt::doubt;
 use crate::exact::{self, Start};
 use crate::library::Shape;
-use crate::model::{Fit, System, atoms_of};
+use crate::model::{Fit, Residual, System, atoms_of};
 use crate::selection::{Accepted, Selection, Unnamed};
 use crate::solve::Solution;
 use crate::statistics::{after_trials, log_tail};
@@ -135,6 +135,35 @@ fn worth(system: &mut System, fit: &Fit, list: Vec<Candidate>, most: f64) -> Vec
     scored
 }
 
+/// Where a line or motion is the best that was found, or nothing was: what stands out of the noise as it is weighed may
+/// be another.
+fn with_weighed(
+    system: &mut System,
+    fixed: usize,
+    fit: &Fit,
+    residual: &Residual,
+    open: impl Fn(&Candidate) -> bool,
+    mut scored: Vec<Scored>,
+) -> Vec<Scored> {
+    let line = |s: &Scored| matches!(s.candidate.domain, Domain::Line | Domain::Motion);
+    let best = scored.first().filter(|s| s.log_p < SHOWN.ln());
+    let most = best.map_or(0.0, |s| s.gain);
+    if best.is_some_and(|s| !line(s)) {
+        return scored;
+    }
+    let Some(weighed) = system.weighed(residual) else {
+        return scored;
+    };
+    let (context, coloured) = (system.context, system.flicker.is_some());
+    let library = &mut system.samples.library;
+    let mut list = causes::shown_weighed(context, &weighed, coloured, library);
+    list.retain(open);
+    scored.extend(worth(system, fit, list, most));
+    scored = take_in(system, fixed, fit, scored);
+    scored.sort_by(|a, b| a.log_p.total_cmp(&b.log_p));
+    scored
+}
+
 /// Keeps the functions of these candidates, and drops those of all others.
 fn take_in(system: &mut System, fixed: usize, fit: &Fit, mut list: Vec<Scored>) -> Vec<Scored> {
     let own = list.iter().flat_map(|s| &s.candidate.shapes);
@@ -257,6 +286,7 @@ fn search(
         scored.extend(take_in(system, fixed, &found.fit, worth));
         scored.retain(|s| likely(system, s));
         scored.sort_by(|a, b| a.log_p.total_cmp(&b.log_p));
+        scored = with_weighed(system, fixed, &found.fit, &residual, open, scored);
         if scored.is_empty() || scored[0].log_p > SHOWN.ln() {
             break;
         }
@@ -273,8 +303,8 @@ fn search(
         match contender(system, catalogue, &found.fit, scored) {
             Contender::Unnamed(..) if partial => break,
             // Real motion that is no line is the axis at work, and no error.
-            Contender::Unnamed(_, Domain::Motion, _) => closed.push(Domain::Motion),
-            Contender::Unnamed(unnamed, domain, shapes) => {
+            Contender::Unnamed(_, Domain::Motion, name, _) => refused.push(name),
+            Contender::Unnamed(unnamed, domain, _, shapes) => {
                 found.unnamed.push(unnamed);
                 closed.push(domain);
                 let generic = both(&found.fit.shapes, catalogue.basis(domain));

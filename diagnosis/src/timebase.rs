@@ -23,6 +23,10 @@ const AROUND: usize = 8;
 /// Most samples that the ellipse is fitted to.
 const ENOUGH: usize = 8192;
 
+/// Samples on either side whose slope tells how far the scale moves.
+const LINE: usize = 8;
+/// Samples on either side whose steps are compared with the one behind a sample.
+const NEAR: usize = 4;
 /// Repeated samples that chance may make of a recording.
 const BY_CHANCE: f64 = 0.01;
 
@@ -46,6 +50,18 @@ fn noise(values: &[f64]) -> f64 {
     median / 0.6745 / 20f64.sqrt()
 }
 
+/// How fast a channel changes about sample `k`, per sample, whether that sample was put in or not: the middle of the slopes
+/// of straight lines through the samples before it and from it on.
+fn slope(values: &[f64], k: usize) -> f64 {
+    let line = |values: &[f64]| -> f64 {
+        let middle = (values.len() - 1) as f64 / 2.0;
+        let along = |(i, v): (usize, &f64)| (i as f64 - middle) * v;
+        let square: f64 = (0..values.len()).map(|i| (i as f64 - middle).powi(2)).sum();
+        values.iter().enumerate().map(along).sum::<f64>() / square
+    };
+    (line(&values[k - LINE..k]) + line(&values[k..k + LINE])) / 2.0
+}
+
 /// Samples that repeat the one before while the scale moves.
 pub(crate) fn repeated(recording: &Recording, checked: &mut Checked) {
     let n = recording.samples();
@@ -56,16 +72,18 @@ pub(crate) fn repeated(recording: &Recording, checked: &mut Checked) {
     let channels = [(&recording.cos, adc.cos.lsb), (&recording.sin, adc.sin.lsb)];
     let channels = channels.map(|(values, lsb)| (values, step(values, lsb), noise(values)));
     // How likely noise alone takes both channels back to the code before, over what the scale moves: a Gaussian of both
-    // samples' noise, no narrower than a step.
+    // samples' noise, no narrower than a step. Less than either number by its own noise it moves hardly ever.
     let chance = |k: usize| -> f64 {
         let of = channels.iter().map(|(values, step, noise)| {
-            let moves = ((values[k + 1] - values[k - 2]).abs() / 3.0 - noise).max(0.0);
+            let chord = (values[k + 1] - values[k - 2]).abs() / 3.0 - noise;
+            let along = slope(values, k).abs() - noise / 4.0;
+            let moves = chord.max(along).max(0.0);
             let wide = noise.hypot(*step);
             (step / (wide * (4.0 * PI).sqrt())).min(1.0) * (-(moves / (2.0 * wide)).powi(2)).exp()
         });
         of.product()
     };
-    let twins: Vec<usize> = (2..n.saturating_sub(1))
+    let twins: Vec<usize> = (LINE..n.saturating_sub(LINE))
         .filter(|&k| same(k) && !same(k - 1) && !same(k + 1))
         .filter(|&k| chance(k) * (n as f64) < BY_CHANCE)
         .collect();
@@ -75,16 +93,22 @@ pub(crate) fn repeated(recording: &Recording, checked: &mut Checked) {
     for &k in &twins {
         checked.weight[k] = 0.0;
     }
-    // A sample that was put in makes all others late; one that stands in another's place does not.
-    let way = |a: usize, b: usize| {
-        let (dc, ds) = (
-            recording.cos[a] - recording.cos[b],
-            recording.sin[a] - recording.sin[b],
-        );
-        dc.hypot(ds)
+    // A sample that was put in makes all others late; one that stands in another's place does not, and the way to the next
+    // is twice as long. Whatever puts them in does so every time.
+    let square = |k: usize| {
+        let way = |(v, ..): &(&Vec<f64>, f64, f64)| (v[k + 1] - v[k]).powi(2);
+        channels.iter().map(way).sum::<f64>()
     };
-    let put_in = |k: &usize| way(*k, k + 1) < 1.5 * way(k - 2, k - 1);
-    checked.extra = twins.iter().copied().filter(put_in).collect();
+    let noisy: f64 = channels.iter().map(|c| 2.0 * c.2.powi(2)).sum();
+    let (mut next, mut usual) = (0.0, 0.0);
+    for &k in &twins {
+        next += square(k) - noisy;
+        let near = (k - NEAR..k - 1).chain(k + 1..k + NEAR);
+        usual += near.clone().map(square).sum::<f64>() / near.count() as f64 - noisy;
+    }
+    if next < 1.5f64.powi(2) * usual {
+        checked.extra.clone_from(&twins);
+    }
     checked.findings.push(
         Finding::digital(
             "repeated_samples",

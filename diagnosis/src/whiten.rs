@@ -24,9 +24,9 @@ pub(crate) struct Whitener {
 impl Whitener {
     /// From a residual whose frequencies below `gone` (cycles per sample) were taken off with the motion: there the noise
     /// is taken to be what it is just above, for a hole in the spectrum must not be amplified. Lines are no noise and are
-    /// cut off. Autocorrelation method (Levinson and Durbin).
+    /// cut off. There is at least white noise of an rms of `least`. Autocorrelation method (Levinson and Durbin).
     #[must_use]
-    pub(crate) fn of(residual: &[f64], gone: f64) -> Self {
+    pub(crate) fn of(residual: &[f64], gone: f64, least: f64) -> Self {
         let (power, seen) = averaged(residual);
         let reach = (power.len() / 16).clamp(4, NEAR);
         let mut power = crate::lines::cut(&power, reach, STANDS_OUT);
@@ -37,6 +37,7 @@ impl Whitener {
             let level = power[first..last].iter().sum::<f64>() / (last - first) as f64;
             power[..first].iter_mut().for_each(|p| *p = level);
         }
+        power.iter_mut().for_each(|p| *p = p.max(least * least));
         // Back to the autocorrelation: the spectrum is even.
         let correlation: Vec<f64> = (0..=ORDER)
             .map(|lag| {
@@ -90,6 +91,15 @@ impl Whitener {
         let mut white = past.clone();
         self.block(1, values.len(), &past, &mut white);
         white[ORDER..].iter().map(|w| w / self.sigma).collect()
+    }
+
+    /// What correlates with values as the likelihood does: their unpredictable part, of its own future.
+    pub(crate) fn matched(&self, values: &[f64]) -> Vec<f64> {
+        let mut once = self.unpredictable(values);
+        once.reverse();
+        let mut twice = self.unpredictable(&once);
+        twice.reverse();
+        twice
     }
 
     /// What of the power of white noise is in it, in the same unit.
@@ -165,7 +175,7 @@ mod tests {
         let mut random = StdRng::seed_from_u64(5);
         for n in [5_000, 80_000, 1_500_000] {
             let noise: Vec<f64> = (0..n).map(|_| StandardNormal.sample(&mut random)).collect();
-            let found = Whitener::of(&noise, 0.0);
+            let found = Whitener::of(&noise, 0.0, 0.0);
             assert!(found.is_white(), "{n}");
             assert!(
                 (found.sigma - 1.0).abs() < 5.0 / (2.0 * n.min(170_000) as f64).sqrt(),

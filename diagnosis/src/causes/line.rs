@@ -8,8 +8,8 @@ use crate::cause::{Candidate, Domain, Estimate, Exact, Make, Reads, polar};
 use crate::context::Context;
 use crate::finding::{Chip, Parameter};
 use crate::library::{Fill, Library, Place, Shape, Use};
-use crate::lines::{flattened, pair_spectrum, peak, two_spectra};
-use crate::model::Residual;
+use crate::lines::{flattened, pair_spectrum, peak, spectrum, two_spectra};
+use crate::model::{Residual, Weighed};
 
 /// Lowest frequency of a line, in cycles per recording: below, it is drift.
 const SLOWEST: f64 = 4.0;
@@ -68,99 +68,102 @@ fn two(place: Place, shape: fn(&Place, usize) -> Shape) -> Vec<Shape> {
     (0..2).map(|i| shape(&place, i)).collect()
 }
 
-pub(crate) fn candidates(
-    context: &Context,
-    residual: &Residual,
+/// Where lines are looked for.
+struct Search<'a> {
+    context: &'a Context,
+    /// Lines have to stand out of what is near them.
     coloured: bool,
-    library: &mut Library,
-) -> Vec<Candidate> {
-    let n = context.samples();
-    let trials = n as f64;
-    let low = SLOWEST / n as f64;
-    let mut list = vec![];
-    let line = |power: Vec<f64>, length: usize| {
-        if coloured {
+}
+
+impl Search<'_> {
+    /// Frequency of the highest line of a spectrum, in cycles per sample.
+    fn line(&self, power: Vec<f64>, length: usize) -> Option<f64> {
+        let low = SLOWEST / self.context.samples() as f64;
+        if self.coloured {
             let level = flattened(&power);
             let f = peak(&level, length, low, 0.499)?;
             let highest = level[(f * length as f64).round() as usize];
             return (highest > STANDS_OUT).then_some(f);
         }
         peak(&power, length, low, 0.499)
-    };
-    // A line's frequency is known to a small part of one cycle per recording.
-    let duration = n as f64 / context.rate;
-    let exact = |hertz: f64, make: Make| {
-        Some(Exact {
-            make,
-            inner: vec![hertz],
-            steps: vec![0.02 / duration],
-            follows: false,
-        })
-    };
-    // In the frame of the channels.
-    let frame = |k: usize| {
-        let (r, t) = (residual.radial[k], residual.tangential[k]);
-        let (c, s) = (context.cos[k], context.sin[k]);
-        (r * c - t * s, r * s + t * c)
-    };
-    let (in_c, in_s): (Vec<f64>, Vec<f64>) = (0..n).map(frame).unzip();
-    let (power, length) = pair_spectrum(&in_c, &in_s);
-    if let Some(f) = line(power, length) {
-        let hertz = f * context.rate;
-        let mut all = vec![];
-        for harmonics in [1, 3] {
-            if harmonics > 1 && f * 3.0 > 0.49 {
-                continue;
-            }
-            for harmonic in all.len() / 4 + 1..=harmonics {
-                all.extend(in_channels(hertz * harmonic as f64, library));
-            }
+    }
+
+    /// The same of what is along the radius and along the circle, in the frame of the channels.
+    fn in_frame(&self, radial: &[f64], tangential: &[f64]) -> Option<f64> {
+        let frame = |k: usize| {
+            let (r, t) = (radial[k], tangential[k]);
+            let (c, s) = (self.context.cos[k], self.context.sin[k]);
+            (r * c - t * s, r * s + t * c)
+        };
+        let (in_c, in_s): (Vec<f64>, Vec<f64>) = (0..radial.len()).map(frame).unzip();
+        let (power, length) = pair_spectrum(&in_c, &in_s);
+        self.line(power, length)
+    }
+
+    /// Seconds.
+    fn duration(&self) -> f64 {
+        self.context.samples() as f64 / self.context.rate
+    }
+
+    /// A line of that name with its functions; its frequency is known to a small part of one cycle per recording.
+    fn candidate(
+        &self,
+        name: &'static str,
+        domain: Domain,
+        hertz: f64,
+        make: Make,
+        library: &mut Library,
+    ) -> Candidate {
+        Candidate {
+            trials: self.context.samples() as f64,
+            exact: Some(Exact {
+                make: make.clone(),
+                inner: vec![hertz],
+                steps: vec![0.02 / self.duration()],
+                follows: false,
+            }),
+            ..Candidate::new(name, domain, make(&[hertz], library))
+        }
+    }
+
+    /// A line in the channels, and one with its harmonics.
+    fn interference(&self, f: f64, library: &mut Library) -> Vec<Candidate> {
+        let (hertz, duration) = (f * self.context.rate, self.duration());
+        let reach = [1, 3].into_iter().filter(|m| *m == 1 || f * 3.0 <= 0.49);
+        let one = |harmonics: usize, library: &mut Library| {
             let make: Make = Rc::new(move |inner, library| {
                 (1..=harmonics)
                     .flat_map(|harmonic| in_channels(inner[0] * harmonic as f64, library))
                     .collect()
             });
-            list.push(Candidate {
-                trials,
-                exact: exact(hertz, make),
-                parameters: Rc::new(move |e| {
-                    let (a_c, d_c, ..) = polar(&e.x[..2], &e.error[..2]);
-                    let (a_s, d_s, ..) = polar(&e.x[2..4], &e.error[2..4]);
-                    let strongest = a_c.hypot(a_s) / d_c.hypot(d_s).max(f64::MIN_POSITIVE);
-                    let mut all = vec![frequency(e, strongest, duration)];
-                    let pairs = e.x.chunks(2).zip(e.error.chunks(2)).enumerate();
-                    for (i, (x, error)) in pairs {
-                        let (a, d, p, ep) = polar(x, error);
-                        let channel = ["cos", "sin"][i % 2];
-                        let harmonic = match i / 2 {
-                            0 => String::new(),
-                            more => format!("_{}", more + 1),
-                        };
-                        let name = |what: &str| format!("{what}_{channel}{harmonic}");
-                        all.push(Parameter::measured(&name("amplitude"), a, d, "amplitude"));
-                        all.push(Parameter::measured(&name("phase"), p, ep, "rad"));
-                    }
-                    all
-                }),
+            Candidate {
+                parameters: in_either(duration),
                 evidence: Rc::new(move |p| {
-                    let with = if harmonics > 1 { " and its harmonics" } else { "" };
-                    format!("a line at {:.3} Hz{with} is added to the channels, {:.3} % (cos) and {:.3} % (sin) of the amplitude", p[0].value, p[1].value * 100.0, p[3].value * 100.0)
+                    let with = if harmonics > 1 {
+                        " and its harmonics"
+                    } else {
+                        ""
+                    };
+                    format!(
+                        "a line at {:.3} Hz{with} is added to the channels, {:.3} % (cos) and {:.3} % (sin) of the amplitude",
+                        p[0].value,
+                        p[1].value * 100.0,
+                        p[3].value * 100.0
+                    )
                 }),
-                ..Candidate::new("interference", Domain::Line, all.clone())
-            });
-        }
+                ..self.candidate("interference", Domain::Line, hertz, make, library)
+            }
+        };
+        reach.map(|harmonics| one(harmonics, library)).collect()
     }
-    let ([radial, fast], length) = two_spectra(&residual.radial, residual.fast());
-    if let Some(f) = line(radial, length) {
-        let hertz = f * context.rate;
+
+    fn ripple(&self, f: f64, library: &mut Library) -> Candidate {
         let make: Make = Rc::new(|inner, library| {
             two(library.add(2, Use::Radial, wave(inner[0])), Place::radial)
         });
-        let shapes = make(&[hertz], library);
-        list.push(Candidate {
-            trials,
-            exact: exact(hertz, make),
-            parameters: one_wave("depth", "1", duration),
+        let hertz = f * self.context.rate;
+        Candidate {
+            parameters: one_wave("depth", "1", self.duration()),
             evidence: Rc::new(|p| {
                 format!(
                     "the amplitude of both channels is modulated by {:.3} % at {:.3} Hz",
@@ -168,29 +171,95 @@ pub(crate) fn candidates(
                     p[0].value
                 )
             }),
-            ..Candidate::new("amplitude_ripple", Domain::Line, shapes)
-        });
+            ..self.candidate("amplitude_ripple", Domain::Line, hertz, make, library)
+        }
     }
-    if let Some(f) = line(fast, length) {
-        let hertz = f * context.rate;
+
+    fn vibration(&self, f: f64, library: &mut Library) -> Candidate {
         let make: Make = Rc::new(|inner, library| {
             two(
                 library.add(2, Use::Motion, wave(inner[0])),
                 Place::tangential,
             )
         });
-        let shapes = make(&[hertz], library);
-        list.push(Candidate {
-            trials,
+        let hertz = f * self.context.rate;
+        Candidate {
             motion: true,
-            exact: exact(hertz, make),
             chip: Chip::NotASensorError,
-            parameters: one_wave("amplitude", "rad", duration),
-            evidence: Rc::new(|p| format!("the axis really vibrates: {:.3e} rad of a scale period at {:.3} Hz, without any change of the radius", p[1].value, p[0].value)),
-            ..Candidate::new("vibration", Domain::Motion, shapes)
-        });
+            parameters: one_wave("amplitude", "rad", self.duration()),
+            evidence: Rc::new(|p| {
+                format!(
+                    "the axis really vibrates: {:.3e} rad of a scale period at {:.3} Hz, without any change of the radius",
+                    p[1].value, p[0].value
+                )
+            }),
+            ..self.candidate("vibration", Domain::Motion, hertz, make, library)
+        }
+    }
+}
+
+pub(crate) fn candidates(
+    context: &Context,
+    residual: &Residual,
+    coloured: bool,
+    library: &mut Library,
+) -> Vec<Candidate> {
+    let search = Search { context, coloured };
+    let mut list = vec![];
+    if let Some(f) = search.in_frame(&residual.radial, &residual.tangential) {
+        list.extend(search.interference(f, library));
+    }
+    let ([radial, fast], length) = two_spectra(&residual.radial, residual.fast());
+    if let Some(f) = search.line(radial, length) {
+        list.push(search.ripple(f, library));
+    }
+    if let Some(f) = search.line(fast, length) {
+        list.push(search.vibration(f, library));
     }
     list
+}
+
+/// Lines that stand out of noise as the likelihood weighs it.
+pub(crate) fn weighed(
+    context: &Context,
+    weighed: &Weighed,
+    coloured: bool,
+    library: &mut Library,
+) -> Vec<Candidate> {
+    let search = Search { context, coloured };
+    let [radial, tangential] = &weighed.matched;
+    let mut list = vec![];
+    if let Some(f) = search.in_frame(radial, tangential) {
+        list.extend(search.interference(f, library));
+    }
+    let (power, length) = spectrum(&weighed.fast);
+    if let Some(f) = search.line(power, length) {
+        list.push(search.vibration(f, library));
+    }
+    list
+}
+
+/// Frequency, amplitudes and phases of a line in the channels and of its harmonics.
+fn in_either(duration: f64) -> Reads {
+    Rc::new(move |e| {
+        let (a_c, d_c, ..) = polar(&e.x[..2], &e.error[..2]);
+        let (a_s, d_s, ..) = polar(&e.x[2..4], &e.error[2..4]);
+        let strongest = a_c.hypot(a_s) / d_c.hypot(d_s).max(f64::MIN_POSITIVE);
+        let mut all = vec![frequency(e, strongest, duration)];
+        let pairs = e.x.chunks(2).zip(e.error.chunks(2)).enumerate();
+        for (i, (x, error)) in pairs {
+            let (a, d, p, ep) = polar(x, error);
+            let channel = ["cos", "sin"][i % 2];
+            let harmonic = match i / 2 {
+                0 => String::new(),
+                more => format!("_{}", more + 1),
+            };
+            let name = |what: &str| format!("{what}_{channel}{harmonic}");
+            all.push(Parameter::measured(&name("amplitude"), a, d, "amplitude"));
+            all.push(Parameter::measured(&name("phase"), p, ep, "rad"));
+        }
+        all
+    })
 }
 
 /// Frequency, amplitude and phase of a line without harmonics.

@@ -18,11 +18,11 @@ use std::collections::BTreeMap;
 use crate::cause::{Candidate, Domain};
 use crate::context::Context;
 use crate::library::{Library, Place, Shape, Use};
-use crate::model::Residual;
+use crate::model::{Residual, Weighed};
 use crate::trig::{Trig, rotated};
 
 pub(crate) use line::wave as line_wave;
-pub(crate) use place::orders as revolution_orders;
+pub(crate) use place::{orders as revolution_orders, without_cogging};
 pub(crate) use speed::{varies as speed_varies, varies_much as speed_varies_much};
 
 /// Highest order of the scale period.
@@ -99,6 +99,18 @@ pub(crate) fn shown(
 ) -> Vec<Candidate> {
     let mut list = line::candidates(context, residual, coloured, library);
     list.extend(place::candidates(context, residual, library));
+    list
+}
+
+/// The same where the axis vibrates, and its spectrum is no level.
+pub(crate) fn shown_weighed(
+    context: &Context,
+    weighed: &Weighed,
+    coloured: bool,
+    library: &mut Library,
+) -> Vec<Candidate> {
+    let mut list = line::weighed(context, weighed, coloured, library);
+    list.extend(place::weighed(context, weighed, library));
     list
 }
 

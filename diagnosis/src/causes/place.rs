@@ -9,8 +9,8 @@ use crate::cause::{Candidate, Domain, Exact, Make, Sign, each};
 use crate::context::Context;
 use crate::finding::{Chip, Parameter};
 use crate::library::{Library, Shape, Use};
-use crate::model::Residual;
-use crate::solve::total;
+use crate::model::{Residual, Weighed};
+use crate::solve::{Normal, total};
 
 /// Orders of the revolution that are tried for cogging.
 const ORDERS: usize = 128;
@@ -35,8 +35,23 @@ pub(crate) fn candidates(
     } else {
         vec![]
     };
-    list.extend(cogging(context, phi, residual, library));
+    list.extend(cogging(context, phi, residual.fast(), library));
     list
+}
+
+/// Cogging that stands out of noise as the likelihood weighs it: one filter of the noise keeps its size right, the other
+/// its phase.
+pub(crate) fn weighed(
+    context: &Context,
+    weighed: &Weighed,
+    library: &mut Library,
+) -> Vec<Candidate> {
+    let Some(phi) = context.phi.as_ref().filter(|phi| turns(phi) >= 0.9) else {
+        return vec![];
+    };
+    let both = [&weighed.fast, &weighed.matched[1]];
+    let found = both.map(|values| cogging(context, phi, values, library));
+    found.into_iter().flatten().collect()
 }
 
 /// Sums of values times exp(−i order φ), for orders 0 … `ORDERS` of the revolution: cos parts, then sin parts.
@@ -58,19 +73,54 @@ pub(crate) fn orders(phi: &[f64], values: &[f64]) -> Vec<[f64; 2]> {
     sums
 }
 
-/// Real motion; multiples of the scale period could be the sensor's.
+/// The order of the revolution that is strongest, multiples of the scale period left out: they could be the sensor's.
+fn strongest(context: &Context, phi: &[f64], values: &[f64]) -> Option<usize> {
+    let per = context.periods_per_revolution.unwrap_or(1) as usize;
+    let sums = orders(phi, values);
+    let power = |order: &usize| sums[*order][0].powi(2) + sums[*order][1].powi(2);
+    (1..=ORDERS)
+        .filter(|order| order % per != 0)
+        .max_by(|a, b| power(a).total_cmp(&power(b)))
+}
+
+/// Values without the order of the revolution that is strongest in them, judged by a part of a long recording. A prediction
+/// from the past would take it for the colour of the noise, and swallow it.
+pub(crate) fn without_cogging(context: &Context, mut values: Vec<f64>) -> Vec<f64> {
+    /// Samples that are enough.
+    const ENOUGH: usize = 20_000;
+    /// Samples that are left together.
+    const TOGETHER: usize = 1000;
+    let Some(phi) = context.phi.as_ref().filter(|phi| turns(phi) >= 0.9) else {
+        return values;
+    };
+    let every = (values.len() / ENOUGH).max(1);
+    let part = |list: &[f64]| -> Vec<f64> {
+        let blocks = list.chunks(TOGETHER).step_by(every);
+        blocks.flatten().copied().collect()
+    };
+    let (some, at) = (part(&values), part(phi));
+    let Some(order) = strongest(context, &at, &some) else {
+        return values;
+    };
+    let wave = |f: fn(f64) -> f64| -> Vec<f64> { at.iter().map(|p| f(order as f64 * p)).collect() };
+    let x = Normal::of_columns(&some, &[wave(f64::cos), wave(f64::sin)])
+        .solve()
+        .x;
+    for (value, p) in values.iter_mut().zip(phi) {
+        let (sin, cos) = (order as f64 * p).sin_cos();
+        *value -= x[0] * cos + x[1] * sin;
+    }
+    values
+}
+
+/// Real motion.
 fn cogging(
     context: &Context,
     phi: &[f64],
-    residual: &Residual,
+    fast: &[f64],
     library: &mut Library,
 ) -> Option<Candidate> {
-    let per = context.periods_per_revolution.unwrap_or(1) as usize;
-    let sums = orders(phi, residual.fast());
-    let power = |order: &usize| sums[*order][0].powi(2) + sums[*order][1].powi(2);
-    let order = (1..=ORDERS)
-        .filter(|order| order % per != 0)
-        .max_by(|a, b| power(a).total_cmp(&power(b)))?;
+    let order = strongest(context, phi, fast)?;
     let make: Make = Rc::new(move |_, library| {
         let place = library.add(
             2,

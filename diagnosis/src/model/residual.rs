@@ -24,7 +24,30 @@ impl Residual {
     }
 }
 
+/// What of a residual tells where a line stands, its noise being of some colour.
+pub(crate) struct Weighed {
+    /// Radial and tangential residual, weighed as the likelihood does: a line in the channels stands out of both together.
+    pub(crate) matched: [Vec<f64>; 2],
+    /// The unpredictable part of what moves faster than the spline.
+    pub(crate) fast: Vec<f64>,
+}
+
 impl System<'_> {
+    /// A residual weighed by its noise, where the axis vibrates.
+    pub(crate) fn weighed(&self, residual: &Residual) -> Option<Weighed> {
+        if !self.vibrates() {
+            return None;
+        }
+        let [radial, tangential, _] = &self.samples.whiteners;
+        Some(Weighed {
+            matched: [
+                radial.matched(&residual.radial),
+                tangential.matched(&residual.tangential),
+            ],
+            fast: tangential.unpredictable(&residual.tangential),
+        })
+    }
+
     /// What a fit leaves.
     pub(crate) fn residual(&self, fit: &Fit) -> Residual {
         let [radial, tangential, motion] = self.samples.left(&fit.amounts());

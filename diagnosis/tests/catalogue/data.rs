@@ -46,6 +46,53 @@ fn samples_repeated_in_noise() {
     });
 }
 
+/// The same of samples that were put in, which make all that follows late.
+#[test]
+fn samples_put_in_in_noise() {
+    let noisy = Case {
+        noise: |_, _, _, n| 4.0 * NOISE * n[0],
+        ..PLAIN
+    };
+    shows_in(&noisy, "repeated_samples", |rows| {
+        let moves = |k: usize| (rows[k + 1][3] - rows[k - 1][3]).abs() / 2.0;
+        let mut fast: Vec<usize> = (1000..19_000)
+            .step_by(700)
+            .filter(|k| (0.025..0.03).contains(&moves(*k)))
+            .collect();
+        assert!(fast.len() > 2);
+        while let Some(k) = fast.pop() {
+            let again = rows[k - 1];
+            rows.insert(k, again);
+        }
+        for (k, row) in rows.iter_mut().enumerate() {
+            row[0] = k as f64 / 50e3;
+        }
+    });
+}
+
+/// A lost sample makes a step, and its edge lies as far off the curve through its neighbours as a glitch does.
+#[test]
+fn a_lost_sample_is_no_glitch() {
+    let noisy = Case {
+        noise: |_, _, _, n| 1.5 * NOISE * n[0],
+        ..PLAIN
+    };
+    shows_in(&noisy, "dropped_samples", |rows| {
+        let moves = |k: usize| (rows[k + 1][3] - rows[k - 1][3]).abs() / 2.0;
+        let mut fast: Vec<usize> = (1000..19_000)
+            .step_by(300)
+            .filter(|k| (0.025..0.035).contains(&moves(*k)))
+            .collect();
+        assert!(fast.len() > 5);
+        while let Some(k) = fast.pop() {
+            rows.remove(k);
+        }
+        for (k, row) in rows.iter_mut().enumerate() {
+            row[0] = k as f64 / 50e3;
+        }
+    });
+}
+
 #[test]
 fn noise_with_the_signal() {
     let found = finds(

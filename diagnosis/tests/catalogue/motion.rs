@@ -27,6 +27,68 @@ fn vibration_and_cogging() {
     );
 }
 
+/// An axis that shakes: its structure's mode, driven at many frequencies from far below it to above, radians.
+fn rumble(t: f64) -> f64 {
+    /// Closer to each other than what a recording tells apart.
+    const LINES: u32 = 1000;
+    const MODE: f64 = 900.0;
+    const QUALITY: f64 = 4.0;
+    (1..=LINES)
+        .map(|i| {
+            let i = f64::from(i);
+            let hertz = 2.0 * i + 0.9 * (7.3 * i).sin();
+            let x = hertz / MODE;
+            let size = ((1.0 - x * x).powi(2) + (x / QUALITY).powi(2))
+                .sqrt()
+                .recip();
+            1.5e-4 * size * (TAU * hertz * t + 1.7 * i * i).sin()
+        })
+        .sum()
+}
+
+#[test]
+fn beside_a_rumble() {
+    let found = finds(
+        "cogging",
+        &Case {
+            motion: |t, a| rumble(t) + 0.01 * (5.0 * a / PERIODS).sin(),
+            ..REVOLVING
+        },
+    );
+    near(&found, "amplitude", 0.01);
+    let found = finds(
+        "vibration",
+        &Case {
+            motion: |t, _| rumble(t) + 0.004 * (TAU * 431.0 * t).sin(),
+            ..PLAIN
+        },
+    );
+    near(&found, "frequency_hz", 431.0);
+    let found = finds(
+        "interference",
+        &Case {
+            motion: |t, _| rumble(t),
+            channels: |c, s, t, _, _| (c + 6e-4 * (TAU * 700.0 * t).sin(), s),
+            ..PLAIN
+        },
+    );
+    near(&found, "frequency_hz", 700.0);
+}
+
+/// A reference without noise shows how the axis moves to the last digit, and what is in that is no noise.
+#[test]
+fn beside_a_reference() {
+    let found = finds(
+        "cogging",
+        &Case {
+            motion: |_, a| 0.002 * (13.0 * a / PERIODS).sin(),
+            reference: true,
+            ..REVOLVING
+        },
+    );
+    near(&found, "amplitude", 0.002);
+}
+
 #[test]
 fn large() {
     let found = alone(
