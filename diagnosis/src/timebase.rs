@@ -25,6 +25,8 @@ const ENOUGH: usize = 8192;
 
 /// Samples on either side whose slope tells how far the scale moves.
 const LINE: usize = 8;
+/// Samples over which steps are about as uneven.
+const BLOCK: usize = 256;
 /// Samples on either side whose steps are compared with the one behind a sample.
 const NEAR: usize = 4;
 /// Repeated samples that chance may make of a recording.
@@ -62,6 +64,44 @@ fn slope(values: &[f64], k: usize) -> f64 {
     (line(&values[k - LINE..k]) + line(&values[k..k + LINE])) / 2.0
 }
 
+/// How far the step to the next sample is off the slope about it, rms over √2, block by block: by noise, by an axis that
+/// shakes, and by the bend of fast motion.
+fn uneven(values: &[f64]) -> Vec<f64> {
+    let range = LINE..values.len().saturating_sub(LINE);
+    let off = range.map(|k| (values[k] - values[k - 1] - slope(values, k)).abs());
+    let off: Vec<f64> = off.collect();
+    let rms = |block: &[f64]| ninth(block) / 1.645 / 2f64.sqrt();
+    off.chunks(BLOCK).map(rms).collect()
+}
+
+/// A channel, and how its samples scatter; all in the unit of its values.
+struct Channel<'a> {
+    values: &'a [f64],
+    /// The smallest step between two values.
+    step: f64,
+    /// Of each sample by itself, rms.
+    noise: f64,
+    /// See [`uneven`].
+    uneven: Vec<f64>,
+}
+
+impl Channel<'_> {
+    /// How likely chance takes the channel back to the code before at a sample, over what the scale moves: a Gaussian of both
+    /// samples' noise, no narrower than a step. Less than by its own noise below what the samples next to it or the slopes
+    /// on either side say, it moves hardly ever.
+    fn chance(&self, k: usize) -> f64 {
+        let chord = (self.values[k + 1] - self.values[k - 2]).abs() / 3.0 - self.noise;
+        let block = (k - LINE) / BLOCK;
+        let near = &self.uneven[block.saturating_sub(1)..(block + 2).min(self.uneven.len())];
+        let uneven = near.iter().copied().fold(self.noise, f64::max);
+        let along = slope(self.values, k).abs() - uneven / 4.0;
+        let wide = self.noise.hypot(self.step);
+        let far = (chord / wide).max(along / uneven.hypot(self.step)) / 2.0;
+        let far = far.max(0.0);
+        (self.step / (wide * (4.0 * PI).sqrt())).min(1.0) * (-far * far).exp()
+    }
+}
+
 /// Samples that repeat the one before while the scale moves.
 pub(crate) fn repeated(recording: &Recording, checked: &mut Checked) {
     let n = recording.samples();
@@ -70,19 +110,13 @@ pub(crate) fn repeated(recording: &Recording, checked: &mut Checked) {
     };
     let adc = recording.metadata.adc;
     let channels = [(&recording.cos, adc.cos.lsb), (&recording.sin, adc.sin.lsb)];
-    let channels = channels.map(|(values, lsb)| (values, step(values, lsb), noise(values)));
-    // How likely noise alone takes both channels back to the code before, over what the scale moves: a Gaussian of both
-    // samples' noise, no narrower than a step. Less than either number by its own noise it moves hardly ever.
-    let chance = |k: usize| -> f64 {
-        let of = channels.iter().map(|(values, step, noise)| {
-            let chord = (values[k + 1] - values[k - 2]).abs() / 3.0 - noise;
-            let along = slope(values, k).abs() - noise / 4.0;
-            let moves = chord.max(along).max(0.0);
-            let wide = noise.hypot(*step);
-            (step / (wide * (4.0 * PI).sqrt())).min(1.0) * (-(moves / (2.0 * wide)).powi(2)).exp()
-        });
-        of.product()
-    };
+    let channels = channels.map(|(v, lsb)| Channel {
+        values: v,
+        step: step(v, lsb),
+        noise: noise(v),
+        uneven: uneven(v),
+    });
+    let chance = |k: usize| -> f64 { channels.iter().map(|c| c.chance(k)).product() };
     let twins: Vec<usize> = (LINE..n.saturating_sub(LINE))
         .filter(|&k| same(k) && !same(k - 1) && !same(k + 1))
         .filter(|&k| chance(k) * (n as f64) < BY_CHANCE)
@@ -96,10 +130,10 @@ pub(crate) fn repeated(recording: &Recording, checked: &mut Checked) {
     // A sample that was put in makes all others late; one that stands in another's place does not, and the way to the next
     // is twice as long. Whatever puts them in does so every time.
     let square = |k: usize| {
-        let way = |(v, ..): &(&Vec<f64>, f64, f64)| (v[k + 1] - v[k]).powi(2);
+        let way = |c: &Channel| (c.values[k + 1] - c.values[k]).powi(2);
         channels.iter().map(way).sum::<f64>()
     };
-    let noisy: f64 = channels.iter().map(|c| 2.0 * c.2.powi(2)).sum();
+    let noisy: f64 = channels.iter().map(|c| 2.0 * c.noise.powi(2)).sum();
     let (mut next, mut usual) = (0.0, 0.0);
     for &k in &twins {
         next += square(k) - noisy;
