@@ -21,7 +21,6 @@ const WHOLE: usize = 32_768;
 const STRETCHES: usize = 4;
 /// So many halvings in a row that are worse end the search.
 const PATIENCE: usize = 3;
-
 /// Above so many times what the spectrum has just above it, something of the drive is left.
 const STEEP: f64 = 1.5;
 /// The same of one line: of noise alone hardly one of a thousand is so high.
@@ -228,12 +227,9 @@ impl<'a> Stretch<'a> {
         let Some((per, phi)) = &self.revolution else {
             return left;
         };
-        let sums = crate::causes::revolution_orders(phi, &left);
-        let power = |order: &usize| sums[*order][0].powi(2) + sums[*order][1].powi(2);
-        let best = (1..sums.len())
-            .filter(|o| o % *per as usize != 0)
-            .max_by(|a, b| power(a).total_cmp(&power(b)));
-        let Some(order) = best else { return left };
+        let Some(order) = crate::causes::strongest_order(*per, phi, &left) else {
+            return left;
+        };
         let wave =
             |f: fn(f64) -> f64| -> Vec<f64> { phi.iter().map(|p| f(order as f64 * p)).collect() };
         let waves = [wave(f64::cos), wave(f64::sin)];

@@ -22,19 +22,6 @@ pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     sums.iter().sum::<f64>() + rest
 }
 
-/// The sum, likewise.
-pub(crate) fn total(values: &[f64]) -> f64 {
-    const SUMS: usize = 8;
-    let (eights, rest) = values.as_chunks::<SUMS>();
-    let mut sums = [0.0; SUMS];
-    for eight in eights {
-        for (sum, value) in sums.iter_mut().zip(eight) {
-            *sum += value;
-        }
-    }
-    sums.iter().chain(rest).sum()
-}
-
 /// `values` without their projection on `shapes`.
 pub(crate) fn without(values: &[f64], shapes: &[Vec<f64>]) -> Vec<f64> {
     let solution = Normal::of_columns(values, shapes).solve();

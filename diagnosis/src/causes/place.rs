@@ -3,6 +3,9 @@
 use std::f64::consts::TAU;
 use std::rc::Rc;
 
+use rustfft::FftPlanner;
+use rustfft::num_complex::Complex;
+
 use super::revolution::{harmonic, turns};
 use crate::block::Block;
 use crate::cause::{Candidate, Domain, Exact, Make, Sign, each};
@@ -10,10 +13,8 @@ use crate::context::Context;
 use crate::finding::{Chip, Parameter};
 use crate::library::{Library, Shape, Use};
 use crate::model::{Residual, Weighed};
-use crate::solve::{Normal, total};
+use crate::solve::Normal;
 
-/// Orders of the revolution that are tried for cogging.
-const ORDERS: usize = 128;
 const PLACES: usize = 72;
 /// Times that a place has to be passed on average for a dip to come every time.
 const AGAIN: f64 = 1.5;
@@ -54,33 +55,38 @@ pub(crate) fn weighed(
     found.into_iter().flatten().collect()
 }
 
-/// Sums of values times exp(−i order φ), for orders 0 … `ORDERS` of the revolution: cos parts, then sin parts.
-pub(crate) fn orders(phi: &[f64], values: &[f64]) -> Vec<[f64; 2]> {
-    /// Samples that are turned together.
-    const TOGETHER: usize = 256;
-    let mut sums = vec![[0.0; 2]; ORDERS + 1];
-    for (phi, values) in phi.chunks(TOGETHER).zip(values.chunks(TOGETHER)) {
-        let turn: Vec<(f64, f64)> = phi.iter().map(|p| p.sin_cos()).collect();
-        let (mut c, mut s) = (values.to_vec(), vec![0.0; values.len()]);
-        for sum in &mut sums {
-            sum[0] += total(&c);
-            sum[1] += total(&s);
-            for ((c, s), (sin, cos)) in c.iter_mut().zip(&mut s).zip(&turn) {
-                (*c, *s) = (*c * cos - *s * sin, *s * cos + *c * sin);
-            }
-        }
+/// Highest order of the revolution that is looked at.
+fn top_order(per: u32) -> usize {
+    /// Orders of the scale period, and of the revolution where there are few of those; and never more than so many.
+    const OF_PERIOD: usize = 8;
+    const LEAST: usize = 128;
+    const MOST: usize = 8192;
+    (OF_PERIOD * per as usize).clamp(LEAST, MOST)
+}
+
+/// Power of values in each order of the revolution from 0 on: the values are gathered in places so narrow that the highest
+/// order loses no more than a hundredth there.
+fn orders(phi: &[f64], values: &[f64], top: usize) -> Vec<f64> {
+    /// Places in a turn of the highest order.
+    const PLACES: usize = 16;
+    let length = (PLACES * top).next_power_of_two();
+    let mut places = vec![Complex::new(0.0, 0.0); length];
+    for (phi, value) in phi.iter().zip(values) {
+        let place = (phi / TAU).rem_euclid(1.0) * length as f64;
+        places[place as usize % length].re += value;
     }
-    sums
+    FftPlanner::new()
+        .plan_fft_forward(length)
+        .process(&mut places);
+    places[..=top].iter().map(|z| z.norm_sqr()).collect()
 }
 
 /// The order of the revolution that is strongest, multiples of the scale period left out: they could be the sensor's.
-fn strongest(context: &Context, phi: &[f64], values: &[f64]) -> Option<usize> {
-    let per = context.periods_per_revolution.unwrap_or(1) as usize;
-    let sums = orders(phi, values);
-    let power = |order: &usize| sums[*order][0].powi(2) + sums[*order][1].powi(2);
-    (1..=ORDERS)
-        .filter(|order| order % per != 0)
-        .max_by(|a, b| power(a).total_cmp(&power(b)))
+pub(crate) fn strongest_order(per: u32, phi: &[f64], values: &[f64]) -> Option<usize> {
+    let power = orders(phi, values, top_order(per));
+    (1..power.len())
+        .filter(|order| order % per as usize != 0)
+        .max_by(|a, b| power[*a].total_cmp(&power[*b]))
 }
 
 /// Values without the order of the revolution that is strongest in them, judged by a part of a long recording. A prediction
@@ -99,7 +105,8 @@ pub(crate) fn without_cogging(context: &Context, mut values: Vec<f64>) -> Vec<f6
         blocks.flatten().copied().collect()
     };
     let (some, at) = (part(&values), part(phi));
-    let Some(order) = strongest(context, &at, &some) else {
+    let per = context.periods_per_revolution.unwrap_or(1);
+    let Some(order) = strongest_order(per, &at, &some) else {
         return values;
     };
     let wave = |f: fn(f64) -> f64| -> Vec<f64> { at.iter().map(|p| f(order as f64 * p)).collect() };
@@ -120,7 +127,8 @@ fn cogging(
     fast: &[f64],
     library: &mut Library,
 ) -> Option<Candidate> {
-    let order = strongest(context, phi, fast)?;
+    let per = context.periods_per_revolution.unwrap_or(1);
+    let order = strongest_order(per, phi, fast)?;
     let make: Make = Rc::new(move |_, library| {
         let place = library.add(
             2,
@@ -137,7 +145,7 @@ fn cogging(
     let order = order as u32;
     let shapes = make(&[], library);
     Some(Candidate {
-        trials: ORDERS as f64,
+        trials: top_order(per) as f64,
         motion: true,
         exact: Some(Exact {
             make,
@@ -225,4 +233,23 @@ fn contamination(phi: &[f64], residual: &Residual, library: &mut Library) -> Vec
         }
     }
     list
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{TAU, strongest_order};
+
+    /// To and fro over three turns, at places that hardly come again.
+    #[test]
+    fn every_order_up_to_eight_periods_is_found_and_those_of_the_period_are_not() {
+        let phi: Vec<f64> = (0..20_000)
+            .map(|k| 1.5 * TAU * (f64::from(k) * 7e-4).sin() - 0.4)
+            .collect();
+        for (per, order) in [(5, 1), (5, 127), (50, 151), (50, 399), (1000, 7999)] {
+            let small = |p: &f64| (f64::from(order) * p + 0.3).cos();
+            let large = |p: &f64| 3.0 * (f64::from(2 * per) * p).sin();
+            let values: Vec<f64> = phi.iter().map(|p| small(p) + large(p)).collect();
+            assert_eq!(strongest_order(per, &phi, &values), Some(order as usize));
+        }
+    }
 }
