@@ -2,7 +2,7 @@
 //!
 //! The long one, with its table: `cargo run --release -p nonius-blind --example campaign -- --help`.
 
-use nonius_blind::{Case, Kind, Score, Summary, page, seal, verdict};
+use nonius_blind::{Case, Kind, Outcome, Score, Summary, page, seal, verdict};
 use rayon::prelude::*;
 
 const SEEDS: std::ops::Range<u64> = 40_000..40_060;
@@ -41,7 +41,6 @@ fn short_campaign() {
     assert!(all.coverage().fraction() >= 0.75, "{}", all.coverage());
 }
 
-/// The score itself: silence, a wrong name, a group.
 /// Random cases in which a cause was named once that was not there: an axis that shakes went back to a code by itself, and
 /// the edge of a lost sample was a glitch.
 #[test]
@@ -54,6 +53,17 @@ fn wrong_names_do_not_come_back() {
     }
 }
 
+/// A random case that ended the program once: a large error of the channels beside cogging that a reference shows.
+#[test]
+fn large_errors_beside_real_motion_and_a_reference_are_both_named() {
+    let case = Case::draw(83_000_145, 20_000).expect("a case can be drawn");
+    let verdict = verdict(&case.csv()).expect("a verdict");
+    let score = Score::of(case.truth.clone(), &case, &verdict);
+    let missed = |o: &Outcome| !matches!(o, Outcome::First | Outcome::Later);
+    assert!(!score.outcomes.iter().any(missed), "{:?}", score.outcomes);
+}
+
+/// The score itself: silence, a wrong name, a group.
 #[test]
 fn silence_a_wrong_name_and_a_group_are_scored_as_such() {
     let seed = (0..)

@@ -63,11 +63,11 @@ impl<'a> System<'a> {
         let mut samples = Samples::new(context, std::mem::take(&mut catalogue.library), data);
         // What is known was taken off exactly, and comes back as it is to first order: so the fit is of the whole.
         let known: Vec<(usize, f64)> = carried.iter().flat_map(Accepted::amounts).collect();
-        let back = known.iter().map(|(i, x)| (*i, -x)).collect::<Vec<_>>();
-        let motion = std::mem::take(&mut samples.data[Row::Motion as usize]);
-        samples.data = samples.left(&back);
         // The reference moves as it did.
-        samples.data[Row::Motion as usize] = motion;
+        let moves = |i: usize| samples.library.atoms[i].row == Row::Motion;
+        let off = known.iter().filter(|(i, _)| !moves(*i));
+        let back = off.map(|(i, x)| (*i, -x)).collect::<Vec<_>>();
+        samples.data = samples.left(&back);
         let mut this = Self {
             context,
             samples,

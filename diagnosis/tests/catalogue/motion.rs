@@ -2,7 +2,9 @@
 
 use std::f64::consts::TAU;
 
-use crate::harness::{Case, PERIODS, PLAIN, REVOLVING, alone, finds, near, within_errors};
+use crate::harness::{
+    Case, PERIODS, PLAIN, REVOLVING, alone, diagnosed, finds, near, within_errors,
+};
 
 #[test]
 fn vibration_and_cogging() {
@@ -87,6 +89,22 @@ fn beside_a_reference() {
         },
     );
     near(&found, "amplitude", 0.002);
+}
+
+/// What is large beside it is taken off the signals, and not off the reference.
+#[test]
+fn beside_a_reference_and_a_large_error() {
+    let found = diagnosed(
+        &Case {
+            motion: |_, a| 0.002 * (13.0 * a / PERIODS).sin(),
+            channels: |c, s, _, _, _| (c + 0.2 * c * c, s),
+            reference: true,
+            ..REVOLVING
+        },
+        3,
+    );
+    let names: Vec<&str> = found.findings.iter().map(|f| f.cause.as_str()).collect();
+    assert_eq!(names, ["even_nonlinearity", "cogging"]);
 }
 
 #[test]
