@@ -3,7 +3,7 @@
 
 use crate::beside::Beside;
 use crate::cause::{Candidate, Domain, Sign};
-use crate::causes::{self, ACCELERATION_GAIN, Catalogue};
+use crate::causes::{self, AC_COUPLING, ACCELERATION_GAIN, Catalogue};
 use crate::context::Context;
 use crate::exact;
 use crate::generic::{self, HOLDS};
@@ -14,8 +14,20 @@ use crate::selection::{Accepted, Unnamed};
 use crate::statistics::{after_trials, log_tail};
 use crate::steps::{self, Change};
 
-/// A drift must hold more: steps and bursts are mostly slow, too.
-const SLOWLY: f64 = 0.9;
+/// Share that a name has to hold of what is near it. A table of an ADC's errors has more entries than are looked at, and an
+/// axis that vibrates does so for more than one reason; a capacitor remembers; steps and bursts are mostly slow, too.
+fn least(candidate: &Candidate) -> f64 {
+    match candidate.domain {
+        Domain::Code | Domain::Motion => HOLDS,
+        Domain::Speed if candidate.name == AC_COUPLING => HOLDS,
+        Domain::Speed => 0.85,
+        Domain::Time => 0.9,
+        Domain::Angle | Domain::Line | Domain::Revolution => 0.95,
+    }
+}
+
+/// Share that it has to hold of what grows with the size of the speed: there a law has no shapes of its own.
+const LAW: f64 = 0.97;
 /// Gain in log-likelihood (an SNR of 300) from which on a choice between causes is made where tangents are exact.
 const LARGE: f64 = 45_000.0;
 /// Most others that are tried there.
@@ -35,7 +47,20 @@ const NOTHING_NEW: f64 = 1e-3;
 /// domain and what looks most like it.
 pub(crate) enum Contender {
     Named(Box<Accepted>, Vec<Accepted>),
-    Unnamed(Unnamed, Domain, &'static str, Vec<Shape>),
+    Unnamed(Nameless),
+}
+
+/// What cannot be named.
+#[derive(Default)]
+pub(crate) struct Nameless {
+    pub(crate) unnamed: Unnamed,
+    pub(crate) domain: Option<Domain>,
+    /// Name of what looks most like it.
+    pub(crate) name: &'static str,
+    /// Shapes that hold it.
+    pub(crate) shapes: Vec<Shape>,
+    /// Log-likelihood that it explains, its numbers paid for, or that steps do.
+    pub(crate) paid: f64,
 }
 
 /// The best cause that holds; one that explains nearly as much may hold where the first does not.
@@ -85,11 +110,8 @@ pub(crate) fn contender(
         }
         let mark = system.samples.library.atoms.len();
         let held = holds(system, catalogue, fit, &own, &rest);
-        let least = if own.candidate.domain == Domain::Time {
-            SLOWLY
-        } else {
-            HOLDS
-        };
+        let least = least(&own.candidate);
+        let grows = held.sizes >= LAW;
         let steps = (own.candidate.domain == Domain::Time)
             .then(|| steps_instead(system, fit, &own))
             .flatten();
@@ -100,7 +122,7 @@ pub(crate) fn contender(
         let listed = |name: &str| name != ACCELERATION_GAIN;
         let locked = goes_with_angle(system.context, &own.candidate);
         let nameable = listed(own.candidate.name) && rivals.iter().all(|r| listed(r)) && !locked;
-        if nameable && slow && rivals.len() <= 1 && held.share >= least {
+        if nameable && slow && rivals.len() <= 1 && grows && held.share >= least {
             system.retain(|i| i < mark);
             cause.confounded = rivals;
             match &named {
@@ -119,6 +141,8 @@ pub(crate) fn contender(
             "at this constant speed it goes with the angle as well".to_owned()
         } else if !slow {
             "steps explain more".to_owned()
+        } else if !grows {
+            "it grows with the speed by another law".to_owned()
         } else if held.share < least {
             format!(
                 "it holds {:.0} % of what any shape there explains",
@@ -143,23 +167,21 @@ pub(crate) fn contender(
         }
         system.extend();
         let shapes = both(&own.candidate.shapes, &held.beyond);
-        let (domain, name) = (own.candidate.domain, own.candidate.name);
-        first = Some(Contender::Unnamed(unnamed, domain, name, shapes));
+        let price = 0.5 * (system.context.samples() as f64).ln();
+        let paid = own.gain - price * own.freedom as f64;
+        first = Some(Contender::Unnamed(Nameless {
+            unnamed,
+            domain: Some(own.candidate.domain),
+            name: own.candidate.name,
+            shapes,
+            paid: paid.max(steps.unwrap_or_default()),
+        }));
     }
     match (named, first) {
         (Some(cause), _) => Contender::Named(cause, others),
         (None, Some(unnamed)) => unnamed,
         // Nothing was tried: there was nothing to try.
-        (None, None) => Contender::Unnamed(
-            Unnamed {
-                log_p: 0.0,
-                gain: 0.0,
-                signature: String::new(),
-            },
-            Domain::Angle,
-            "",
-            vec![],
-        ),
+        (None, None) => Contender::Unnamed(Nameless::default()),
     }
 }
 
@@ -255,6 +277,8 @@ fn steps_instead(system: &System, fit: &Fit, drift: &Scored) -> Option<f64> {
 /// How far a name holds, and the generic shapes that tell.
 struct Held {
     share: f64,
+    /// The same of what grows with the size of the speed in any way.
+    sizes: f64,
     beyond: Vec<Shape>,
 }
 
@@ -292,6 +316,7 @@ fn holds(
     if share < HOLDS {
         return Held {
             share,
+            sizes: 1.0,
             beyond: basis.to_vec(),
         };
     }
@@ -304,17 +329,22 @@ fn holds(
     let library = &mut system.samples.library;
     let around = generic::around(system.context, &best.candidate, library);
     let steady = generic::steady(system.context, &best.candidate, library);
+    let sizes = generic::at_any_speed(system.context, &best.candidate, library);
     let held = gained(system, &best.candidate.shapes);
-    let [known, free, any] = [&named, &steady, &around].map(|list| sure(system, list));
-    let atoms = atoms_of(&[known.as_slice(), &any, &free].concat());
+    let [known, free, any, sizes] =
+        [&named, &steady, &around, &sizes].map(|list| sure(system, list));
+    let atoms = atoms_of(&[known.as_slice(), &any, &free, &sizes].concat());
     let whole = system.among(&atoms);
     let among =
         |shapes: &[Shape]| -> Vec<Shape> { shapes.iter().map(|s| s.among(&atoms)).collect() };
-    let more = Beside::new(&whole, &among(&known)).gain(&among(&free)).0;
+    let beside = Beside::new(&whole, &among(&known));
+    let more = beside.gain(&among(&free)).0;
+    let sizes = self::share(held, beside.gain(&among(&sizes)));
     let beside = Beside::new(&whole, &among(&both(&known, &free)));
     let own = self::share(held + more, beside.gain(&among(&any)));
     Held {
         share: share.min(own),
+        sizes,
         beyond: around,
     }
 }

@@ -183,6 +183,7 @@ fn search(
         let (mut system, catalogue) = exact::look(&context, &mut carried, recording);
         if !coloured {
             system.flicker = None;
+            system.only_white = true;
         }
         let mut selection = select(&context, &mut system, &catalogue, carried.clone(), last);
         if selection.again.is_empty() {
@@ -237,9 +238,12 @@ fn conclude(
     };
     // What looked like it before anything was known may have got a name.
     let flicker = match &system.flicker {
-        Some(_) if !selection.accepted.is_empty() => flicker::find(context, &left.radial),
+        Some(known) if !selection.accepted.is_empty() => known.again(context, &left.radial),
         known => known.clone(),
     };
+    // What is left of an unknown shape can look like anything.
+    let unknown = selection.unnamed.iter().map(|u| u.gain).fold(0.0, f64::max);
+    let flicker = flicker.filter(|f| !f.is_part_of(unknown));
     match flicker.as_ref().map(Flicker::finding) {
         Some(Ok(finding)) => noisy.push(finding),
         Some(Err(unnamed)) => strange.push(unnamed),

@@ -48,6 +48,8 @@ pub(crate) struct Flicker {
     pub(crate) corner: f64,
     gain: f64,
     log_p: f64,
+    /// Slowest part of the spectrum that was looked at, cycles per recording.
+    slowest: usize,
     /// Two levels explain it: whatever it is, it has no name.
     jumps: bool,
 }
@@ -133,7 +135,7 @@ fn window(k: usize, n: usize) -> f64 {
 }
 
 /// What noise of the two-sided spectrum 1/|f| is expected to show: itself, and its image about twice the angle.
-fn expected(context: &Context) -> Vec<f64> {
+fn expected(context: &Context, slowest: usize) -> Vec<f64> {
     let n = context.samples();
     let per = context.rate / n as f64;
     let mut planner = FftPlanner::new();
@@ -152,7 +154,7 @@ fn expected(context: &Context) -> Vec<f64> {
     let own = |k: usize| {
         let cycles = k.min(n - k);
         // Slower parts were taken off with the polynomials of time.
-        if cycles < SLOWEST / 2 {
+        if cycles < slowest.div_ceil(2) {
             0.0
         } else {
             1.0 / (cycles as f64 * per)
@@ -169,7 +171,7 @@ fn expected(context: &Context) -> Vec<f64> {
 }
 
 /// Lines of the spectrum of both channels. Every second one, for neighbours share the window.
-fn spectrum(context: &Context, radial: &[f64]) -> Vec<Line> {
+fn spectrum(context: &Context, radial: &[f64], slowest: usize) -> Vec<Line> {
     let n = radial.len();
     let mut both: Vec<Complex<f64>> = (0..n)
         .map(|k| {
@@ -178,7 +180,7 @@ fn spectrum(context: &Context, radial: &[f64]) -> Vec<Line> {
         })
         .collect();
     FftPlanner::new().plan_fft_forward(n).process(&mut both);
-    let flicker = expected(context);
+    let flicker = expected(context, slowest);
     let last = (HIGHEST * n as f64 / 2.0) as usize;
     let line = |k: usize| {
         // The two sides of the transform of the pair hold both channels.
@@ -190,7 +192,7 @@ fn spectrum(context: &Context, radial: &[f64]) -> Vec<Line> {
             mean(flicker[k], flicker[n - k]),
         )
     };
-    (SLOWEST..=last).step_by(2).map(line).collect()
+    (slowest..=last).step_by(2).map(line).collect()
 }
 
 /// Lines gathered into bands.
@@ -221,7 +223,7 @@ fn without_hum(lines: &mut [Line]) {
 
 /// The spectrum of what is left of the radius in bands, without hum: for plots.
 pub(crate) fn gathered(context: &Context, radial: &[f64]) -> Vec<Band> {
-    let mut lines = spectrum(context, radial);
+    let mut lines = spectrum(context, radial, SLOWEST);
     without_hum(&mut lines);
     bands(&lines)
 }
@@ -231,7 +233,7 @@ pub(crate) fn likelihood_of(context: &Context, radial: &[f64]) -> Option<f64> {
     if radial.len() < 64 {
         return None;
     }
-    let mut lines = spectrum(context, radial);
+    let mut lines = spectrum(context, radial, SLOWEST);
     if lines.len() < FEWEST {
         return None;
     }
@@ -240,11 +242,11 @@ pub(crate) fn likelihood_of(context: &Context, radial: &[f64]) -> Option<f64> {
 }
 
 /// Whether two levels explain more of the radius than flicker noise with a gain in log-likelihood does, and leave no such noise.
-fn jumps(context: &Context, radial: &[f64], gain: f64) -> bool {
+fn jumps(context: &Context, radial: &[f64], gain: f64, slowest: usize) -> bool {
     let Some(two) = telegraph::two_levels(context, radial).filter(|two| two.gain > gain) else {
         return false;
     };
-    let mut lines = spectrum(context, &two.left);
+    let mut lines = spectrum(context, &two.left, slowest);
     without_hum(&mut lines);
     let bands = bands(&lines);
     corner(&lines, &bands).1 - beside(&bands, 0.0).1 < LEFT * gain
@@ -252,11 +254,23 @@ fn jumps(context: &Context, radial: &[f64], gain: f64) -> bool {
 
 /// Flicker noise in what everything else leaves of the radius.
 pub(crate) fn find(context: &Context, radial: &[f64]) -> Option<Flicker> {
+    find_from(context, radial, SLOWEST)
+}
+
+/// Flicker noise where it explains clearly more than a slow change or steps do, whose log-likelihood, their numbers paid for,
+/// is given: of weak noise hardly more than its slowest parts are seen.
+pub(crate) fn instead(context: &Context, radial: &[f64], change: f64) -> Option<Flicker> {
+    const CLEARLY: f64 = 1.5;
+    find_from(context, radial, 1).filter(|f| !f.jumps && f.gain > CLEARLY * change)
+}
+
+/// Flicker noise in a spectrum from so many cycles per recording on.
+fn find_from(context: &Context, radial: &[f64], slowest: usize) -> Option<Flicker> {
     let n = radial.len();
     if n < 64 {
         return None;
     }
-    let mut lines = spectrum(context, radial);
+    let mut lines = spectrum(context, radial, slowest);
     if lines.len() < FEWEST {
         return None;
     }
@@ -288,11 +302,23 @@ pub(crate) fn find(context: &Context, radial: &[f64]) -> Option<Flicker> {
         corner: best.0,
         gain,
         log_p,
-        jumps: jumps(context, radial, gain),
+        slowest,
+        jumps: jumps(context, radial, gain, slowest),
     })
 }
 
 impl Flicker {
+    /// The same noise in what is left of the radius when more is known.
+    pub(crate) fn again(&self, context: &Context, radial: &[f64]) -> Option<Self> {
+        find_from(context, radial, self.slowest)
+    }
+
+    /// Whether something unknown explains so much more that this may be a part of it.
+    pub(crate) fn is_part_of(&self, unknown: f64) -> bool {
+        const MUCH: f64 = 5.0;
+        unknown > MUCH * self.gain
+    }
+
     /// The finding, whose gain in the residual is for the caller to say; or what it is where it has no name.
     pub(crate) fn finding(&self) -> Result<Finding, Unnamed> {
         if self.jumps {

@@ -8,7 +8,7 @@ use std::rc::Rc;
 
 use crate::block::Block;
 use crate::cause::{Candidate, Domain};
-use crate::causes::{line_wave, speed_varies};
+use crate::causes::{AC_COUPLING, line_wave, speed_varies};
 use crate::context::Context;
 use crate::library::{Group, Library, Row, Shape, Use};
 
@@ -22,6 +22,9 @@ const SLOW: usize = 8;
 const DRIFT: usize = 40;
 /// Knots over the range of speeds.
 const SPEEDS: usize = 12;
+
+/// Knots over the sizes of the speed.
+const SIZES: usize = 6;
 
 /// Functions of a block that amounts are multiplied by: which of them, its values.
 type Modulation = Rc<dyn Fn(&Block, usize, &mut [f64])>;
@@ -221,6 +224,25 @@ pub(crate) fn steady(
     }
     let first = &candidate.shapes[..candidate.shapes.len().min(4)];
     modulated(first, knots, in_time(context, knots), false, library)
+}
+
+/// What a cause does that goes with the speed of the moment, growing with its size in any way: what its name claims of that
+/// is tested.
+pub(crate) fn at_any_speed(
+    context: &Context,
+    candidate: &Candidate,
+    library: &mut Library,
+) -> Vec<Shape> {
+    let now = candidate.domain == Domain::Speed && candidate.name != AC_COUPLING;
+    if !now || !speed_varies(context) {
+        return vec![];
+    }
+    let top = context.top_speed();
+    let by: Modulation = Rc::new(move |block, i, out| {
+        let pairs = out.iter_mut().zip(block.speed);
+        pairs.for_each(|(o, v)| *o = hat(SIZES, i, v.abs() / top));
+    });
+    modulated(&candidate.shapes, SIZES, by, false, library)
 }
 
 /// A basis that holds a cause and what is near it, beside the catalogue's basis of the domain.

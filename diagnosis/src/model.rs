@@ -35,6 +35,8 @@ pub(crate) struct System<'a> {
     tried: usize,
     /// Flicker noise in what everything that any cause could explain leaves.
     pub(crate) flicker: Option<Flicker>,
+    /// Such noise is not looked for.
+    pub(crate) only_white: bool,
 }
 
 /// Shapes in the model, and their amounts.
@@ -75,6 +77,7 @@ impl<'a> System<'a> {
             every,
             tried: every,
             flicker: None,
+            only_white: false,
         };
         let atoms: Vec<usize> = (0..this.samples.library.atoms.len()).collect();
         for (whitener, data) in this.samples.whiteners.iter_mut().zip(&this.samples.data) {

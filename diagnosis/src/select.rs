@@ -2,11 +2,12 @@
 
 use crate::beside::Beside;
 use crate::cause::{Candidate, Domain, Sign};
-use crate::causes::{self, Catalogue, HYSTERESIS};
+use crate::causes::{self, AC_COUPLING, Catalogue, HYSTERESIS};
 use crate::contender::{Contender, contender, lives};
 use crate::context::Context;
 use crate::doubt::doubt;
 use crate::exact::{self, Start};
+use crate::flicker;
 use crate::library::Shape;
 use crate::model::{Fit, Residual, System, atoms_of};
 use crate::selection::{Accepted, Selection, Unnamed};
@@ -242,6 +243,18 @@ pub(crate) fn select(
     search(context, system, catalogue, found.accepted, last)
 }
 
+/// Beside flicker noise, what is slow in the channels is that noise: drift cannot be told from it, nor can these.
+const SLOW: [&str; 2] = [HYSTERESIS, AC_COUPLING];
+
+/// Whether what is slow is flicker noise, which goes to the system then.
+fn slow_noise(system: &mut System, residual: &Residual, change: f64) -> bool {
+    if system.only_white || system.flicker.is_some() {
+        return false;
+    }
+    system.flicker = flicker::instead(system.context, &residual.radial, change);
+    system.flicker.is_some()
+}
+
 fn search(
     context: &Context,
     system: &mut System,
@@ -258,9 +271,8 @@ fn search(
     let mut closed: Vec<Domain> = vec![];
     let mut refused: Vec<&'static str> = vec![];
     if system.flicker.is_some() {
-        // What is slow in the channels is that noise: it cannot be told from drift here.
-        closed.extend([Domain::Time]);
-        refused.extend([HYSTERESIS, "ac_coupling"]);
+        closed.push(Domain::Time);
+        refused.extend(SLOW);
     }
     while found.accepted.len() + found.unnamed.len() < MOST {
         let residual = system.residual(&found.fit);
@@ -301,15 +313,22 @@ fn search(
             break;
         }
         match contender(system, catalogue, &found.fit, scored) {
-            Contender::Unnamed(..) if partial => break,
-            // Real motion that is no line is the axis at work, and no error.
-            Contender::Unnamed(_, Domain::Motion, name, _) => refused.push(name),
-            Contender::Unnamed(unnamed, domain, _, shapes) => {
-                found.unnamed.push(unnamed);
-                closed.push(domain);
-                let generic = both(&found.fit.shapes, catalogue.basis(domain));
-                found.fit = system.fit(both(&generic, &shapes));
-            }
+            Contender::Unnamed(_) if partial => break,
+            Contender::Unnamed(one) => match one.domain {
+                // Real motion that is no line is the axis at work, and no error.
+                Some(Domain::Motion) => refused.push(one.name),
+                Some(Domain::Time) if slow_noise(system, &residual, one.paid) => {
+                    closed.push(Domain::Time);
+                    refused.extend(SLOW);
+                }
+                domain => {
+                    found.unnamed.push(one.unnamed);
+                    closed.extend(domain);
+                    let generic = domain.map_or(&[][..], |d| catalogue.basis(d));
+                    let generic = both(&found.fit.shapes, generic);
+                    found.fit = system.fit(both(&generic, &one.shapes));
+                }
+            },
             Contender::Named(mut cause, others) => {
                 cause.first = found.fit.shapes.len();
                 let shapes = both(&found.fit.shapes, &cause.candidate.shapes);

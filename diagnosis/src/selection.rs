@@ -66,7 +66,7 @@ fn without(fit: &Fit, range: &std::ops::Range<usize>, system: &System) -> Fit {
 }
 
 /// What cannot be named.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Unnamed {
     pub(crate) log_p: f64,
     /// Gain in log-likelihood of the shape that is nearest to it.

@@ -4,8 +4,8 @@ use std::cell::RefCell;
 use std::f64::consts::TAU;
 use std::rc::Rc;
 
-use super::Catalogue;
 use super::speed::follows;
+use super::{AC_COUPLING, Catalogue};
 use crate::block::Block;
 use crate::cause::{Candidate, Domain, Estimate, Exact, Sign};
 use crate::context::Context;
@@ -101,7 +101,7 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
                     p[0].value
                 )
             }),
-            ..Candidate::new("ac_coupling", Domain::Speed, shapes)
+            ..Candidate::new(AC_COUPLING, Domain::Speed, shapes)
         });
         // At constant speed nothing else of a high pass is seen.
         catalogue.candidates.push(Candidate {
@@ -121,7 +121,7 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
                     p[0].value
                 )
             }),
-            ..Candidate::new("ac_coupling", Domain::Time, leaking)
+            ..Candidate::new(AC_COUPLING, Domain::Time, leaking)
         });
         least = corner;
         corner *= 3.0;

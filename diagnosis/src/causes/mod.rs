@@ -31,6 +31,9 @@ pub(crate) const ORDERS: usize = 8;
 /// Offsets with the direction of motion.
 pub(crate) const HYSTERESIS: &str = "hysteresis";
 
+/// Capacitors in the channels.
+pub(crate) const AC_COUPLING: &str = "ac_coupling";
+
 /// A gain that follows the acceleration: no cause of the contract's list, so it is never a name.
 pub(crate) const ACCELERATION_GAIN: &str = "acceleration_gain";
 
