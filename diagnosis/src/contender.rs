@@ -262,16 +262,16 @@ fn goes_with_angle(context: &Context, candidate: &Candidate) -> bool {
 
 /// Log-likelihood that steps in time explain of the radius, where that is more than a slow change does: then it is no drift.
 fn steps_instead(system: &System, fit: &Fit, drift: &Scored) -> Option<f64> {
-    let change = if drift.candidate.name == "gain_drift" {
-        Change::Gains
+    let changes: &[Change] = if drift.candidate.name == "gain_drift" {
+        &[Change::Gains, Change::Radius]
     } else {
-        Change::Offsets
+        &[Change::Offsets]
     };
     // The five parameters and other causes as they are beside the drift: without it they are off by what they take of it.
     let with = system.fit(both(&fit.shapes, &drift.candidate.shapes));
     let others = amounts(&fit.shapes, &with.solution.x);
     let [radial, ..] = system.samples.left(&others);
-    steps::instead(system.context, &radial, system.noise(), change)
+    steps::instead(system.context, &radial, system.noise(), changes)
 }
 
 /// How far a name holds, and the generic shapes that tell.

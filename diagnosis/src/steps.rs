@@ -17,14 +17,26 @@ const STRETCHES: usize = 200;
 const MOST: usize = 24;
 /// Knots of the lines: as few as follow it are the best.
 const KNOTS: [usize; 8] = [2, 3, 4, 6, 8, 12, 20, 40];
-/// Numbers of a step, beside its place, and of a knot.
+/// Most numbers of a step, beside its place, and of a knot.
 const CHANNELS: usize = 2;
 
 /// What changes.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) enum Change {
     Gains,
+    /// Both gains alike.
+    Radius,
     Offsets,
+}
+
+impl Change {
+    /// Numbers of a step and of a knot.
+    fn numbers(self) -> usize {
+        match self {
+            Self::Radius => 1,
+            Self::Gains | Self::Offsets => CHANNELS,
+        }
+    }
 }
 
 /// What a radial residual holds of both channels, in units of the noise.
@@ -36,31 +48,40 @@ struct Changing<'a> {
     change: Change,
 }
 
-/// Log-likelihood that steps explain of a radial residual, with noise of that rms, where they explain more than lines do.
+/// Log-likelihood that steps explain of a radial residual, with noise of that rms, where they explain more than lines do,
+/// of whichever of these changes.
 pub(crate) fn instead(
     context: &Context,
     radial: &[f64],
     noise: f64,
-    change: Change,
+    changes: &[Change],
 ) -> Option<f64> {
     let count = STRETCHES.min(radial.len() / 8);
     if count < 2 || noise <= 0.0 {
         return None;
     }
-    let changing = Changing {
-        context,
-        radial,
-        noise,
-        change,
-    };
-    let stretches: Vec<PairSums> = (0..count)
-        .map(|i| changing.sums(i * radial.len() / count..(i + 1) * radial.len() / count))
-        .collect();
     // Of a number.
     let price = 0.5 * (radial.len() as f64).ln();
-    let lines = KNOTS.into_iter().map(|knots| changing.lines(knots, price));
-    let steps = steps(&stretches, CHANNELS as f64 * price + (count as f64).ln());
-    (lines.fold(f64::MIN, f64::max) < steps).then_some(steps)
+    let (mut lines, mut steps) = (f64::MIN, f64::MIN);
+    for change in changes {
+        let changing = Changing {
+            context,
+            radial,
+            noise,
+            change: *change,
+        };
+        let stretches: Vec<PairSums> = (0..count)
+            .map(|i| changing.sums(i * radial.len() / count..(i + 1) * radial.len() / count))
+            .collect();
+        let of_lines = KNOTS.into_iter().map(|knots| changing.lines(knots, price));
+        lines = of_lines.fold(lines, f64::max);
+        let numbers = change.numbers() as f64;
+        steps = steps.max(self::steps(
+            &stretches,
+            numbers * price + (count as f64).ln(),
+        ));
+    }
+    (lines < steps).then_some(steps)
 }
 
 impl Changing<'_> {
@@ -69,6 +90,7 @@ impl Changing<'_> {
         let (cos, sin) = (self.context.cos[k], self.context.sin[k]);
         let [c, s] = match self.change {
             Change::Gains => [cos * cos, sin * sin],
+            Change::Radius => [1.0, 0.0],
             Change::Offsets => [cos, sin],
         };
         [c, s, self.radial[k] / self.noise].map(|v| v * self.context.weight[k])
@@ -104,7 +126,7 @@ impl Changing<'_> {
         }
         // Knots while the scale stands still have no numbers.
         let lines = Normal::new(gram, right, 0.0).solve();
-        lines.gain() - price * (lines.rank as f64 - CHANNELS as f64)
+        lines.gain() - price * (lines.rank as f64 - self.change.numbers() as f64)
     }
 }
 
