@@ -224,6 +224,17 @@ impl Context {
         });
     }
 
+    /// Acceleration of the drive, radians per second squared: where the axis shakes, [`Self::acceleration`] is that of the
+    /// shaking.
+    pub(crate) fn drive_acceleration(&self) -> Vec<f64> {
+        let (Some(_), Some(motion)) = (&self.finer, &self.spline) else {
+            return self.acceleration.clone();
+        };
+        let speed = motion.derivative(&motion.fit(&self.slow(), &self.weight));
+        let per_sample = gradient(&speed).into_iter();
+        per_sample.map(|a| a * self.rate * self.rate).collect()
+    }
+
     /// Radial residual.
     #[must_use]
     pub fn radial(&self) -> Vec<f64> {

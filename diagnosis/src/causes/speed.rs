@@ -74,8 +74,10 @@ pub(super) struct Speed {
 impl Speed {
     fn new(context: &Context, library: &mut Library) -> Self {
         let top = context.top_speed();
-        let steepest = context.acceleration.iter();
-        let steepest = steepest.fold(f64::MIN_POSITIVE, |m, a| m.max(a.abs()));
+        let mut acceleration = context.drive_acceleration();
+        let steepest = acceleration.iter().map(|a| a.abs());
+        let steepest = steepest.fold(f64::MIN_POSITIVE, f64::max);
+        acceleration.iter_mut().for_each(|a| *a /= steepest);
         let sides = Rc::new(sides(context));
         let functions = move |block: &Block, which| {
             let by = |f: fn(f64) -> f64| block.speed.iter().map(|v| f(v / top)).collect();
@@ -85,7 +87,7 @@ impl Speed {
                 SIGN => sides[block.start..][..block.len()].to_vec(),
                 // It takes some way, and so some speed, to turn over.
                 SOFT => by(|v| v / (v * v + 0.05 * 0.05).sqrt()),
-                _ => block.acceleration.iter().map(|a| a / steepest).collect(),
+                _ => acceleration[block.start..][..block.len()].to_vec(),
             }
         };
         Self {
