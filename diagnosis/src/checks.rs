@@ -220,10 +220,12 @@ fn glitches(recording: &Recording, checked: &mut Checked) {
     for (which, values) in channels.into_iter().enumerate() {
         let sizes: Vec<f64> = off[which].iter().map(|o| o.abs()).collect();
         let typical = ninth(&sizes);
-        let (low, high) = ends(values);
+        // Where the neighbours say that it is: a glitch beyond the others would be alone in its range, and typical there.
+        let expected: Vec<f64> = values.iter().zip(&off[which]).map(|(v, o)| v - o).collect();
+        let (low, high) = ends(&expected);
         let range = |v: f64| (((v - low) / (high - low) * RANGES as f64) as usize).min(RANGES - 1);
         let mut alike: Vec<Vec<f64>> = vec![vec![]; RANGES];
-        for (v, size) in values.iter().zip(&sizes) {
+        for (v, size) in expected.iter().zip(&sizes) {
             alike[range(*v)].push(*size);
         }
         let alike: Vec<f64> = alike.iter().map(|a| ninth(a) / typical).collect();
@@ -236,7 +238,7 @@ fn glitches(recording: &Recording, checked: &mut Checked) {
             // Noise that grows with the signal, its slope or the speed is larger at some values and times than at others.
             let near = &sizes[k.saturating_sub(AROUND)..(k + AROUND + 1).min(n)];
             let there = (ninth(near) / typical / BY_CHANCE).max(1.0);
-            let larger = there * alike[range(values[k])].max(1.0);
+            let larger = there * alike[range(expected[k])].max(1.0);
             let limit = (FAR * typical * larger).max(floor);
             // A doubled sample is late, not wrong.
             let same = |j: usize| {

@@ -23,6 +23,15 @@ fn samples() {
     });
 }
 
+/// No other sample is near it in value: how large noise is there, only its neighbours can tell.
+#[test]
+fn a_glitch_beyond_every_other_value() {
+    shows("glitches", |rows| {
+        let lowest = (10..rows.len() - 10).min_by(|a, b| rows[*a][2].total_cmp(&rows[*b][2]));
+        rows[lowest.expect("samples")][2] -= 0.15;
+    });
+}
+
 /// Even where the scale moves by little more than the noise from sample to sample: chance hardly brings both codes back.
 #[test]
 fn samples_repeated_in_noise() {
