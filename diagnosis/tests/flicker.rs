@@ -116,6 +116,25 @@ fn it_is_found() {
     }
 }
 
+/// So weak that hardly more than its slowest parts are seen, which steps, a drift or a capacitor could be: half of them are
+/// known, and hardly another name is given.
+#[test]
+fn weak_noise_is_told_from_steps() {
+    let (mut known, mut other) = (0, 0);
+    for seed in 0..16 {
+        let found = diagnosed(&Colour::Flicker(0.00004), seed, |_| 0.0, |_| 0.0);
+        for name in names(&found) {
+            if name == "flicker_noise" {
+                known += 1;
+            } else {
+                other += 1;
+            }
+        }
+    }
+    assert!(known >= 7, "{known} of 16");
+    assert!(other <= 1, "{other} of 16");
+}
+
 #[test]
 fn it_is_not_claimed_of_anything_else() {
     let still: OfTime = |_| 0.0;

@@ -1,6 +1,6 @@
 //! Causes that grow with the speed or turn over with its sign.
 
-use crate::harness::{Case, NOISE, PLAIN, alone, finds, near, within_errors};
+use crate::harness::{Case, NOISE, PLAIN, alone, diagnosed, finds, names, near, within_errors};
 
 /// The offsets turn over with the direction, by so many per mille of the amplitude.
 fn turning<const COS: i32, const SIN: i32>() -> Case {
@@ -132,4 +132,22 @@ fn large() {
     within_errors(&found, "offset_cos", 0.003);
     let found = alone("latency", &late::<30>());
     within_errors(&found, "delay_s", 3e-5);
+}
+
+/// A radius that falls with the speed as a capacitor's memory makes it, to half at a fourth of the largest speed and hardly
+/// farther above: no low pass, although one explains most of it.
+#[test]
+fn another_law_of_the_speed_has_no_name() {
+    let found = diagnosed(
+        &Case {
+            channels: |c, s, _, _, v| {
+                let soaked = 0.004 / (1.0 + (v / 800.0).powi(2));
+                (c * (1.0 + soaked), s * (1.0 + soaked))
+            },
+            ..PLAIN
+        },
+        5,
+    );
+    assert!(names(&found).is_empty(), "{:?}", names(&found));
+    assert!(found.unexplained.significant);
 }
