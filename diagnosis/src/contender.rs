@@ -3,31 +3,18 @@
 
 use crate::beside::Beside;
 use crate::cause::{Candidate, Domain, Sign};
-use crate::causes::{self, AC_COUPLING, ACCELERATION_GAIN, Catalogue};
+use crate::causes::{self, ACCELERATION_GAIN, Catalogue};
 use crate::context::Context;
 use crate::exact;
-use crate::generic::{self, HOLDS};
+use crate::held::holds;
 use crate::library::Shape;
-use crate::model::{Fit, System, amounts, atoms_of};
-use crate::select::{KINDS, RIVALS, SHOWN, Scored, both, score};
+use crate::model::{Fit, System, amounts};
+use crate::score::{RIVALS, Scored, score};
+use crate::select::both;
 use crate::selection::{Accepted, Unnamed};
-use crate::statistics::{after_trials, log_tail};
+use crate::statistics::log_tail;
 use crate::steps::{self, Change};
 
-/// Share that a name has to hold of what is near it. A table of an ADC's errors has more entries than are looked at, and an
-/// axis that vibrates does so for more than one reason; a capacitor remembers; steps and bursts are mostly slow, too.
-fn least(candidate: &Candidate) -> f64 {
-    match candidate.domain {
-        Domain::Code | Domain::Motion => HOLDS,
-        Domain::Speed if candidate.name == AC_COUPLING => HOLDS,
-        Domain::Speed => 0.85,
-        Domain::Time => 0.9,
-        Domain::Angle | Domain::Line | Domain::Revolution => 0.95,
-    }
-}
-
-/// Share that it has to hold of what grows with the size of the speed: there a law has no shapes of its own.
-const LAW: f64 = 0.97;
 /// Gain in log-likelihood (an SNR of 300) from which on a choice between causes is made where tangents are exact.
 const LARGE: f64 = 45_000.0;
 /// Most others that are tried there.
@@ -38,8 +25,6 @@ const NEARLY: f64 = 0.8;
 const AS_WELL: f64 = 0.95;
 /// A drift of the offsets.
 const DRIFT: &str = "offset_drift";
-/// Most causes that stand beside another.
-const MOST_BESIDE: usize = 3;
 /// A cause that adds less than this probability says nothing new.
 const NOTHING_NEW: f64 = 1e-3;
 
@@ -110,8 +95,6 @@ pub(crate) fn contender(
         }
         let mark = system.samples.library.atoms.len();
         let held = holds(system, catalogue, fit, &own, &rest);
-        let least = least(&own.candidate);
-        let grows = held.sizes >= LAW;
         let steps = (own.candidate.domain == Domain::Time)
             .then(|| steps_instead(system, fit, &own))
             .flatten();
@@ -122,7 +105,7 @@ pub(crate) fn contender(
         let listed = |name: &str| name != ACCELERATION_GAIN;
         let locked = goes_with_angle(system.context, &own.candidate);
         let nameable = listed(own.candidate.name) && rivals.iter().all(|r| listed(r)) && !locked;
-        if nameable && slow && rivals.len() <= 1 && grows && held.share >= least {
+        if nameable && slow && rivals.len() <= 1 && held.refusal.is_none() {
             system.retain(|i| i < mark);
             cause.confounded = rivals;
             match &named {
@@ -141,13 +124,8 @@ pub(crate) fn contender(
             "at this constant speed it goes with the angle as well".to_owned()
         } else if !slow {
             "steps explain more".to_owned()
-        } else if !grows {
-            "it grows with the speed by another law".to_owned()
-        } else if held.share < least {
-            format!(
-                "it holds {:.0} % of what any shape there explains",
-                held.share * 100.0
-            )
+        } else if let Some(refusal) = held.refusal {
+            refusal
         } else {
             format!("{} explain it as well", rivals.join(", ").replace('_', " "))
         };
@@ -272,115 +250,6 @@ fn steps_instead(system: &System, fit: &Fit, drift: &Scored) -> Option<f64> {
     let others = amounts(&fit.shapes, &with.solution.x);
     let [radial, ..] = system.samples.left(&others);
     steps::instead(system.context, &radial, system.noise(), changes)
-}
-
-/// How far a name holds, and the generic shapes that tell.
-struct Held {
-    share: f64,
-    /// The same of what grows with the size of the speed in any way.
-    sizes: f64,
-    beyond: Vec<Shape>,
-}
-
-/// Share of what generic bases explain that named shapes hold: the best one, and others of the catalogue that stand beside
-/// it. One basis is that of the domain, the other is made around the best itself.
-fn holds(
-    system: &mut System,
-    catalogue: &Catalogue,
-    fit: &Fit,
-    best: &Scored,
-    others: &[&Scored],
-) -> Held {
-    let domain = best.candidate.domain;
-    let basis = catalogue.basis(domain);
-    // Where the axis vibrates only the radius tells what the sensor does.
-    let sure = |system: &System, shapes: &[Shape]| {
-        if domain == Domain::Motion {
-            shapes.to_vec()
-        } else {
-            system.sure(shapes)
-        }
-    };
-    let mut named = both(&fit.shapes, &best.candidate.shapes);
-    let same = |o: &Scored| o.candidate.domain == domain;
-    if !basis.is_empty() {
-        stand_beside(system, &mut named, others, same);
-    }
-    let gained = |system: &System, shapes: &[Shape]| {
-        let beside = Beside::new(&system.total, &sure(system, &fit.shapes));
-        beside.gain(&sure(system, shapes)).0
-    };
-    let held = gained(system, &named[fit.shapes.len()..]);
-    let beside = Beside::new(&system.total, &sure(system, &named));
-    let share = share(held, beside.gain(&sure(system, basis)));
-    if share < HOLDS {
-        return Held {
-            share,
-            sizes: 1.0,
-            beyond: basis.to_vec(),
-        };
-    }
-    // Other causes may be there too, and no name answers for them.
-    let (own, line) = (best.candidate.name, domain == Domain::Line);
-    stand_beside(system, &mut named, others, |o| {
-        line && same(o) && o.candidate.name != own
-    });
-    stand_beside(system, &mut named, others, |o| !same(o));
-    let library = &mut system.samples.library;
-    let around = generic::around(system.context, &best.candidate, library);
-    let steady = generic::steady(system.context, &best.candidate, library);
-    let sizes = generic::at_any_speed(system.context, &best.candidate, library);
-    let held = gained(system, &best.candidate.shapes);
-    let [known, free, any, sizes] =
-        [&named, &steady, &around, &sizes].map(|list| sure(system, list));
-    let atoms = atoms_of(&[known.as_slice(), &any, &free, &sizes].concat());
-    let whole = system.among(&atoms);
-    let among =
-        |shapes: &[Shape]| -> Vec<Shape> { shapes.iter().map(|s| s.among(&atoms)).collect() };
-    let beside = Beside::new(&whole, &among(&known));
-    let more = beside.gain(&among(&free)).0;
-    let sizes = self::share(held, beside.gain(&among(&sizes)));
-    let beside = Beside::new(&whole, &among(&both(&known, &free)));
-    let own = self::share(held + more, beside.gain(&among(&any)));
-    Held {
-        share: share.min(own),
-        sizes,
-        beyond: around,
-    }
-}
-
-/// Adds causes that stand beside the named ones; what they explain.
-fn stand_beside(
-    system: &System,
-    named: &mut Vec<Shape>,
-    others: &[&Scored],
-    wanted: impl Fn(&Scored) -> bool,
-) -> f64 {
-    let mut all = 0.0;
-    for _ in 0..MOST_BESIDE {
-        let beside = Beside::new(&system.total, named);
-        let next = others
-            .iter()
-            .filter(|o| wanted(o))
-            .filter_map(|o| {
-                let (gain, freedom) = beside.gain(&o.candidate.shapes);
-                let log_p = after_trials(log_tail(2.0 * gain, freedom), o.candidate.trials * KINDS);
-                (freedom > 0 && log_p < SHOWN.ln()).then_some((log_p, gain, o))
-            })
-            .min_by(|a, b| a.0.total_cmp(&b.0));
-        let Some((_, gain, other)) = next else { break };
-        named.extend(other.candidate.shapes.iter().cloned());
-        all += gain;
-    }
-    all
-}
-
-/// What is held of it and of what is beyond.
-pub(crate) fn share(held: f64, (beyond, freedom): (f64, usize)) -> f64 {
-    // What as many free numbers explain of noise alone does not count against it.
-    let spread = (2.0 * freedom as f64).sqrt();
-    let beyond = (beyond - freedom as f64 / 2.0 - 2.0 * spread).max(0.0);
-    held / (held + beyond)
 }
 
 /// Where something lives, in words.

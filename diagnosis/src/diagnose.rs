@@ -14,7 +14,8 @@ use crate::library::Row;
 use crate::model::System;
 use crate::noise;
 use crate::repair::{Repaired, repair};
-use crate::select::{KINDS, select};
+use crate::score::KINDS;
+use crate::select::select;
 use crate::selection::{Accepted, Selection, Unnamed};
 
 /// Most times that a recording is looked at anew.

@@ -5,9 +5,10 @@
 use crate::beside::Beside;
 use crate::cause::Domain;
 use crate::causes::Catalogue;
-use crate::contender::{lives, share};
+use crate::contender::lives;
 use crate::finding::Finding;
 use crate::generic::HOLDS;
+use crate::held::share;
 use crate::library::Shape;
 use crate::model::System;
 use crate::selection::{Selection, Unnamed};

@@ -1,7 +1,7 @@
 //! Which causes are in a recording: the one that explains most first, rivals named, unknown shapes left unnamed.
 
 use crate::beside::Beside;
-use crate::cause::{Candidate, Domain, Sign};
+use crate::cause::{Candidate, Domain};
 use crate::causes::{self, AC_COUPLING, Catalogue, HYSTERESIS};
 use crate::contender::{Contender, contender, lives};
 use crate::context::Context;
@@ -10,130 +10,19 @@ use crate::exact::{self, Start};
 use crate::flicker;
 use crate::library::Shape;
 use crate::model::{Fit, Residual, System, atoms_of};
+use crate::score::{SHOWN, Scored, likely, score, worth};
 use crate::selection::{Accepted, Selection, Unnamed};
-use crate::solve::Solution;
 use crate::statistics::{after_trials, log_tail};
 
-/// Global probability below which a cause is shown.
-pub(crate) const SHOWN: f64 = 3e-4;
-/// Kinds of cause that are tried.
-pub(crate) const KINDS: f64 = 22.0;
 /// Most causes of one recording.
 const MOST: usize = 8;
-/// So many times the number on its grid, an amount that is that number may be.
-const GRID: f64 = 3.0;
 /// Share of what could not be named that a cause has to explain beside it to be named.
 const BEYOND_UNKNOWN: f64 = 0.5;
 /// Gain in log-likelihood (an SNR of 45) from which on a part of a long recording is enough to name a cause.
 const CLEAR: f64 = 1000.0;
-/// Most that a cause of which little is seen does, in amplitudes rms.
-const LARGEST: f64 = 0.1;
-/// Share of the power of what it does that is little.
-const SEEN: f64 = 0.05;
-/// Gain in log-likelihood (an SNR of 4) that a cause has to have beyond how it was when the recording began.
-const ITSELF: f64 = 8.0;
-/// Share of the best gain below which another cause is no rival.
-pub(crate) const RIVALS: f64 = 0.6;
-
-pub(crate) struct Scored {
-    pub(crate) candidate: Candidate,
-    pub(crate) gain: f64,
-    pub(crate) freedom: usize,
-    pub(crate) log_p: f64,
-    /// All that it does, what five parameters and motion can do as well included, in units of the noise.
-    pub(crate) size: f64,
-}
-
 /// Shapes of one list, then of the other.
 pub(crate) fn both(a: &[Shape], b: &[Shape]) -> Vec<Shape> {
     a.iter().chain(b).cloned().collect()
-}
-
-/// Whether a cause can have these amounts.
-fn possible(candidate: &Candidate, solution: &Solution) -> bool {
-    let error = |i: usize| solution.covariance[(i, i)].sqrt();
-    let own = &solution.x;
-    match candidate.sign {
-        Sign::Any => true,
-        Sign::Positive => {
-            let most = own.iter().copied().fold(f64::MIN, f64::max);
-            let below_zero = |(i, x): (usize, &f64)| *x < -4.0 * error(i);
-            most > 0.0 && !own.iter().enumerate().any(below_zero)
-        }
-        Sign::Known(least) => {
-            let inner = candidate.exact.as_ref().and_then(|e| e.inner.first());
-            inner.is_none_or(|f| {
-                let near = own[0] > least && own[0] < f * GRID;
-                // A fitted number may have left its place on the grid.
-                let (low, high) = (least.min(*f), least.max(*f));
-                near || (own[0] - own[0].clamp(low, high)).abs() < 4.0 * error(0)
-            })
-        }
-    }
-}
-
-/// Whether more of a cause is seen than how it was when the recording began.
-fn shows(beside: &Beside, candidate: &Candidate, gain: f64) -> bool {
-    candidate.given() == 0 || gain - beside.gain(&candidate.shapes[1..]).0 > ITSELF
-}
-
-pub(crate) fn score(beside: &Beside, candidate: Candidate) -> Option<Scored> {
-    let solution = beside.solve(&candidate.shapes);
-    let (gain, freedom) = (solution.gain(), solution.rank);
-    if freedom == 0 || !gain.is_finite() {
-        return None;
-    }
-    if !possible(&candidate, &solution) || !shows(beside, &candidate, gain) {
-        return None;
-    }
-    if candidate.domain != Domain::Motion
-        && !beside.in_radius(&candidate.shapes, &solution.x, freedom)
-    {
-        return None;
-    }
-    let log_p = after_trials(log_tail(2.0 * gain, freedom), candidate.trials * KINDS);
-    let size = beside.size(&candidate.shapes, &solution.x);
-    Some(Scored {
-        candidate,
-        gain,
-        freedom,
-        log_p,
-        size,
-    })
-}
-
-/// Whether a cause can be so large. Where little of it is seen, as of a delay at a speed that hardly changes, the rest would
-/// have to be made up for by opposite errors of offset, gain and phase.
-fn likely(system: &System, scored: &Scored) -> bool {
-    let samples: f64 = system.context.weight.iter().sum();
-    let large = LARGEST * (2.0 * samples).sqrt() / system.noise();
-    !matches!(scored.candidate.domain, Domain::Speed | Domain::Angle)
-        || scored.size < large
-        || 2.0 * scored.gain > SEEN * scored.size.powi(2)
-}
-
-/// Of candidates with functions of their own, those that explain something, or could rival a gain of `most`.
-fn worth(system: &mut System, fit: &Fit, list: Vec<Candidate>, most: f64) -> Vec<Scored> {
-    let all = list.iter().flat_map(|c| &c.shapes).chain(&fit.shapes);
-    let atoms = atoms_of(&all.cloned().collect::<Vec<_>>());
-    let whole = system.among(&atoms);
-    let among =
-        |shapes: &[Shape]| -> Vec<Shape> { shapes.iter().map(|s| s.among(&atoms)).collect() };
-    let known = among(&fit.shapes);
-    let beside = Beside::new(&whole, &known).where_it_moves(system, &known, &atoms);
-    let mut scored: Vec<Scored> = list
-        .into_iter()
-        .filter_map(|mut candidate| {
-            let own = std::mem::take(&mut candidate.shapes);
-            candidate.shapes = among(&own);
-            let mut scored = score(&beside, candidate)?;
-            scored.candidate.shapes = own;
-            Some(scored)
-        })
-        .collect();
-    let most = scored.iter().map(|s| s.gain).fold(most, f64::max);
-    scored.retain(|s| s.log_p < SHOWN.ln() && s.gain > RIVALS * most);
-    scored
 }
 
 /// Where a line or motion is the best that was found, or nothing was: what stands out of the noise as it is weighed may

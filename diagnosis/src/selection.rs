@@ -5,7 +5,7 @@ use crate::exact::Start;
 use crate::finding::{Finding, Gain};
 use crate::generic::HOLDS;
 use crate::model::{Fit, Halves, System, amounts};
-use crate::select::{KINDS, SHOWN};
+use crate::score::{KINDS, SHOWN};
 use crate::statistics::{after_trials, log_tail};
 
 /// A cause that was accepted; its shapes stand in the fit from `first` on.

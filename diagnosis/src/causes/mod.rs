@@ -34,6 +34,9 @@ pub(crate) const HYSTERESIS: &str = "hysteresis";
 /// Capacitors in the channels.
 pub(crate) const AC_COUPLING: &str = "ac_coupling";
 
+/// Errors of the graduation along a revolution.
+pub(crate) const GRADUATION_ERROR: &str = "graduation_error";
+
 /// A gain that follows the acceleration: no cause of the contract's list, so it is never a name.
 pub(crate) const ACCELERATION_GAIN: &str = "acceleration_gain";
 

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 use std::rc::Rc;
 
-use super::Catalogue;
+use super::{Catalogue, GRADUATION_ERROR};
 use crate::block::Block;
 use crate::cause::{Candidate, Domain, polar};
 use crate::context::Context;
@@ -77,7 +77,7 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
                 },
                 parameters: harmonic(order, "amplitude", "rad"),
                 evidence: Rc::new(move |p| format!("against the reference the angle is off by {:.3e} rad of a scale period, {order} time(s) per revolution", p[1].value)),
-                ..Candidate::new("graduation_error", Domain::Revolution, shapes)
+                ..Candidate::new(GRADUATION_ERROR, Domain::Revolution, shapes)
             });
         }
     }

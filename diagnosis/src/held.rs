@@ -1,0 +1,148 @@
+//! The open set: how much a name holds of what any shape of its domain, or around it, explains.
+
+use crate::beside::Beside;
+use crate::cause::{Candidate, Domain};
+use crate::causes::{AC_COUPLING, Catalogue, GRADUATION_ERROR};
+use crate::generic::{self, HOLDS};
+use crate::library::Shape;
+use crate::model::{Fit, System, atoms_of};
+use crate::score::{KINDS, SHOWN, Scored};
+use crate::select::both;
+use crate::statistics::{after_trials, log_tail};
+
+/// Share that it has to hold of what grows with the size of the speed: there a law has no shapes of its own.
+const LAW: f64 = 0.97;
+/// Most causes that stand beside another: a sensor may have harmonics of every order.
+const MOST_BESIDE: usize = 8;
+
+/// Share that a name has to hold of what is near it. A table of an ADC's errors has more entries than are looked at, a
+/// sensor's harmonics and a graduation's errors are many, and an axis that vibrates does so for more than one reason; a
+/// capacitor remembers; steps and bursts are mostly slow, too.
+fn least(candidate: &Candidate) -> f64 {
+    match candidate.domain {
+        Domain::Code | Domain::Motion | Domain::Angle => HOLDS,
+        Domain::Speed if candidate.name == AC_COUPLING => HOLDS,
+        Domain::Revolution if candidate.name == GRADUATION_ERROR => HOLDS,
+        Domain::Speed => 0.85,
+        Domain::Time | Domain::Line => 0.9,
+        Domain::Revolution => 0.95,
+    }
+}
+
+/// How far a name holds.
+pub(crate) struct Held {
+    /// Why it does not hold enough.
+    pub(crate) refusal: Option<String>,
+    /// Generic shapes that tell.
+    pub(crate) beyond: Vec<Shape>,
+}
+
+impl Held {
+    /// `share` of what any shape explains, and of what grows with the size of the speed in any way.
+    fn new(candidate: &Candidate, share: f64, sizes: f64, beyond: Vec<Shape>) -> Self {
+        let refusal = if sizes < LAW {
+            Some("it grows with the speed by another law".to_owned())
+        } else if share < least(candidate) {
+            let percent = share * 100.0;
+            Some(format!(
+                "it holds {percent:.0} % of what any shape there explains"
+            ))
+        } else {
+            None
+        };
+        Self { refusal, beyond }
+    }
+}
+
+/// Share of what generic bases explain that named shapes hold: the best one, and others of the catalogue that stand beside
+/// it. One basis is that of the domain, the other is made around the best itself.
+pub(crate) fn holds(
+    system: &mut System,
+    catalogue: &Catalogue,
+    fit: &Fit,
+    best: &Scored,
+    others: &[&Scored],
+) -> Held {
+    let domain = best.candidate.domain;
+    let basis = catalogue.basis(domain);
+    // Where the axis vibrates only the radius tells what the sensor does.
+    let sure = |system: &System, shapes: &[Shape]| {
+        if domain == Domain::Motion {
+            shapes.to_vec()
+        } else {
+            system.sure(shapes)
+        }
+    };
+    let mut named = both(&fit.shapes, &best.candidate.shapes);
+    let same = |o: &Scored| o.candidate.domain == domain;
+    if !basis.is_empty() {
+        stand_beside(system, &mut named, others, same);
+    }
+    let gained = |system: &System, shapes: &[Shape]| {
+        let beside = Beside::new(&system.total, &sure(system, &fit.shapes));
+        beside.gain(&sure(system, shapes)).0
+    };
+    let held = gained(system, &named[fit.shapes.len()..]);
+    let beside = Beside::new(&system.total, &sure(system, &named));
+    let share = share(held, beside.gain(&sure(system, basis)));
+    if share < HOLDS {
+        return Held::new(&best.candidate, share, 1.0, basis.to_vec());
+    }
+    // Other causes may be there too, and no name answers for them.
+    let (own, line) = (best.candidate.name, domain == Domain::Line);
+    stand_beside(system, &mut named, others, |o| {
+        line && same(o) && o.candidate.name != own
+    });
+    stand_beside(system, &mut named, others, |o| !same(o));
+    let library = &mut system.samples.library;
+    let around = generic::around(system.context, &best.candidate, library);
+    let steady = generic::steady(system.context, &best.candidate, library);
+    let sizes = generic::at_any_speed(system.context, &best.candidate, library);
+    let held = gained(system, &best.candidate.shapes);
+    let [known, free, any, sizes] =
+        [&named, &steady, &around, &sizes].map(|list| sure(system, list));
+    let atoms = atoms_of(&[known.as_slice(), &any, &free, &sizes].concat());
+    let whole = system.among(&atoms);
+    let among =
+        |shapes: &[Shape]| -> Vec<Shape> { shapes.iter().map(|s| s.among(&atoms)).collect() };
+    let beside = Beside::new(&whole, &among(&known));
+    let more = beside.gain(&among(&free)).0;
+    let sizes = self::share(held, beside.gain(&among(&sizes)));
+    let beside = Beside::new(&whole, &among(&both(&known, &free)));
+    let own = self::share(held + more, beside.gain(&among(&any)));
+    Held::new(&best.candidate, share.min(own), sizes, around)
+}
+
+/// Adds causes that stand beside the named ones; what they explain.
+fn stand_beside(
+    system: &System,
+    named: &mut Vec<Shape>,
+    others: &[&Scored],
+    wanted: impl Fn(&Scored) -> bool,
+) -> f64 {
+    let mut all = 0.0;
+    for _ in 0..MOST_BESIDE {
+        let beside = Beside::new(&system.total, named);
+        let next = others
+            .iter()
+            .filter(|o| wanted(o))
+            .filter_map(|o| {
+                let (gain, freedom) = beside.gain(&o.candidate.shapes);
+                let log_p = after_trials(log_tail(2.0 * gain, freedom), o.candidate.trials * KINDS);
+                (freedom > 0 && log_p < SHOWN.ln()).then_some((log_p, gain, o))
+            })
+            .min_by(|a, b| a.0.total_cmp(&b.0));
+        let Some((_, gain, other)) = next else { break };
+        named.extend(other.candidate.shapes.iter().cloned());
+        all += gain;
+    }
+    all
+}
+
+/// What is held of it and of what is beyond.
+pub(crate) fn share(held: f64, (beyond, freedom): (f64, usize)) -> f64 {
+    // What as many free numbers explain of noise alone does not count against it.
+    let spread = (2.0 * freedom as f64).sqrt();
+    let beyond = (beyond - freedom as f64 / 2.0 - 2.0 * spread).max(0.0);
+    held / (held + beyond)
+}
