@@ -227,7 +227,7 @@ fn the_sum_of_squares_corrects_a_wholly_miscalibrated_sensor() {
             (SumOfSquares, 0),
             (SumOfSquares, 3),
             (SumOfSquares, 4),
-            (Batch, 0),
+            (Batch, 3),
         ] {
             let mut spec = spec(9, true, 1.0);
             spec.adc.full_scale = 1.4 * spec.sensor.amplitude / amplitude;

@@ -323,6 +323,40 @@ fn a_hold_that_noise_would_never_leave_is_widened_and_one_out_of_range_refused()
     assert!(message.contains("calibration.hold_residual"), "{message}");
 }
 
+/// Keys of another search, or of other parameters, are refused where they have no effect.
+#[test]
+fn keys_of_another_search_are_refused() {
+    let with = |lines: &str| {
+        let text = shipped::text("optical").replace("parameters = 5", lines);
+        Design::new(&Spec::from_toml(&text, "d.toml").expect("well formed"))
+    };
+    for (lines, key) in [
+        ("parameters = 5\nforgetting = 2", "forgetting"),
+        (
+            "parameters = 5\nmethod = \"batch\"\nforgetting = 2",
+            "forgetting",
+        ),
+        ("parameters = 4\ncompletion_gamma = 9", "completion_gamma"),
+        (
+            "parameters = 9\ncompletion = false\ncompletion_gamma = 9",
+            "completion_gamma",
+        ),
+    ] {
+        let refused = with(lines).expect_err(lines);
+        assert_eq!(refused.field(), format!("calibration.{key}"), "{lines}");
+        let message = refused.to_string();
+        assert!(message.contains("leave it out"), "{message}");
+        assert!(message.contains("no effect"), "{message}");
+    }
+    for lines in [
+        "parameters = 5\nmethod = \"sum_of_squares\"\nforgetting = 2",
+        "parameters = 5\ncompletion = false",
+        "parameters = 5\nforgetting = 3\ncompletion = true\ncompletion_gamma = 10",
+    ] {
+        assert!(with(lines).is_ok(), "{lines}");
+    }
+}
+
 /// Without calibration its keys are refused, each with its own name; as they stand by themselves they may be written.
 #[test]
 fn keys_of_no_calibration_are_refused() {

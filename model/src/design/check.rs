@@ -2,11 +2,11 @@
 
 use super::DesignError;
 use super::budget::{RMS_MOST, SHARE_LEAST};
-use super::formats::{TRAVEL_SAMPLES_MAX, slowest_completed_hz, travel_samples};
 use super::keywords::{KEYWORDS, SYSTEM_KEYWORDS};
-use super::refuse::{at_least, at_most, between, number, refuse};
+use super::refuse::{at_most, between, refuse};
+use super::search;
 use crate::graph::Graph;
-use crate::spec::{Calibration, CalibrationMethod, Multipliers, Spec};
+use crate::spec::{Calibration, Multipliers, Spec};
 
 /// Checks every field for sense.
 pub(super) fn check(spec: &Spec) -> Result<(), DesignError> {
@@ -136,7 +136,7 @@ pub(super) fn check(spec: &Spec) -> Result<(), DesignError> {
         0.2,
         "a part of the amplitude, without sign; polynomials of third order mend no more",
     )?;
-    calibration(spec)?;
+    search::check(spec)?;
     between(
         "calibration.gamma_first",
         spec.calibration.gamma_first.into(),
@@ -223,110 +223,6 @@ pub(super) fn check(spec: &Spec) -> Result<(), DesignError> {
         );
     }
     Ok(())
-}
-
-fn calibration(spec: &Spec) -> Result<(), DesignError> {
-    let c = &spec.calibration;
-    if !matches!(c.parameters, 0 | 4 | 5 | 8 | 9) {
-        return refuse(
-            "calibration.parameters",
-            c.parameters,
-            "0, 4, 5, 8 or 9",
-            "offsets and gains are 4, with the phase 5, with the bends of both channels 8 and 9",
-        );
-    }
-    if !c.is_on() {
-        return without(c);
-    }
-    if c.has_bend() && c.method == CalibrationMethod::Exact {
-        return refuse(
-            "calibration.method",
-            "exact",
-            "\"final\", which completes itself with one sensitivity, or 4 or 5 parameters",
-            "recursion (11) for each of 8 or 9 parameters costs 16 or 18 products a sample for what one scalar shows",
-        );
-    }
-    if c.squares() && c.starts() {
-        return refuse(
-            "calibration.start",
-            "least_squares",
-            "\"gears\", or the method \"final\" or \"exact\"",
-            "the start is a batch of the radial residual; the sum of squares gathers another one",
-        );
-    }
-    if c.recall == Some(true) && !c.settles() {
-        return refuse(
-            "calibration.recall",
-            true,
-            format!(
-                "false, or gamma_last at least {}",
-                c.gamma_first.saturating_add(Calibration::SETTLED)
-            ),
-            "parameters are held only after four gears: with fewer there is nothing to recall",
-        );
-    }
-    if c.completed().is_some() && spec.sensor.periods_per_revolution == Some(1.0) {
-        return refuse(
-            "calibration.completion",
-            true,
-            "false, or 5 parameters",
-            "where a scale period is a revolution, motion at two cycles per revolution looks like a bend and would be learnt",
-        );
-    }
-    if c.completed().is_some() && travel_samples(spec) > TRAVEL_SAMPLES_MAX {
-        return refuse(
-            "loop.bandwidth_hz",
-            number(spec.tracking.bandwidth_hz),
-            at_least(slowest_completed_hz(spec)),
-            "calibration.completion counts the samples of a period of travel at a fifth of it, so many at most",
-        );
-    }
-    between(
-        "calibration.forgetting",
-        c.forgetting.into(),
-        0.0,
-        4.0,
-        "longer memory than a quarter of a period makes the search swing",
-    )?;
-    between(
-        "calibration.completion_gamma",
-        c.completion_gamma.into(),
-        1.0,
-        18.0,
-        "a gamma of 2^-0 does not converge, and 2^-18 takes a million samples",
-    )
-}
-
-/// Without calibration no key of its says anything: one that does was meant for a chip with it.
-fn without(c: &Calibration) -> Result<(), DesignError> {
-    let keys = |c: &Calibration| {
-        let worked_out = Calibration {
-            parameters: 0,
-            gear_periods: Some(c.gear_periods()),
-            recall: Some(c.recall.unwrap_or(true)),
-            ..c.clone()
-        };
-        toml::Table::try_from(worked_out).unwrap_or_default()
-    };
-    let nothing = keys(&Calibration {
-        parameters: 0,
-        ..Calibration::default()
-    });
-    match keys(c)
-        .into_iter()
-        .find(|(key, value)| nothing.get(key) != Some(value))
-    {
-        None => Ok(()),
-        Some((key, value)) => refuse(
-            format!("calibration.{key}"),
-            match value {
-                toml::Value::Float(value) => number(value),
-                value => value.to_string(),
-            },
-            "leave it out, or take 4, 5, 8 or 9 parameters",
-            "calibration.parameters = 0 calibrates nothing: this key has no effect",
-        ),
-    }
 }
 
 /// Signals of the module that are no nodes of the graph.

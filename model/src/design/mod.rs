@@ -12,6 +12,7 @@ mod poles;
 mod promised;
 mod ranges;
 mod refuse;
+mod search;
 mod shortest;
 mod skew;
 mod word;
