@@ -120,12 +120,11 @@ pub(crate) fn of_residuals(method: Method, fit: &Fit, residual_rms: f64) -> Vec<
     {
         out.push(format!(
             "the signals are no exact ellipse: the radius strays by {:.2} % of the amplitude rms in step with the angle, \
-             most at order {}; the parameters are those of the nearest ellipse, an angle error of that size stays \
-             ({:.4} rad), and the error bars, which count it as noise, are a rough guess; `nonius diagnose` looks for \
-             the cause",
+             most at order {}; the parameters are those of the nearest ellipse, and the error bars, which count it as \
+             noise, are a rough guess; how large an angle error stays the radius does not say, for bends alike in both \
+             channels hardly show there; `nonius diagnose` looks for the cause",
             shape.rms * 100.0,
-            shape.order,
-            shape.rms
+            shape.order
         ));
     }
     if let Some(scatter) = fit.scatter

@@ -3,10 +3,10 @@
 
 use crate::beside::Beside;
 use crate::cause::{Candidate, Domain, Sign};
-use crate::causes::{self, ACCELERATION_GAIN, Catalogue};
+use crate::causes::{self, ACCELERATION_GAIN, Catalogue, HYSTERESIS};
 use crate::context::Context;
 use crate::exact;
-use crate::held::holds;
+use crate::held::{holds, stand_beside};
 use crate::library::Shape;
 use crate::model::{Fit, System, amounts};
 use crate::score::{RIVALS, Scored, score};
@@ -25,6 +25,8 @@ const NEARLY: f64 = 0.8;
 const AS_WELL: f64 = 0.95;
 /// A drift of the offsets.
 const DRIFT: &str = "offset_drift";
+/// A drift of the gains.
+const GAIN_DRIFT: &str = "gain_drift";
 /// A cause that adds less than this probability says nothing new.
 const NOTHING_NEW: f64 = 1e-3;
 
@@ -72,9 +74,7 @@ pub(crate) fn contender(
         if best.candidate.as_drift && scored.iter().any(drifts) {
             continue;
         }
-        // What stands in for steps has to explain as much as the drift did that they are taken for.
-        let less = |s: &&Scored| best.gain + (s.freedom as f64) < s.gain;
-        if stepped.is_some_and(|i: usize| less(&&scored[i])) {
+        if stepped.is_some_and(|drift: usize| !stands_in(system, fit, &scored, drift, i)) {
             continue;
         }
         tried.push(one);
@@ -96,7 +96,7 @@ pub(crate) fn contender(
         let mark = system.samples.library.atoms.len();
         let held = holds(system, catalogue, fit, &own, &rest);
         let steps = (own.candidate.domain == Domain::Time)
-            .then(|| steps_instead(system, fit, &own))
+            .then(|| steps_instead(system, fit, &own, &rest))
             .flatten();
         let slow = steps.is_none();
         if !slow && stepped.is_none() {
@@ -221,7 +221,7 @@ fn goes_with_angle(context: &Context, candidate: &Candidate) -> bool {
     const FEWEST: f64 = 50.0;
     let inner = candidate.exact.as_ref().and_then(|e| e.inner.first());
     // Vibration too: where it goes with the angle it may be an error of the sensor.
-    let line = candidate.domain == Domain::Line || candidate.name == "vibration";
+    let line = candidate.domain == Domain::Line || candidate.name == causes::VIBRATION;
     let many = context.periods_travelled() > FEWEST;
     let told = line && many && !causes::speed_varies_much(context);
     let Some(hertz) = inner.filter(|_| told) else {
@@ -239,17 +239,53 @@ fn goes_with_angle(context: &Context, candidate: &Candidate) -> bool {
 }
 
 /// Log-likelihood that steps in time explain of the radius, where that is more than a slow change does: then it is no drift.
-fn steps_instead(system: &System, fit: &Fit, drift: &Scored) -> Option<f64> {
-    let changes: &[Change] = if drift.candidate.name == "gain_drift" {
+fn steps_instead(system: &System, fit: &Fit, drift: &Scored, rest: &[&Scored]) -> Option<f64> {
+    let own = drift.candidate.name;
+    let changes: &[Change] = if own == GAIN_DRIFT {
         &[Change::Gains, Change::Radius]
     } else {
         &[Change::Offsets]
     };
+    let mut named = both(&fit.shapes, &drift.candidate.shapes);
     // The five parameters and other causes as they are beside the drift: without it they are off by what they take of it.
-    let with = system.fit(both(&fit.shapes, &drift.candidate.shapes));
-    let others = amounts(&fit.shapes, &with.solution.x);
-    let [radial, ..] = system.samples.left(&others);
-    steps::instead(system.context, &radial, system.noise(), changes)
+    let among = |named: &[Shape]| {
+        let mut amounts = system.fit(named.to_vec()).solution.x;
+        let range = fit.shapes.len()..fit.shapes.len() + drift.candidate.shapes.len();
+        amounts[range].fill(0.0);
+        let [radial, ..] = system.samples.left(&self::amounts(named, &amounts));
+        steps::instead(system.context, &radial, system.noise(), changes)
+    };
+    let alone = among(&named)?;
+    // What turns over with the direction looks like steps, and what another drift does may look like some.
+    let before = named.len();
+    let slow = |o: &Scored| o.candidate.domain == Domain::Time || o.candidate.name == HYSTERESIS;
+    stand_beside(system, &mut named, rest, |o| {
+        slow(o) && o.candidate.name != own
+    });
+    if named.len() == before {
+        return Some(alone);
+    }
+    among(&named)
+}
+
+/// Whether a cause can stand in for steps that a drift was taken for: it has to explain as much as the drift did, by itself or
+/// with others beside it.
+fn stands_in(system: &System, fit: &Fit, scored: &[Scored], drift: usize, which: usize) -> bool {
+    let (drift, own) = (&scored[drift], &scored[which]);
+    let enough = drift.gain - drift.freedom as f64;
+    if own.gain >= enough {
+        return true;
+    }
+    let others: Vec<&Scored> = scored.iter().collect();
+    let mut named = both(&fit.shapes, &own.candidate.shapes);
+    let other = |o: &Scored| {
+        ![drift, own]
+            .map(|s| s.candidate.name)
+            .contains(&o.candidate.name)
+    };
+    stand_beside(system, &mut named, &others, other);
+    let beside = Beside::new(&system.total, &fit.shapes);
+    beside.gain(&named[fit.shapes.len()..]).0 >= enough
 }
 
 /// Where something lives, in words.

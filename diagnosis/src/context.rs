@@ -60,6 +60,8 @@ pub struct Context {
     pub spline: Option<Spline>,
     /// The motion that the angle is followed by, where that is finer.
     pub(crate) finer: Option<Spline>,
+    /// Corners of the motion hardly count, and the motion's knots are those that do beside them.
+    pub(crate) calm: bool,
     periods_travelled: f64,
     top_speed: f64,
 }
@@ -128,6 +130,7 @@ impl Context {
             periods_per_revolution: recording.metadata.periods_per_revolution,
             spline: None,
             finer: None,
+            calm: false,
             periods_travelled: 0.0,
             top_speed: f64::MIN_POSITIVE,
         };

@@ -4,6 +4,7 @@ use nonius_calibration::Ellipse;
 use nonius_recording::Recording;
 use serde::Serialize;
 
+use crate::calm::{self, Calm};
 use crate::checks::{self, Checked};
 use crate::context::{Context, ContextError};
 use crate::doubt;
@@ -110,6 +111,19 @@ pub struct Diagnosis {
     pub notes: Vec<String>,
 }
 
+impl Diagnosis {
+    /// The gain of what takes nothing off the signals.
+    pub(crate) fn unchanged(&self) -> Gain {
+        let model = &self.extended;
+        Gain {
+            held_out_residual_rms_before: model.held_out_residual_rms,
+            held_out_residual_rms_after: model.held_out_residual_rms,
+            position_error_rms_before_rad: model.position_error_rms_rad,
+            position_error_rms_after_rad: model.position_error_rms_rad,
+        }
+    }
+}
+
 /// Diagnoses a recording.
 ///
 /// # Errors
@@ -117,14 +131,33 @@ pub struct Diagnosis {
 pub fn diagnose(recording: &Recording) -> Result<Diagnosis, ContextError> {
     let checked = checks::check(recording);
     let repaired = repair(recording, &checked);
-    let context = Context::new(&repaired.recording, repaired.weight.clone())?;
-    let (found, slow) = search(context, &checked, &repaired, true);
+    let context = || Context::new(&repaired.recording, repaired.weight.clone());
+    let first = context()?;
+    let calm = Calm::of(&first);
+    let found = whole(first, &checked, &repaired)?;
+    let Some(calm) = calm else {
+        return Ok(found);
+    };
+    let reference = repaired.recording.reference_rad.as_deref();
+    let hertz = calm.hertz;
+    let calm = calm.without_corners(context()?, reference);
+    let (calm, _) = search(calm, &checked, &repaired, true);
+    Ok(calm::beside(found, calm, hertz))
+}
+
+/// Diagnoses all of a recording.
+fn whole(
+    context: Context,
+    checked: &Checked,
+    repaired: &Repaired,
+) -> Result<Diagnosis, ContextError> {
+    let (found, slow) = search(context, checked, repaired, true);
     if !slow {
         return Ok(found);
     }
     // A cause that is slow looks like flicker noise before it is known: names that explain it all are preferred.
     let context = Context::new(&repaired.recording, repaired.weight.clone())?;
-    let (other, _) = search(context, &checked, &repaired, false);
+    let (other, _) = search(context, checked, repaired, false);
     let known = |name: &str| found.findings.iter().any(|f| f.cause == name);
     let more = other.findings.iter().filter(|f| !known(&f.cause));
     let numbers: usize = more.map(|f| f.parameters.len()).sum();
@@ -150,13 +183,7 @@ pub fn diagnose(recording: &Recording) -> Result<Diagnosis, ContextError> {
 fn beside(mut with: Diagnosis, noise: Option<Flicker>) -> Diagnosis {
     match noise.as_ref().map(Flicker::finding) {
         Some(Ok(mut finding)) => {
-            let model = &with.extended;
-            finding.gain = Gain {
-                held_out_residual_rms_before: model.held_out_residual_rms,
-                held_out_residual_rms_after: model.held_out_residual_rms,
-                position_error_rms_before_rad: model.position_error_rms_rad,
-                position_error_rms_after_rad: model.position_error_rms_rad,
-            };
+            finding.gain = with.unchanged();
             with.findings.push(finding);
         }
         Some(Err(unnamed)) => with.unexplained.add(&unnamed),

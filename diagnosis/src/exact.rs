@@ -212,7 +212,7 @@ pub(crate) fn start(system: &System, fit: &Fit, accepted: &[Accepted]) -> Start 
 }
 
 /// A context in which this is off the signals, and the angle followed without it, by a spline of the given spacing of
-/// knots or of its own choice.
+/// knots or of its own choice; where only what is calm counts, by the one that it has.
 fn followed(
     context: &Context,
     start: &Start,
@@ -224,7 +224,7 @@ fn followed(
     for round in 0..FOLLOWED {
         let known = effects(&context, &mut start.carried.clone(), reference.is_some());
         // Closer knots may have been needed for what is known now.
-        if round == 0 {
+        if round == 0 && !context.calm {
             context.spline = spacing.map(|s| Spline::new(context.samples(), s, &context.weight));
             context.finer = context.finer.filter(|_| spacing.is_some());
         }

@@ -114,7 +114,7 @@ pub(crate) fn holds(
 }
 
 /// Adds causes that stand beside the named ones; what they explain.
-fn stand_beside(
+pub(crate) fn stand_beside(
     system: &System,
     named: &mut Vec<Shape>,
     others: &[&Scored],

@@ -7,7 +7,7 @@
 use std::f64::consts::PI;
 use std::ops::Range;
 
-use crate::lines::{median, spectrum, without_strongest};
+use crate::lines::{median, spectrum, strongest};
 use crate::spline::Spline;
 
 /// Finest knot spacing, in samples.
@@ -223,7 +223,7 @@ impl<'a> Stretch<'a> {
     }
 
     fn without_lines(&self, values: &[f64], spline: &Spline) -> Vec<f64> {
-        let left = without_strongest(values);
+        let left = strongest(values).1;
         let Some((per, phi)) = &self.revolution else {
             return left;
         };

@@ -7,6 +7,7 @@
 
 mod beside;
 mod block;
+mod calm;
 mod cause;
 mod causes;
 mod checks;

@@ -108,12 +108,12 @@ pub(crate) fn wave(time: &[f64], hertz: f64) -> [Vec<f64>; 2] {
     ]
 }
 
-/// `values` without their strongest line.
-pub(crate) fn without_strongest(values: &[f64]) -> Vec<f64> {
+/// Frequency of the strongest line in cycles per sample, and `values` without it.
+pub(crate) fn strongest(values: &[f64]) -> (f64, Vec<f64>) {
     let (power, length) = spectrum(values);
     let Some(f) = peak(&power, length, 2.0 / values.len() as f64, 0.5) else {
-        return values.to_vec();
+        return (0.0, values.to_vec());
     };
     let time: Vec<f64> = (0..values.len()).map(|k| k as f64).collect();
-    crate::solve::without(values, &wave(&time, f))
+    (f, crate::solve::without(values, &wave(&time, f)))
 }

@@ -105,6 +105,12 @@ impl<'a> System<'a> {
         };
         let own = std::mem::take(&mut left[fast as usize]);
         left[fast as usize] = causes::without_cogging(context, own);
+        // What does not count is nothing there, and makes the rest no quieter.
+        let counts: f64 = context.weight.iter().sum();
+        let louder = (context.samples() as f64 / counts.max(1.0)).sqrt();
+        for left in left.iter_mut().flatten().filter(|_| louder > 1.0) {
+            *left *= louder;
+        }
         for (row, left) in ROWS.iter().zip(&left).filter(|(_, l)| !l.is_empty()) {
             let gone = match (&context.spline, row) {
                 (_, Row::Radial) => 0.0,

@@ -60,13 +60,13 @@ fn every_search_and_set_converges() {
         reached.push(format!("{:.2}", left[within - 1]));
     }
     figure(
-        "the same of the exact gradient, the sum of squares (five periods), the batch (eight), nine parameters (nine), %",
+        "of a sensor of 0.8 of the ADC's range, five parameters: what is left by the exact gradient and the sum of squares after five periods, by the batch after eight, of nine parameters after nine, %",
         &reached.join("; "),
         TEST,
     );
 }
 
-/// The exact gradient behind a loop that follows in part or hardly (the signal has 7.8 kHz).
+/// The exact gradient behind a loop that follows in part or hardly (the signal has 15.5 kHz).
 #[test]
 fn the_exact_gradient_converges_behind_a_slow_loop() {
     for (bandwidth, within) in [(1e3, 9), (4e3, 5), (8e3, 5), (20e3, 5)] {

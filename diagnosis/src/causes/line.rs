@@ -193,7 +193,7 @@ impl Search<'_> {
                     p[1].value, p[0].value
                 )
             }),
-            ..self.candidate("vibration", Domain::Motion, hertz, make, library)
+            ..self.candidate(super::VIBRATION, Domain::Motion, hertz, make, library)
         }
     }
 }

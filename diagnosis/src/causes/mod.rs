@@ -30,6 +30,8 @@ pub(crate) const ORDERS: usize = 8;
 
 /// Offsets with the direction of motion.
 pub(crate) const HYSTERESIS: &str = "hysteresis";
+/// Real motion at a fixed frequency.
+pub(crate) const VIBRATION: &str = "vibration";
 
 /// Capacitors in the channels.
 pub(crate) const AC_COUPLING: &str = "ac_coupling";

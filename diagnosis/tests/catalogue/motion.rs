@@ -77,6 +77,41 @@ fn beside_a_rumble() {
     near(&found, "frequency_hz", 700.0);
 }
 
+/// An axis that starts and stops four times, each within 20 ms, radians.
+fn stop_and_go(t: f64) -> f64 {
+    const CYCLE: f64 = 0.1;
+    const RUNS: f64 = 0.05;
+    const STARTS: f64 = 0.02;
+    const SPEED: f64 = TAU * 300.0;
+    // Distance over top speed in a start, whose speed rises by 3 x² - 2 x³.
+    let rising = |t: f64| {
+        let x = (t / STARTS).clamp(0.0, 1.0);
+        STARTS * (x.powi(3) - 0.5 * x.powi(4)) + (t - STARTS).max(0.0)
+    };
+    let (cycles, t) = ((t / CYCLE).floor(), t % CYCLE);
+    SPEED * (cycles * RUNS + rising(t) - rising(t - RUNS))
+}
+
+/// Corners need knots so close that they would follow a vibration: it shows between them.
+#[test]
+fn beside_the_corners_of_a_drive() {
+    let found = finds(
+        "vibration",
+        &Case {
+            motion: |t, drive| stop_and_go(t) - drive + 0.01 * (TAU * 309.0 * t).sin(),
+            ..PLAIN
+        },
+    );
+    near(&found, "frequency_hz", 309.0);
+    near(&found, "amplitude", 0.01);
+    let corners_alone = Case {
+        motion: |t, drive| stop_and_go(t) - drive,
+        ..PLAIN
+    };
+    let found = diagnosed(&corners_alone, 5);
+    assert!(found.findings.is_empty(), "{:?}", found.findings);
+}
+
 /// A reference without noise shows how the axis moves to the last digit, and what is in that is no noise.
 #[test]
 fn beside_a_reference() {
