@@ -165,7 +165,7 @@ fn nine_parameters_correct_a_wholly_miscalibrated_sensor() {
     }
 }
 
-/// At standstill, and under a vibration of a tenth of a period θ9 rests.
+/// At standstill, and under a vibration by ±0.1 periods θ9 rests.
 #[test]
 fn without_net_travel_the_completion_rests() {
     for amplitude in [0.0, 0.1] {
