@@ -12,6 +12,10 @@ use crate::spline::Spline;
 const CORNER: f64 = 4.0;
 /// So many times the power of the rest the line has: noise alone and what corners leave have lines, too.
 const LOUD: f64 = 0.5;
+/// Cycles of the line between two knots: of a slower one, which such knots follow, the drive itself leaves something.
+const FAST: f64 = 0.6;
+/// Radians rms that may be left: of more, it is the drive that swings.
+const SMALL: f64 = 0.1;
 /// So many times what is usual the corners leave on the average.
 const CONTRAST: f64 = 2.0;
 /// By so much of its frequency a line may seem to move with the knots.
@@ -120,6 +124,8 @@ impl Angle {
             spacing,
             line,
             loudness: mean(&all) / mean(&left) - 1.0,
+            rms: mean(&all).sqrt(),
+            knots: apart,
             contrast: mean(&left) / usual,
             share: corners.iter().filter(|c| **c).count() as f64 / corners.len() as f64,
             corners,
@@ -134,6 +140,10 @@ struct Look {
     spacing: f64,
     /// Frequency of the strongest line, in cycles per mean.
     line: f64,
+    /// Means between the knots.
+    knots: f64,
+    /// Rms of all that is left, radians.
+    rms: f64,
     /// Its power over that of the rest.
     loudness: f64,
     /// Mean power of the rest over that of the usual stretch.
@@ -148,7 +158,9 @@ struct Look {
 impl Look {
     /// Whether there are corners, not too many, and a line beside them.
     fn tells(&self) -> bool {
-        self.contrast > CONTRAST && self.share <= MOST && self.loudness > LOUD
+        let fast = self.line * self.knots > FAST;
+        let small = self.rms < SMALL;
+        self.contrast > CONTRAST && self.share <= MOST && self.loudness > LOUD && fast && small
     }
 }
 
