@@ -112,6 +112,31 @@ fn beside_the_corners_of_a_drive() {
     assert!(found.findings.is_empty(), "{:?}", found.findings);
 }
 
+/// What a drive that swings leaves at its own frequency is no vibration between corners.
+#[test]
+fn a_drive_that_swings() {
+    let followed = Case {
+        motion: |t, drive| 15.0 * TAU * (TAU * 25.0 * t + 0.3).sin() + 12.0 * TAU * t - drive,
+        ..PLAIN
+    };
+    let found = diagnosed(&followed, 5);
+    assert!(found.findings.is_empty(), "{:?}", found.findings);
+}
+
+/// One that swings faster than the knots follow is named for what it is: a real motion of the axis, to its last digit.
+#[test]
+fn a_drive_that_swings_fast() {
+    let found = finds(
+        "vibration",
+        &Case {
+            motion: |t, drive| 9.0 * TAU * (TAU * 40.0 * t + 0.3).sin() + 12.0 * TAU * t - drive,
+            ..PLAIN
+        },
+    );
+    near(&found, "frequency_hz", 40.0);
+    near(&found, "amplitude", 9.0 * TAU);
+}
+
 /// A reference without noise shows how the axis moves to the last digit, and what is in that is no noise.
 #[test]
 fn beside_a_reference() {
