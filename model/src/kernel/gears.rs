@@ -3,9 +3,10 @@
 //!
 //! A residual that was small and is no longer may be a signal that fades. So where γ has settled ([`Calibration::SETTLED`](crate::spec::Calibration::SETTLED) gears) it moves
 //! no parameter: they are held to the end of the first period without it, and after a sample out of the lock window until the
-//! lock level is full again. Where the radius is far too large, which it is of no signal that fades, or has been too small for
-//! [`HELD`] periods and lock was not lost, the signal has changed, and the search begins again. A signal that is lost in the
-//! first gear leaves parameters of which nothing is known: they begin again from their nominal values.
+//! lock level is full again. Where it has been large for [`HELD`] periods and lock was not lost, the signal has changed, and the
+//! search begins again; at once where it has followed a signal that faded, and the radius is far too large now: the signal is
+//! back. A signal that is lost in the first gear leaves parameters of which nothing is known: they begin again from their
+//! nominal values.
 
 use super::calibration::Gate;
 use super::detector::within;
@@ -60,12 +61,12 @@ pub struct Hold<S: Signal> {
     pub recall: Option<S::Bool>,
 }
 
-/// Whether the parameters are held; `counted`: the sample counts, `follows`: neither it nor the last ones were out of the
-/// lock window.
+/// Whether the parameters are held; `counts`: the sample counts, wherever in the period it is; `follows`: neither it nor the last ones
+/// were out of the lock window.
 #[inline(always)]
 pub fn hold<S: Signal>(
     rho: S,
-    counted: S::Bool,
+    counts: S::Bool,
     follows: S::Bool,
     state: &State<S>,
     k: &Coefficients<S>,
@@ -81,7 +82,7 @@ pub fn hold<S: Signal>(
     let large = large
         .or(settled.and(not_small))
         .named("rho_too_large")
-        .and(counted)
+        .and(counts)
         .named("residual_large");
     let disturbed = large.or(state.disturbed).named("disturbed_lately");
     let disturbed = disturbed.or(state.held).named("disturbed_or_held");
@@ -99,7 +100,7 @@ pub fn hold<S: Signal>(
     });
     Hold {
         large,
-        risen: risen.and(counted).named("radius_large"),
+        risen: risen.and(counts).named("radius_large"),
         held,
         recall,
     }
@@ -143,8 +144,8 @@ fn long<S: Signal>(state: &State<S>, k: &Coefficients<S>) -> S::Bool {
     state.held.and(long).named("held_long")
 }
 
-/// The search begins again: the residual was large before γ had settled, or the radius too large, or the residual large for
-/// so long that the signal must have changed.
+/// The search begins again: the residual was large before γ had settled, or for so long that the signal must have changed, or the
+/// radius is too large and it had followed a fade.
 #[inline(always)]
 pub fn restart<S: Signal>(
     gate: Gate<S>,
@@ -153,10 +154,13 @@ pub fn restart<S: Signal>(
     structure: &Structure,
 ) -> S::Bool {
     let early = settled(state, k, structure).not();
-    let cause = early
-        .or(state.risen)
-        .or(long(state, k))
-        .named("restart_cause");
+    let cause = early.or(long(state, k));
+    let cause = if structure.calibration.recalls() {
+        cause.or(state.risen.and(state.fading).named("rises_again"))
+    } else {
+        cause
+    };
+    let cause = cause.named("restart_cause");
     disturbed_period(gate, state)
         .and(cause)
         .named("gamma_restart")

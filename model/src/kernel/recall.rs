@@ -90,10 +90,11 @@ pub fn recall<S: Signal>(
     // What comes back over some periods is small again before it is whole.
     let returns = passed.or(gears.restart).named("return_ends").not();
     let returning = recall.and(returns).named("return_goes_on");
-    // A radius that rises all at once is another signal.
+    // A radius that stays too large is another signal's.
     let another = risen.and(state.fading.not()).named("signal_changed");
     let known = state.known.and(another.not()).named("still_known");
-    let fades = gears.stayed.or(state.fading).named("fades");
+    let faded = gears.stayed.and(state.risen.not()).named("has_faded");
+    let fades = faded.or(state.fading).named("fades");
     Memory {
         recent: (!newer.is_known_false()).then(recent),
         proven: (!older.is_known_false()).then(proven),

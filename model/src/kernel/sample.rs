@@ -104,15 +104,8 @@ fn advance_of<S: Signal, const PLAIN: bool>(
     let measure = starting.map(|running| start::measure(e, running, k));
     let travel = travel::travel(counting, measure, state, k, structure);
     let counts = counting.and(in_window).named("sample_counts");
-    let counted = counts.and(travel.new_sector);
-    let hold = gears::hold(
-        rho,
-        counted.named("counted"),
-        lock.full,
-        state,
-        k,
-        structure,
-    );
+    let counted = counts.and(travel.new_sector).named("counted");
+    let hold = gears::hold(rho, counts, lock.full, state, k, structure);
     let fresh = counted.and(hold.held.not());
     let estimate = (cos_hat, sin_hat);
     let mut polar = None;

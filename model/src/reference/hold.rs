@@ -1,8 +1,8 @@
 //! A residual that was small and is no longer may be a signal that fades: then the parameters are held.
 //!
-//! They are held until a whole period has been travelled without such a residual. Where the radius is far too large, which it is
-//! of no signal that fades, or the residual stays for many periods and lock is not lost, the signal has changed, and γ begins
-//! again. The paper has nothing of the kind: there the gains follow a signal down to nothing.
+//! They are held until a whole period has been travelled without such a residual. Where it stays for many periods and lock is not
+//! lost, the signal has changed, and γ begins again. The paper has nothing of the kind: there the gains follow a signal down to
+//! nothing.
 
 use std::f64::consts::TAU;
 
@@ -61,7 +61,7 @@ impl Hold {
             let began = self.0.map_or(alpha_hat, |(began, _)| began);
             self.0 = Some((began, alpha_hat));
             let long = (alpha_hat - began).abs() >= config.periods * TAU;
-            if rho >= config.restart || long {
+            if long {
                 self.0 = None;
                 return Verdict::Changed;
             }
@@ -134,8 +134,8 @@ impl Recall {
 
     /// Takes Θ of a sample, to be remembered after `periods` of travel, with the last γ after twice as many.
     pub fn step(&mut self, periods: f64, theta: &Theta, alpha_hat: f64, seen: Seen) -> Recalled {
-        let back = seen.risen || !seen.locked;
-        if self.fading && self.known && back && !seen.settled {
+        let back = seen.risen || !(seen.locked || seen.settled);
+        if self.fading && self.known && back {
             self.fading = false;
             self.since = alpha_hat;
             return Recalled::Again(self.proven);
