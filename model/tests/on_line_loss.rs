@@ -33,13 +33,13 @@ fn worst_of(seen: impl Iterator<Item = Seen>) -> Seen {
 
 /// The worst that a loss of both channels, or of either, does to a search.
 fn middle<F: Fn(f64) -> (f64, f64) + Clone>(
-    settled: &[(Settled<F>, [f64; 2])],
+    settled: &[Settled<F>],
     fade: [u32; 2],
     moves: bool,
 ) -> Seen {
-    worst_of(settled.iter().map(|(from, lost)| {
+    worst_of(settled.iter().map(|from| {
         let loss = Loss {
-            lost: *lost,
+            lost: from.lost,
             level: 0.0,
             fade,
             away: AWAY,
@@ -50,14 +50,11 @@ fn middle<F: Fn(f64) -> (f64, f64) + Clone>(
 }
 
 /// The worst that a channel does, or both do, that is at a rail for so many periods of travel.
-fn rail<F: Fn(f64) -> (f64, f64) + Clone>(
-    settled: &[(Settled<F>, [f64; 2])],
-    periods: u32,
-) -> Seen {
+fn rail<F: Fn(f64) -> (f64, f64) + Clone>(settled: &[Settled<F>], periods: u32) -> Seen {
     let each = settled.iter().flat_map(|one| [(one, RAIL), (one, -RAIL)]);
-    worst_of(each.map(|((from, lost), level)| {
+    worst_of(each.map(|(from, level)| {
         let loss = Loss {
-            lost: *lost,
+            lost: from.lost,
             level,
             fade: [0; 2],
             away: periods * PERIOD,

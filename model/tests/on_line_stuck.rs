@@ -23,12 +23,12 @@ fn a_stuck_channel_leaves_nothing() {
         let each = each_settled(spec);
         let mut random = StdRng::seed_from_u64(11);
         for case in 0..CASES {
-            let (from, lost) = &each[case % each.len()];
+            let from = &each[case % each.len()];
             let least = 5.0f64;
             let share = random.random_range(0.0..1.0);
             let away = least * (100.0 * f64::from(PERIOD) / least).powf(share);
             let stuck = Loss {
-                lost: *lost,
+                lost: from.lost,
                 level: random.random_range(-1.4..1.4),
                 fade: [0; 2],
                 away: away as u32,

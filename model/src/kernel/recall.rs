@@ -93,13 +93,13 @@ pub fn recall<S: Signal>(
     // A radius that stays too large is another signal's.
     let another = risen.and(state.fading.not()).named("signal_changed");
     let known = state.known.and(another.not()).named("still_known");
-    let faded = gears.stayed.and(state.risen.not()).named("has_faded");
-    let fades = faded.or(state.fading).named("fades");
+    let fades = gears.stayed.or(state.fading).named("fades");
+    let ends = again.or(proved).or(another).named("fade_ends");
     Memory {
         recent: (!newer.is_known_false()).then(recent),
         proven: (!older.is_known_false()).then(proven),
         returning: returning.or(again),
-        fading: fades.and(again.or(proved).named("fade_ends").not()),
+        fading: fades.and(ends.not()),
         halfway: state.halfway.xor(quiet),
         known: known.or(older),
     }

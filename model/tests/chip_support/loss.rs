@@ -80,6 +80,8 @@ pub(crate) struct Seen {
 pub(crate) struct Settled<F> {
     pub(crate) bench: Bench,
     pub(crate) signals: F,
+    /// Share of the cosine and of the sine that it is to lose.
+    pub(crate) lost: [f64; 2],
     /// Samples, and travel.
     pub(crate) samples: u32,
     pub(crate) turns: f64,
@@ -89,7 +91,11 @@ pub(crate) struct Settled<F> {
     pub(crate) before: f64,
 }
 
-fn settled(spec: &Spec, seed: u32) -> Settled<impl Fn(f64) -> (f64, f64) + Clone + use<>> {
+fn settled(
+    spec: &Spec,
+    lost: [f64; 2],
+    seed: u32,
+) -> Settled<impl Fn(f64) -> (f64, f64) + Clone + use<>> {
     // What is not calibrated would hide the rest.
     let beta = if spec.calibration.has_phase() {
         5.0
@@ -101,6 +107,7 @@ fn settled(spec: &Spec, seed: u32) -> Settled<impl Fn(f64) -> (f64, f64) + Clone
         theta: linear(&bench),
         bench,
         signals: sensor_of(seed, beta),
+        lost,
         // At another place of the period each time.
         samples: 300 * PERIOD + 83 * seed % PERIOD,
         turns: 0.0,
@@ -124,12 +131,9 @@ const CHANNELS: [[f64; 2]; 3] = [[1.0, 1.0], [1.0, 0.0], [0.0, 1.0]];
 /// Chips of a search that have settled, each to lose a channel, or both.
 pub(crate) fn each_settled(
     spec: &Spec,
-) -> Vec<(
-    Settled<impl Fn(f64) -> (f64, f64) + Clone + use<>>,
-    [f64; 2],
-)> {
+) -> Vec<Settled<impl Fn(f64) -> (f64, f64) + Clone + use<>>> {
     let each = (0..).zip(CHANNELS);
-    each.map(|(i, lost)| (settled(spec, 3 * i), lost)).collect()
+    each.map(|(i, lost)| settled(spec, lost, 3 * i)).collect()
 }
 
 impl<F: Fn(f64) -> (f64, f64) + Clone> Settled<F> {
