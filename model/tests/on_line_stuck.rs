@@ -5,7 +5,7 @@ mod chip_support;
 
 use std::f64::consts::TAU;
 
-use chip_support::loss::{Loss, PERIOD, each_settled, watch};
+use chip_support::loss::{Loss, PERIOD, each_settled, sensor_for, watch};
 use chip_support::shipped::variants::{Variant, searches};
 use chip_support::{Bench, largest, optical};
 use rand::{Rng, SeedableRng, rngs::StdRng};
@@ -15,6 +15,18 @@ use rayon::prelude::*;
 const CASES: usize = 60;
 /// What stays below `hold_residual`, for some samples, may move them by so much, radians.
 const SMALL: f64 = 1e-3;
+
+/// Periods of travel that a fade takes, the channels, and the periods before.
+const EARLY_FADES: [(u32, [f64; 2], u32); 8] = [
+    (3, [1.0, 0.0], 10),
+    (10, [1.0, 1.0], 10),
+    (10, [0.0, 1.0], 8),
+    (30, [1.0, 0.0], 8),
+    (100, [1.0, 0.0], 8),
+    (100, [0.0, 1.0], 12),
+    (300, [0.0, 1.0], 8),
+    (300, [1.0, 1.0], 8),
+];
 
 #[test]
 fn a_stuck_channel_leaves_nothing() {
@@ -81,4 +93,85 @@ fn another_amplitude_is_learned() {
         assert!((ratio - 1.0).abs() < 0.01, "held: {ratio}");
         assert!(learned < 2.0 * settled && (again / radius - 1.0).abs() < 0.01);
     }
+}
+
+/// Once the first gear has passed, a loss leaves what was known at the end of one: a tenth of what was wrong at first, or a third with
+/// the bends, which learn more slowly.
+#[test]
+fn a_loss_after_the_first_gear() {
+    searches().par_iter().for_each(|variant| {
+        let Variant { spec, what, .. } = variant;
+        let signals = sensor_for(spec, 5);
+        let mut settling = Bench::new(spec, 5);
+        let first = largest(&settling.miscalibration_at(72, &signals));
+        let mut worst = 0.0f64;
+        let mut turns = 0.0;
+        for _ in 0..8 * 12 {
+            for _ in 0..PERIOD / 8 {
+                settling.step(signals(TAU * turns));
+                turns += 1.0 / f64::from(PERIOD);
+            }
+            let state = &settling.chip.state;
+            let early = state.gamma_gear.raw(0) < 1 || !state.locked;
+            if early {
+                continue;
+            }
+            let before = largest(&settling.miscalibration_at(72, &signals));
+            for left in [[0.0, 0.0], [0.0, 1.0], [1.0, 0.0]] {
+                let mut bench = settling.clone();
+                for k in 0..3000 + 3 * PERIOD {
+                    let [left_c, left_s] = if k < 3000 { left } else { [1.0; 2] };
+                    let (c, s) = signals(TAU * (turns + f64::from(k) / f64::from(PERIOD)));
+                    bench.step((left_c * c, left_s * s));
+                    if k >= 3000 && k % 30 == 0 {
+                        let after = largest(&bench.miscalibration_at(72, &signals));
+                        worst = worst.max((after - before) / first);
+                    }
+                }
+            }
+        }
+        println!("{what}, {}: {worst:.3}", spec.calibration.parameters);
+        let most = if spec.calibration.has_bend() {
+            0.4
+        } else {
+            0.15
+        };
+        assert!(
+            worst < most,
+            "{what}: {worst:.3} of the first miscalibration"
+        );
+    });
+}
+
+/// One that fades away before anything is proven may take the parameters along to their bounds: they find back.
+#[test]
+fn a_fade_from_the_start() {
+    searches()
+        .par_iter()
+        .for_each(|Variant { spec, what, .. }| {
+            let signals = sensor_for(spec, 5);
+            for (fade, lost, from) in EARLY_FADES {
+                let mut bench = Bench::new(spec, 5);
+                let first = largest(&bench.miscalibration_at(72, &signals));
+                let (begin, gone) = (from * PERIOD, (from + fade) * PERIOD);
+                let back = gone + 3000;
+                for k in 0..back + 200 * PERIOD {
+                    let left = match k {
+                        _ if k < begin || k >= back => 1.0,
+                        _ if k < gone => f64::from(gone - k) / f64::from(gone - begin),
+                        _ => 0.0,
+                    };
+                    let (c, s) = signals(TAU / f64::from(PERIOD) * f64::from(k));
+                    let [of_c, of_s] = lost.map(|share| 1.0 - share * (1.0 - left));
+                    bench.step((of_c * c, of_s * s));
+                }
+                let after = largest(&bench.miscalibration_at(72, &signals));
+                let what = format!(
+                    "{what}, {}: {fade} {lost:?} {from}",
+                    spec.calibration.parameters
+                );
+                assert!(bench.chip.state.locked, "{what}");
+                assert!(after < 0.05 * first, "{what}: {after:.4} of {first:.4}");
+            }
+        });
 }

@@ -2,11 +2,11 @@
 //! signal has changed.
 //!
 //! A residual that was small and is no longer may be a signal that fades. So where γ has settled ([`Calibration::SETTLED`](crate::spec::Calibration::SETTLED) gears) it moves
-//! no parameter: they are held to the end of the first period without it, and after a sample out of the lock window until the
-//! lock level is full again. Where it has been large for [`HELD`] periods and lock was not lost, the signal has changed, and the
+//! no parameter: they are held to the end of the first period without it. After the first gear a large one does the same, and after a
+//! sample out of the lock window they are held until the lock level is full again. Where it has been large for [`HELD`] periods and lock was not lost, the signal has changed, and the
 //! search begins again; at once where it has followed a signal that faded, and the radius is far too large now: the signal is
 //! back. A signal that is lost in the first gear leaves parameters of which nothing is known: they begin again from their
-//! nominal values.
+//! nominal values, or with recall from the best that is known.
 
 use super::calibration::Gate;
 use super::detector::within;
@@ -18,7 +18,7 @@ pub const HELD: u32 = 31;
 
 static HOLD: Formula = Formula {
     title: "Hold",
-    equation: "once gamma has settled a residual that is not small, and all until the end of a period without one, moves no parameter",
+    equation: "after the first gear a large residual, once gamma has settled one that is not small, and all until the end of a period without one, moves no parameter",
     source: "",
 };
 
@@ -92,7 +92,9 @@ pub fn hold<S: Signal>(
     } else {
         suspect
     };
-    let held = suspect.named("hold_cause").and(settled).named("hold");
+    // The first gear is free: what follows badly finds back in it.
+    let later = first_gear(state, k).not();
+    let held = suspect.named("hold_cause").and(later).named("hold");
     // γ is in its last gear then: where it leaves it nothing is known, or the signal may be fading.
     let recall = structure.calibration.recalls().then(|| {
         let proven = state.known.and(state.fading.not()).named("proven_stand");
@@ -123,12 +125,17 @@ pub fn settled<S: Signal>(state: &State<S>, k: &Coefficients<S>, structure: &Str
     early.not().named("gamma_settled")
 }
 
-/// The signal is lost in the first gear: the parameters are nominal.
+/// The signal is lost in the first gear: the parameters are nominal, or recalled.
 #[inline(always)]
 pub fn nominal<S: Signal>(state: &State<S>, k: &Coefficients<S>) -> S::Bool {
     let lost = state.signal_lost.and(state.locked.not());
-    let first = state.gamma_gear.less_than(k.one);
-    first.and(lost).named("nominal")
+    first_gear(state, k).and(lost).named("nominal")
+}
+
+/// γ is as large as it begins.
+#[inline(always)]
+fn first_gear<S: Signal>(state: &State<S>, k: &Coefficients<S>) -> S::Bool {
+    state.gamma_gear.less_than(k.one)
 }
 
 /// A period of travel ends in which the residual was large.

@@ -7,7 +7,8 @@
 //!
 //! A slower fade outlasts the hold, and the search begins again and follows it. What is proven stays as it was until the search has
 //! come to its last gear again. Where the radius is far too large before that, the signal is back: what is proven comes back, with
-//! the last gear. So it does where the signal is lost in the first gear, with which nothing else is known.
+//! the last gear. So it does where the signal is lost in the first gear, with which nothing else is known; before anything is proven
+//! that is what the last gear ended with, or nothing, and the search goes on from there.
 
 use super::calibration::Update;
 use super::gears::{Gears, last_gear, nominal};
@@ -54,7 +55,7 @@ pub fn recall<S: Signal>(
     let back = risen.and(state.fading);
     let lost = nominal(state, k);
     let again = back.or(lost).and(state.known).named("recall_again");
-    let all = recall.or(again).named("recall_any");
+    let all = recall.or(again).or(lost).named("recall_any");
     if !all.is_known_false() {
         let proven = proven(state);
         updated.theta = std::array::from_fn(|i| S::select(all, proven[i], updated.theta[i]));
@@ -72,7 +73,9 @@ pub fn recall<S: Signal>(
         S::select(again, k.gamma_gear_last, gears.gear).quantise(&structure.formats.gamma_gear);
     let quiet = passed.and(last).named("last_gear_passed");
     let proved = quiet.and(state.halfway).named("proved");
-    let older = proved.and(recall.not()).named("remember");
+    // Until something is proven, the end of the last gear is the best that is known.
+    let yet = state.known.or(last).not().named("nothing_proven_yet");
+    let older = proved.and(recall.not()).or(yet).named("remember");
     // What was recent where something is recalled is of the way down.
     let newer = passed
         .and(last.not())
@@ -101,7 +104,7 @@ pub fn recall<S: Signal>(
         returning: returning.or(again),
         fading: fades.and(ends.not()),
         halfway: state.halfway.xor(quiet),
-        known: known.or(older),
+        known: known.or(proved.and(recall.not())),
     }
 }
 

@@ -99,6 +99,10 @@ pub fn moved<S: Signal>(
     structure: &Structure,
 ) -> S {
     let moved = (old - step).quantise(&structure.formats.deviation[i]);
+    if structure.calibration.recalls() {
+        // It has something better.
+        return moved;
+    }
     S::select(nominal, k.zero, moved)
 }
 

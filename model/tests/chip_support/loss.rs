@@ -91,22 +91,27 @@ pub(crate) struct Settled<F> {
     pub(crate) before: f64,
 }
 
-fn settled(
-    spec: &Spec,
-    lost: [f64; 2],
-    seed: u32,
-) -> Settled<impl Fn(f64) -> (f64, f64) + Clone + use<>> {
+/// A sensor for a search.
+pub(crate) fn sensor_for(spec: &Spec, signs: u32) -> impl Fn(f64) -> (f64, f64) + Clone + use<> {
     // What is not calibrated would hide the rest.
     let beta = if spec.calibration.has_phase() {
         5.0
     } else {
         0.0
     };
+    sensor_of(signs, beta)
+}
+
+fn settled(
+    spec: &Spec,
+    lost: [f64; 2],
+    seed: u32,
+) -> Settled<impl Fn(f64) -> (f64, f64) + Clone + use<>> {
     let bench = Bench::new(spec, u64::from(seed));
     let mut all = Settled {
         theta: linear(&bench),
         bench,
-        signals: sensor_of(seed, beta),
+        signals: sensor_for(spec, seed),
         lost,
         // At another place of the period each time.
         samples: 300 * PERIOD + 83 * seed % PERIOD,
