@@ -34,7 +34,7 @@ pub struct Calibration {
     /// Periods of travel between gears. Default: see [`gear_periods`](Self::gear_periods).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gear_periods: Option<u32>,
-    /// |ρ| above this returns to the first γ.
+    /// |ρ| above this returns to the first γ, until γ has settled.
     #[serde(default = "restart")]
     pub restart_residual: f64,
     /// |ρ| above this holds the parameters once γ has settled: the signal may be fading. See [`Spec::hold_residual`].
