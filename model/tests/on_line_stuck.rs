@@ -95,10 +95,10 @@ fn another_amplitude_is_learned() {
     }
 }
 
-/// Once the first gear has passed, a loss leaves what was known at the end of one: a tenth of what was wrong at first, or a third with
-/// the bends, which learn more slowly.
+/// Once a period of travel has passed in which no residual was large, a loss leaves what was known at the end of one: within a quarter
+/// of what was wrong at first, or 60 % with the bends, which learn more slowly. A start by least squares has solved by then.
 #[test]
-fn a_loss_after_the_first_gear() {
+fn a_loss_soon_after_lock() {
     searches().par_iter().for_each(|variant| {
         let Variant { spec, what, .. } = variant;
         let signals = sensor_for(spec, 5);
@@ -106,16 +106,18 @@ fn a_loss_after_the_first_gear() {
         let first = largest(&settling.miscalibration_at(72, &signals));
         let mut worst = 0.0f64;
         let mut turns = 0.0;
+        let mut looked = 0;
         for _ in 0..8 * 12 {
             for _ in 0..PERIOD / 8 {
                 settling.step(signals(TAU * turns));
                 turns += 1.0 / f64::from(PERIOD);
             }
             let state = &settling.chip.state;
-            let early = state.gamma_gear.raw(0) < 1 || !state.locked;
-            if early {
+            let begun = state.gamma_gear.raw(0) > 0 || state.gear_periods.raw(0) > 0;
+            if !(begun && state.locked) {
                 continue;
             }
+            looked += 1;
             let before = largest(&settling.miscalibration_at(72, &signals));
             for left in [[0.0, 0.0], [0.0, 1.0], [1.0, 0.0]] {
                 let mut bench = settling.clone();
@@ -131,10 +133,12 @@ fn a_loss_after_the_first_gear() {
             }
         }
         println!("{what}, {}: {worst:.3}", spec.calibration.parameters);
+        // Batches with bends pass their first period quietly late.
+        assert!(looked >= 8 * 8, "{what}: {looked}");
         let most = if spec.calibration.has_bend() {
-            0.4
+            0.6
         } else {
-            0.15
+            0.25
         };
         assert!(
             worst < most,

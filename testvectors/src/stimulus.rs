@@ -40,6 +40,9 @@ fn sweep(t: f64) -> f64 {
     }
 }
 
+/// Periods of travel in which the signal fades.
+const FADING: f64 = 12.0;
+
 /// Periods of travel from a fade until the search has begun again and gamma, in gears of a period, has settled.
 const FOLLOWED: f64 = 12.0 + HELD as f64;
 
@@ -116,11 +119,14 @@ pub fn named(design: &Design, rows: usize) -> Vec<Stimulus> {
             let t = k as f64 / n - 0.5;
             pair(0.3 + 4.0 * dead * n * t * t, 1.0, 0.0)
         }),
-        // The signal grows before gamma has settled and falls a little when it has; it goes, comes back small, and grows.
+        // The signal grows before gamma has settled, goes while the search has begun again and once more in its first gear, and falls a
+        // little later; it goes, comes back small, and grows.
         motion("loss", &|k| {
             let gain = match k as f64 / n {
                 t if t < 0.2 => 0.72,
-                t if t > 0.56 && t < 0.58 => 0.9,
+                t if t > 0.235 && t < 0.25 => 0.0,
+                t if t > 0.37 && t < 0.385 => 0.0,
+                t if t > 0.60 && t < 0.64 => 1.0 - 2.5 * (t - 0.60),
                 t if t < 0.66 => 1.0,
                 t if t < 0.72 => 0.0,
                 t if t < 0.9 => 0.7,
@@ -128,14 +134,15 @@ pub fn named(design: &Design, rows: usize) -> Vec<Stimulus> {
             };
             faded(pair(0.02 * k as f64 * (top / 0.1), 1.0, 0.0), gain)
         }),
-        // At top speed the signal fades once gamma has settled, and stays so until the search begins again; where there is recall it
-        // changes for some periods once gamma has settled on it, and is then back, and stronger.
+        // At top speed the signal fades slowly once gamma has settled, and stays so until the search begins again; where there is recall it
+        // changes for some periods once gamma has settled on it, is then back, and grows until the radius is far too large.
         motion("fade", &|k| {
-            let followed = (k as f64 - n / 3.0) * top - FOLLOWED;
-            let gain = match followed {
+            let fading = (k as f64 - n / 3.0) * top;
+            let gain = match fading - FADING / 2.0 - FOLLOWED {
                 _ if 3 * k < rows => 1.0,
+                _ if fading < FADING => 1.0 - 0.12 * fading / FADING,
                 _ if !spec.calibration.recalls() => 0.88,
-                periods if periods > 6.0 => 1.15,
+                periods if periods > 6.0 => 1.06 + 0.003 * (periods - 6.0),
                 periods if periods > 0.0 && periods < 3.0 => 0.97,
                 _ => 0.88,
             };

@@ -25,8 +25,9 @@
 //      |                          | sin_inside cos_address cos_inside cos_negative theta_1 theta_3 theta_5 last_gear
 //      |                          | periods_modulo_4 sector sector_relative period_ahead period_behind a_period_away
 //      |                          | reach_ahead reach_behind unseen_ahead may_add_ahead sector_ahead unseen_behind
-//      |                          | may_add_behind gamma_settled proven_stand nominal held_long restart_cause
-//      |                          | last_gamma_gear quiet gear_done hold_begins hold_ends periods_count_ends
+//      |                          | may_add_behind gamma_settled proven_stand nominal held_long rises_again
+//      |                          | restart_cause last_gamma_gear quiet gear_done hold_begins hold_ends
+//      |                          | periods_count_ends nothing_proven_yet
 //    1 | loop_ab * error_previous | sin_value sin_slope y_c y_s counting whole_period sector_behind travel_clear
 //      |                          | sector_added new_sector still_used_ahead used_up_ahead still_used_behind
 //      |                          | used_up_behind y_5 lost_before
@@ -47,10 +48,9 @@
 //      |                          | still_held last_gear_passed
 //   13 | loop_a * e_change        | level_moved level_full level_empty narrower loop_gear_up full_in_last_gear
 //      |                          | hold_cause hold recall fresh rho_s gradient_2 step_2 gamma_gear_up
-//      |                          | gear_periods_again holding restart_risen recall_again recall_any proved remember
-//      |                          | remember_recent return_ends return_goes_on signal_changed still_known fades
-//      |                          | fade_ends lock_falls
-//   14 | y_c * rho_c              | kick gradient_4 step_4
+//      |                          | gear_periods_again holding restart_risen recall_again recall_any proved return_ends
+//      |                          | return_goes_on signal_changed still_known fades fade_ends lock_falls
+//   14 | y_c * rho_c              | kick gradient_4 step_4 remember remember_recent
 //   15 | y_s * rho_s              | speed backwards not_forwards gradient_1 step_1
 //   16 | y_5 * rho_s              | alpha_hat_sum carry count_before gradient_3 step_3
 //   17 | -                        | gradient_5 step_5
@@ -234,6 +234,7 @@ module optical (
     reg rho_too_large;
     reg residual_large;
     reg disturbed_or_held;
+    reg not_gamma_gear_below_one;
     reg not_fading;
     reg proven_stand;
     reg radius_large;
@@ -244,15 +245,10 @@ module optical (
     reg signed [12:0] y_5;
     reg nominal;
     reg signed [25:0] step_5;
-    reg signed [24:0] theta_5_deviation_next_chosen;
     reg signed [22:0] step_1;
-    reg signed [25:0] theta_1_deviation_next_chosen;
     reg signed [21:0] step_2;
-    reg signed [24:0] theta_2_deviation_next_chosen;
     reg signed [22:0] step_3;
-    reg signed [25:0] theta_3_deviation_next_chosen;
     reg signed [21:0] step_4;
-    reg signed [24:0] theta_4_deviation_next_chosen;
     reg held_long;
     reg restart_cause;
     reg disturbed_period;
@@ -272,9 +268,17 @@ module optical (
     reg risen_next;
     reg held_next;
     reg recall_any;
+    reg signed [25:0] theta_1_deviation_next;
+    reg signed [24:0] theta_2_deviation_next;
+    reg signed [25:0] theta_3_deviation_next;
+    reg signed [24:0] theta_4_deviation_next;
+    reg signed [24:0] theta_5_deviation_next;
     reg signed [3:0] gamma_gear_next;
     reg last_gear_passed;
+    reg nothing_proven_yet;
+    reg proved_and_not_recall;
     reg remember;
+    reg gamma_shift_or_proved;
     reg remember_recent;
     reg still_known;
     reg returning_next;
@@ -565,8 +569,8 @@ module optical (
     wire counted_now = sample_counts & new_sector; // step 12
 
     // Hold
-    //   once gamma has settled a residual that is not small, and all until the end of a period without one, moves no
-    //   parameter
+    //   after the first gear a large residual, once gamma has settled one that is not small, and all until the end of a
+    //   period without one, moves no parameter
     wire gamma_gear_below_gamma_gear_settled = $signed(gamma_gear[3:2]) < 2'sd1; // step 0, with gamma_gear_settled
     wire gamma_settled_now = ~gamma_gear_below_gamma_gear_settled; // step 0
     wire rho_high_now = ~($signed(rho_now[17:14]) < 4'sd1); // step 9, with restart_residual
@@ -574,15 +578,17 @@ module optical (
     wire rho_not_small_now = // step 9, with hold_residual, minus_hold_residual
         ~(($signed(rho_now[17:12]) < 6'sd1) & ($signed(~rho_now[17:12]) < 6'sd1));
     wire rho_too_large_now = rho_large | (gamma_settled & rho_not_small); // step 10
-    wire residual_large_now = rho_too_large & counted_now; // step 12
+    wire residual_large_now = rho_too_large & sample_counts; // step 12
     wire disturbed_lately = residual_large_now | disturbed; // step 12
     wire disturbed_or_held_now = disturbed_lately | held; // step 12
     wire hold_cause = (disturbed_or_held | level_moved_below_lock_full) | returning; // step 13
-    wire hold = hold_cause & gamma_settled; // step 13
+    wire gamma_gear_below_one = gamma_gear < 4'sd1; // step 0
+    wire not_gamma_gear_below_one_now = ~gamma_gear_below_one; // step 0
+    wire hold = hold_cause & not_gamma_gear_below_one; // step 13
     wire not_fading_now = ~fading; // step 0
     wire proven_stand_now = known & not_fading_now; // step 0
     wire recall = hold & proven_stand; // step 13
-    wire radius_large_now = rho_high & counted_now; // step 12
+    wire radius_large_now = rho_high & sample_counts; // step 12
     wire fresh_now = counted & ~hold; // step 13
 
     // Gradient along the radius
@@ -606,7 +612,7 @@ module optical (
     wire signed [27:0] gradient_5 = product_0[27:0]; // s28.28, step 17
     wire signed [26:0] y_c_times_rho_c = product_0[26:0]; // s27.27, step 15
     wire signed [26:0] y_s_times_rho_s = product_0[26:0]; // s27.27, step 16
-    wire nominal_now = (gamma_gear < 4'sd1) & (signal_lost & ~locked); // step 0
+    wire nominal_now = gamma_gear_below_one & (signal_lost & ~locked); // step 0
     wire signed [25:0] step_5_geared = shifted_1; // s26.26, step 17
     wire signed [25:0] step_5_now = fresh ? step_5_geared : 26'sd0; // s26.26, step 17
     wire signed [26:0] theta_5_deviation_next_difference = // s27.26, step 18
@@ -615,8 +621,6 @@ module optical (
         ((&theta_5_deviation_next_difference[26:24]) | ~(|theta_5_deviation_next_difference[26:24]))
             ? theta_5_deviation_next_difference[24:0]
             : {theta_5_deviation_next_difference[26], {24{~theta_5_deviation_next_difference[26]}}};
-    wire signed [24:0] theta_5_deviation_next_chosen_now = // s25.26, step 18
-        nominal ? 25'sd0 : theta_5_deviation_next_bits;
     wire signed [26:0] gradient_1 = y_c_times_rho_c; // s27.30, step 15
     wire signed [25:0] step_1_geared = shifted_1; // s26.26, step 15
     wire signed [22:0] step_1_now = fresh ? step_1_geared[22:0] : 23'sd0; // s23.26, step 15
@@ -626,8 +630,6 @@ module optical (
         ((&theta_1_deviation_next_difference[26:25]) | ~(|theta_1_deviation_next_difference[26:25]))
             ? theta_1_deviation_next_difference[25:0]
             : {theta_1_deviation_next_difference[26], {25{~theta_1_deviation_next_difference[26]}}};
-    wire signed [25:0] theta_1_deviation_next_chosen_now = // s26.26, step 16
-        nominal ? 26'sd0 : theta_1_deviation_next_bits;
     wire signed [15:0] gradient_2 = rho_c[15:0]; // s16.20, step 13
     wire signed [25:0] step_2_geared = shifted_1; // s26.26, step 13
     wire signed [21:0] step_2_now = fresh_now ? step_2_geared[21:0] : 22'sd0; // s22.26, step 13
@@ -637,8 +639,6 @@ module optical (
         ((&theta_2_deviation_next_difference[25:24]) | ~(|theta_2_deviation_next_difference[25:24]))
             ? theta_2_deviation_next_difference[24:0]
             : {theta_2_deviation_next_difference[25], {24{~theta_2_deviation_next_difference[25]}}};
-    wire signed [24:0] theta_2_deviation_next_chosen_now = // s25.26, step 14
-        nominal ? 25'sd0 : theta_2_deviation_next_bits;
     wire signed [26:0] gradient_3 = y_s_times_rho_s; // s27.30, step 16
     wire signed [25:0] step_3_geared = shifted_1; // s26.26, step 16
     wire signed [22:0] step_3_now = fresh ? step_3_geared[22:0] : 23'sd0; // s23.26, step 16
@@ -648,8 +648,6 @@ module optical (
         ((&theta_3_deviation_next_difference[26:25]) | ~(|theta_3_deviation_next_difference[26:25]))
             ? theta_3_deviation_next_difference[25:0]
             : {theta_3_deviation_next_difference[26], {25{~theta_3_deviation_next_difference[26]}}};
-    wire signed [25:0] theta_3_deviation_next_chosen_now = // s26.26, step 17
-        nominal ? 26'sd0 : theta_3_deviation_next_bits;
     wire signed [15:0] gradient_4 = rho_s[15:0]; // s16.20, step 14
     wire signed [25:0] step_4_geared = shifted_1; // s26.26, step 14
     wire signed [21:0] step_4_now = fresh ? step_4_geared[21:0] : 22'sd0; // s22.26, step 14
@@ -659,13 +657,12 @@ module optical (
         ((&theta_4_deviation_next_difference[25:24]) | ~(|theta_4_deviation_next_difference[25:24]))
             ? theta_4_deviation_next_difference[24:0]
             : {theta_4_deviation_next_difference[25], {24{~theta_4_deviation_next_difference[25]}}};
-    wire signed [24:0] theta_4_deviation_next_chosen_now = // s25.26, step 15
-        nominal ? 25'sd0 : theta_4_deviation_next_bits;
 
     // Gears of gamma
     //   gamma halves after some periods of travel, starts again when the residual stays large
     wire held_long_now = held & ~(gear_periods < 6'sh1f); // step 0, with held_periods_last
-    wire restart_cause_now = (gamma_gear_below_gamma_gear_settled | risen) | held_long_now; // step 0
+    wire rises_again = risen & fading; // step 0
+    wire restart_cause_now = (gamma_gear_below_gamma_gear_settled | held_long_now) | rises_again; // step 0
     wire disturbed_period_now = period_tick & disturbed; // step 12
     wire gamma_restart_now = disturbed_period_now & restart_cause; // step 12
     wire gamma_gear_below_gamma_gear_last_now = $signed(gamma_gear[3:1]) < 3'sd3; // step 0, with gamma_gear_last
@@ -703,29 +700,33 @@ module optical (
     //   proven' = recent, recent' = theta
     wire restart_risen = gamma_restart & risen; // step 13
     wire recall_again = ((restart_risen & fading) | nominal) & known; // step 13
-    wire recall_any_now = recall | recall_again; // step 13
-    wire signed [25:0] theta_1_deviation_next = // s26.26, step 19
-        recall_any ? proven_1 : theta_1_deviation_next_chosen;
-    wire signed [24:0] theta_2_deviation_next = // s25.26, step 19
-        recall_any ? proven_2 : theta_2_deviation_next_chosen;
-    wire signed [25:0] theta_3_deviation_next = // s26.26, step 19
-        recall_any ? proven_3 : theta_3_deviation_next_chosen;
-    wire signed [24:0] theta_4_deviation_next = // s25.26, step 19
-        recall_any ? proven_4 : theta_4_deviation_next_chosen;
-    wire signed [24:0] theta_5_deviation_next = // s25.26, step 19
-        recall_any ? proven_5 : theta_5_deviation_next_chosen;
+    wire recall_any_now = (recall | recall_again) | nominal; // step 13
+    wire signed [25:0] theta_1_deviation_next_now = // s26.26, step 16
+        recall_any ? proven_1 : theta_1_deviation_next_bits;
+    wire signed [24:0] theta_2_deviation_next_now = // s25.26, step 14
+        recall_any ? proven_2 : theta_2_deviation_next_bits;
+    wire signed [25:0] theta_3_deviation_next_now = // s26.26, step 17
+        recall_any ? proven_3 : theta_3_deviation_next_bits;
+    wire signed [24:0] theta_4_deviation_next_now = // s25.26, step 15
+        recall_any ? proven_4 : theta_4_deviation_next_bits;
+    wire signed [24:0] theta_5_deviation_next_now = // s25.26, step 18
+        recall_any ? proven_5 : theta_5_deviation_next_bits;
     wire signed [3:0] gamma_gear_next_chosen = // s4.0, step 13, with gamma_gear_last
         recall_again ? 4'sd6 : gamma_gear_next_bits;
     wire signed [3:0] gamma_gear_next_now = gamma_gear_next_chosen; // u3.0, step 13
     wire last_gear_passed_now = gear_passed_now & last_gamma_gear; // step 12
     wire proved = last_gear_passed & halfway; // step 13
-    wire remember_now = proved & ~recall; // step 13
-    wire remember_recent_now = (gamma_shift | proved) | recall_any_now; // step 13
+    wire nothing_proven_yet_now = ~(known | last_gamma_gear_now); // step 0
+    wire proved_and_not_recall_now = proved & ~recall; // step 13
+    wire remember_now = proved_and_not_recall | nothing_proven_yet; // step 14
+    wire gamma_shift_or_proved_now = gamma_shift | proved; // step 13
+    wire remember_recent_now = gamma_shift_or_proved | recall_any; // step 14
     wire return_ends = gear_passed | gamma_restart; // step 13
     wire return_goes_on = recall & ~return_ends; // step 13
     wire signal_changed = restart_risen & not_fading; // step 13
     wire still_known_now = known & ~signal_changed; // step 13
     wire fades = (gamma_restart & held_long) | fading; // step 13
+    wire fade_ends = (recall_again | proved) | signal_changed; // step 13
     wire signed [25:0] recent_1_next = remember_recent ? theta_1_deviation_next : recent_1; // s26.26, step 19
     wire signed [24:0] recent_2_next = remember_recent ? theta_2_deviation_next : recent_2; // s25.26, step 19
     wire signed [25:0] recent_3_next = remember_recent ? theta_3_deviation_next : recent_3; // s26.26, step 19
@@ -737,10 +738,9 @@ module optical (
     wire signed [24:0] proven_4_next = remember ? recent_4 : proven_4; // s25.26, step 19
     wire signed [24:0] proven_5_next = remember ? recent_5 : proven_5; // s25.26, step 19
     wire returning_next_now = return_goes_on | recall_again; // step 13
-    wire fade_ends = recall_again | proved; // step 13
     wire fading_next_now = fades & ~fade_ends; // step 13
     wire halfway_next_now = halfway ^ last_gear_passed; // step 13
-    wire known_next_now = still_known | remember; // step 14
+    wire known_next_now = still_known | proved_and_not_recall; // step 14
 
     // Flags
     //   what the machine control needs to know
@@ -818,6 +818,7 @@ module optical (
             unseen_behind <= unseen_behind_now;
             may_add_behind <= may_add_behind_now;
             gamma_settled <= gamma_settled_now;
+            not_gamma_gear_below_one <= not_gamma_gear_below_one_now;
             not_fading <= not_fading_now;
             proven_stand <= proven_stand_now;
             nominal <= nominal_now;
@@ -827,6 +828,7 @@ module optical (
             last_gamma_gear <= last_gamma_gear_now;
             gear_done <= gear_done_now;
             periods_count_ends <= periods_count_ends_now;
+            nothing_proven_yet <= nothing_proven_yet_now;
             theta_2 <= theta_2_deviation;
             theta_4 <= theta_4_deviation;
         end
@@ -925,8 +927,8 @@ module optical (
             held_next <= held_next_now;
             recall_any <= recall_any_now;
             gamma_gear_next <= gamma_gear_next_now;
-            remember <= remember_now;
-            remember_recent <= remember_recent_now;
+            proved_and_not_recall <= proved_and_not_recall_now;
+            gamma_shift_or_proved <= gamma_shift_or_proved_now;
             still_known <= still_known_now;
             returning_next <= returning_next_now;
             fading_next <= fading_next_now;
@@ -936,8 +938,10 @@ module optical (
         if (step == 5'd14) begin
             loop_gear_next <= loop_gear_next_now;
             kick <= kick_now;
-            theta_2_deviation_next_chosen <= theta_2_deviation_next_chosen_now;
             step_4 <= step_4_now;
+            theta_2_deviation_next <= theta_2_deviation_next_now;
+            remember <= remember_now;
+            remember_recent <= remember_recent_now;
             known_next <= known_next_now;
             lock_lost_next <= lock_lost_next_now;
         end
@@ -946,21 +950,21 @@ module optical (
             backwards <= backwards_now;
             not_forwards <= not_forwards_now;
             step_1 <= step_1_now;
-            theta_4_deviation_next_chosen <= theta_4_deviation_next_chosen_now;
+            theta_4_deviation_next <= theta_4_deviation_next_now;
         end
         if (step == 5'd16) begin
             alpha_hat_next <= alpha_hat_next_now;
             count_next <= count_next_now;
             direction_next <= direction_next_now;
-            theta_1_deviation_next_chosen <= theta_1_deviation_next_chosen_now;
             step_3 <= step_3_now;
+            theta_1_deviation_next <= theta_1_deviation_next_now;
         end
         if (step == 5'd17) begin
             step_5 <= step_5_now;
-            theta_3_deviation_next_chosen <= theta_3_deviation_next_chosen_now;
+            theta_3_deviation_next <= theta_3_deviation_next_now;
         end
         if (step == 5'd18) begin
-            theta_5_deviation_next_chosen <= theta_5_deviation_next_chosen_now;
+            theta_5_deviation_next <= theta_5_deviation_next_now;
         end
     end
 

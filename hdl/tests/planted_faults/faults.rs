@@ -263,6 +263,18 @@ pub(crate) fn faults() -> Vec<Fault> {
             let line = v.lines().find(forwarded).expect("a forwarded operand");
             v.replacen(line, &line.replace("_now;", ";"), 1)
         }),
+        swap(
+            "nothing is remembered in the first gear",
+            &["(gear_passed | first_gear_period)"],
+            " | first_gear_period",
+            "",
+        ),
+        swap(
+            "no hold in the first gear",
+            &["wire search_begun_now ="],
+            " | ~(gear_periods < 6'sd1)",
+            "",
+        ),
     ]
 }
 
@@ -353,9 +365,27 @@ pub(crate) fn recall_faults() -> Vec<Fault> {
             "1'b0 ?",
         ),
         swap(
-            "what is recent is proven in recall",
+            "nothing is remembered before anything is proven",
             &["wire remember_now ="],
-            " & ~recall",
+            " | nothing_proven_yet",
+            "",
+        ),
+        swap(
+            "the search goes on at the last gamma's pace where the signal is back",
+            &["wire restart_cause_now ="],
+            " | rises_again",
+            "",
+        ),
+        swap(
+            "nominal parameters after a loss",
+            &["wire recall_any_now ="],
+            " | nominal",
+            "",
+        ),
+        swap(
+            "what stays too large is a fade",
+            &["wire fade_ends ="],
+            " | signal_changed",
             "",
         ),
         swap(

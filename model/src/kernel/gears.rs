@@ -1,12 +1,13 @@
 //! γ shifts gear: large first, halved after every few periods of travel, large again when the residual shows that the
 //! signal has changed.
 //!
-//! A residual that was small and is no longer may be a signal that fades. So where γ has settled ([`Calibration::SETTLED`](crate::spec::Calibration::SETTLED) gears) it moves
-//! no parameter: they are held to the end of the first period without it. After the first gear a large one does the same, and after a
-//! sample out of the lock window they are held until the lock level is full again. Where it has been large for [`HELD`] periods and lock was not lost, the signal has changed, and the
-//! search begins again; at once where it has followed a signal that faded, and the radius is far too large now: the signal is
-//! back. A signal that is lost in the first gear leaves parameters of which nothing is known: they begin again from their
-//! nominal values, or with recall from the best that is known.
+//! A residual that was small and is no longer may be a signal that fades. So where γ has settled
+//! ([`Calibration::SETTLED`](crate::spec::Calibration::SETTLED) gears) it moves no parameter: they are held to the end of the first
+//! period without it. From the first period on that was quiet a large one does the same, and after a sample out of the lock window
+//! they are held until the lock level is full again. Where it has been large for [`HELD`] periods and lock was not lost, the signal
+//! has changed, and the search begins again; at once where it has followed a signal that faded, and the radius is far too large
+//! now: the signal is back. A signal that is lost in the first gear leaves parameters of which nothing is known: they begin again
+//! from their nominal values, or with recall from the best that is known.
 
 use super::calibration::Gate;
 use super::detector::within;
@@ -18,7 +19,7 @@ pub const HELD: u32 = 31;
 
 static HOLD: Formula = Formula {
     title: "Hold",
-    equation: "after the first gear a large residual, once gamma has settled one that is not small, and all until the end of a period without one, moves no parameter",
+    equation: "from the first quiet period on a large residual, once gamma has settled one that is not small, and all until the end of a period without one, moves no parameter",
     source: "",
 };
 
@@ -36,6 +37,8 @@ pub struct Gears<S: Signal> {
     pub periods: S,
     /// The periods of this gear have passed without a large residual.
     pub passed: S::Bool,
+    /// A period of the first gear has passed without a large residual.
+    pub first: S::Bool,
     /// The search begins again.
     pub restart: S::Bool,
     /// It does because the residual has stayed.
@@ -92,8 +95,9 @@ pub fn hold<S: Signal>(
     } else {
         suspect
     };
-    // The first gear is free: what follows badly finds back in it.
-    let later = first_gear(state, k).not();
+    // Until a first period has passed without a large residual they are free: what follows badly finds back so.
+    let begun = state.gear_periods.less_than(k.one).not();
+    let later = first_gear(state, k).not().or(begun).named("search_begun");
     let held = suspect.named("hold_cause").and(later).named("hold");
     // γ is in its last gear then: where it leaves it nothing is known, or the signal may be fading.
     let recall = structure.calibration.recalls().then(|| {
@@ -217,6 +221,10 @@ pub fn gears<S: Signal>(
         gear: S::select(restart, k.zero, gear).quantise(&structure.formats.gamma_gear),
         periods: S::select(again, k.zero, counted).quantise(&structure.formats.gear_periods),
         passed,
+        first: tick
+            .and(quiet)
+            .and(first_gear(state, k))
+            .named("first_gear_period"),
         restart,
         stayed: restart.and(long(state, k)),
         // Where nothing counts, a new period begins without suspicion.

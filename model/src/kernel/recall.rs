@@ -8,7 +8,7 @@
 //! A slower fade outlasts the hold, and the search begins again and follows it. What is proven stays as it was until the search has
 //! come to its last gear again. Where the radius is far too large before that, the signal is back: what is proven comes back, with
 //! the last gear. So it does where the signal is lost in the first gear, with which nothing else is known; before anything is proven
-//! that is what the last gear ended with, or nothing, and the search goes on from there.
+//! that is what the last gear ended with, in the first one the last quiet period, and the search goes on from there.
 
 use super::calibration::Update;
 use super::gears::{Gears, last_gear, nominal};
@@ -75,9 +75,10 @@ pub fn recall<S: Signal>(
     let proved = quiet.and(state.halfway).named("proved");
     // Until something is proven, the end of the last gear is the best that is known.
     let yet = state.known.or(last).not().named("nothing_proven_yet");
-    let older = proved.and(recall.not()).or(yet).named("remember");
+    let older = proved.or(yet).named("remember");
     // What was recent where something is recalled is of the way down.
     let newer = passed
+        .or(gears.first)
         .and(last.not())
         .or(proved)
         .or(all)
@@ -104,7 +105,7 @@ pub fn recall<S: Signal>(
         returning: returning.or(again),
         fading: fades.and(ends.not()),
         halfway: state.halfway.xor(quiet),
-        known: known.or(proved.and(recall.not())),
+        known: known.or(proved),
     }
 }
 
