@@ -80,7 +80,9 @@ pub fn recall<S: Signal>(
     let newer = passed
         .or(gears.first)
         .and(last.not())
+        .named("search_improves")
         .or(proved)
+        .named("remember_better")
         .or(all)
         .named("remember_recent");
     let recent = || {
