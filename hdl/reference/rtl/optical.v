@@ -25,8 +25,8 @@
 //      |                          | sin_inside cos_address cos_inside cos_negative theta_1 theta_3 theta_5 last_gear
 //      |                          | periods_modulo_4 sector sector_relative period_ahead period_behind a_period_away
 //      |                          | reach_ahead reach_behind unseen_ahead may_add_ahead sector_ahead unseen_behind
-//      |                          | may_add_behind gamma_settled proven_stand nominal held_long rises_again
-//      |                          | restart_cause last_gamma_gear quiet gear_done hold_begins hold_ends
+//      |                          | may_add_behind gamma_settled search_begun proven_stand nominal held_long
+//      |                          | rises_again restart_cause last_gamma_gear quiet gear_done hold_begins hold_ends
 //      |                          | periods_count_ends nothing_proven_yet
 //    1 | loop_ab * error_previous | sin_value sin_slope y_c y_s counting whole_period sector_behind travel_clear
 //      |                          | sector_added new_sector still_used_ahead used_up_ahead still_used_behind
@@ -45,12 +45,13 @@
 //   12 | sin_hat * rho_limited    | e_in_window in_window level_step e_change sample_counts counted residual_large
 //      |                          | disturbed_lately disturbed_or_held radius_large rho_c period_tick disturbed_period
 //      |                          | gamma_restart gear_passed gamma_shift gear_periods_up periods_end within_period
-//      |                          | still_held last_gear_passed
+//      |                          | still_held first_gear_period last_gear_passed
 //   13 | loop_a * e_change        | level_moved level_full level_empty narrower loop_gear_up full_in_last_gear
 //      |                          | hold_cause hold recall fresh rho_s gradient_2 step_2 gamma_gear_up
-//      |                          | gear_periods_again holding restart_risen recall_again recall_any proved return_ends
-//      |                          | return_goes_on signal_changed still_known fades fade_ends lock_falls
-//   14 | y_c * rho_c              | kick gradient_4 step_4 remember remember_recent
+//      |                          | gear_periods_again holding restart_risen recall_again recall_any proved remember
+//      |                          | search_improves remember_better return_ends return_goes_on signal_changed
+//      |                          | still_known fades fade_ends lock_falls
+//   14 | y_c * rho_c              | kick gradient_4 step_4 remember_recent
 //   15 | y_s * rho_s              | speed backwards not_forwards gradient_1 step_1
 //   16 | y_5 * rho_s              | alpha_hat_sum carry count_before gradient_3 step_3
 //   17 | -                        | gradient_5 step_5
@@ -234,7 +235,8 @@ module optical (
     reg rho_too_large;
     reg residual_large;
     reg disturbed_or_held;
-    reg not_gamma_gear_below_one;
+    reg gamma_gear_below_one;
+    reg search_begun;
     reg not_fading;
     reg proven_stand;
     reg radius_large;
@@ -255,6 +257,7 @@ module optical (
     reg gamma_restart;
     reg gamma_gear_below_gamma_gear_last;
     reg last_gamma_gear;
+    reg quiet;
     reg gear_done;
     reg gear_passed;
     reg gamma_shift;
@@ -264,6 +267,7 @@ module optical (
     reg within_period;
     reg still_held;
     reg signed [5:0] gear_periods_next;
+    reg first_gear_period;
     reg disturbed_next;
     reg risen_next;
     reg held_next;
@@ -276,11 +280,9 @@ module optical (
     reg signed [3:0] gamma_gear_next;
     reg last_gear_passed;
     reg nothing_proven_yet;
-    reg proved_and_not_recall;
     reg remember;
-    reg gamma_shift_or_proved;
+    reg remember_better;
     reg remember_recent;
-    reg still_known;
     reg returning_next;
     reg fading_next;
     reg halfway_next;
@@ -569,8 +571,8 @@ module optical (
     wire counted_now = sample_counts & new_sector; // step 12
 
     // Hold
-    //   after the first gear a large residual, once gamma has settled one that is not small, and all until the end of a
-    //   period without one, moves no parameter
+    //   from the first quiet period on a large residual, once gamma has settled one that is not small, and all until
+    //   the end of a period without one, moves no parameter
     wire gamma_gear_below_gamma_gear_settled = $signed(gamma_gear[3:2]) < 2'sd1; // step 0, with gamma_gear_settled
     wire gamma_settled_now = ~gamma_gear_below_gamma_gear_settled; // step 0
     wire rho_high_now = ~($signed(rho_now[17:14]) < 4'sd1); // step 9, with restart_residual
@@ -582,9 +584,9 @@ module optical (
     wire disturbed_lately = residual_large_now | disturbed; // step 12
     wire disturbed_or_held_now = disturbed_lately | held; // step 12
     wire hold_cause = (disturbed_or_held | level_moved_below_lock_full) | returning; // step 13
-    wire gamma_gear_below_one = gamma_gear < 4'sd1; // step 0
-    wire not_gamma_gear_below_one_now = ~gamma_gear_below_one; // step 0
-    wire hold = hold_cause & not_gamma_gear_below_one; // step 13
+    wire gamma_gear_below_one_now = gamma_gear < 4'sd1; // step 0
+    wire search_begun_now = ~gamma_gear_below_one_now | ~(gear_periods < 6'sd1); // step 0
+    wire hold = hold_cause & search_begun; // step 13
     wire not_fading_now = ~fading; // step 0
     wire proven_stand_now = known & not_fading_now; // step 0
     wire recall = hold & proven_stand; // step 13
@@ -612,7 +614,7 @@ module optical (
     wire signed [27:0] gradient_5 = product_0[27:0]; // s28.28, step 17
     wire signed [26:0] y_c_times_rho_c = product_0[26:0]; // s27.27, step 15
     wire signed [26:0] y_s_times_rho_s = product_0[26:0]; // s27.27, step 16
-    wire nominal_now = gamma_gear_below_one & (signal_lost & ~locked); // step 0
+    wire nominal_now = gamma_gear_below_one_now & (signal_lost & ~locked); // step 0
     wire signed [25:0] step_5_geared = shifted_1; // s26.26, step 17
     wire signed [25:0] step_5_now = fresh ? step_5_geared : 26'sd0; // s26.26, step 17
     wire signed [26:0] theta_5_deviation_next_difference = // s27.26, step 18
@@ -667,8 +669,8 @@ module optical (
     wire gamma_restart_now = disturbed_period_now & restart_cause; // step 12
     wire gamma_gear_below_gamma_gear_last_now = $signed(gamma_gear[3:1]) < 3'sd3; // step 0, with gamma_gear_last
     wire last_gamma_gear_now = ~gamma_gear_below_gamma_gear_last_now; // step 0
-    wire quiet = ~(disturbed | held); // step 0
-    wire gear_done_now = ~(gear_periods < 6'sd3) & quiet; // step 0, with gear_periods_last
+    wire quiet_now = ~(disturbed | held); // step 0
+    wire gear_done_now = ~(gear_periods < 6'sd3) & quiet_now; // step 0, with gear_periods_last
     wire gear_passed_now = period_tick & gear_done; // step 12
     wire gamma_shift_now = gear_passed_now & gamma_gear_below_gamma_gear_last; // step 12
     wire signed [1:0] gamma_gear_up = gamma_shift ? 2'sd1 : 2'sd0; // s2.0, step 13
@@ -691,6 +693,7 @@ module optical (
     wire signed [3:0] gamma_gear_next_bits = gamma_gear_next_chosen_2; // u3.0, step 13
     wire signed [5:0] gear_periods_next_chosen = gear_periods_again ? 6'sd0 : gear_periods_next_bits; // s6.0, step 13
     wire signed [5:0] gear_periods_next_now = gear_periods_next_chosen; // u5.0, step 13
+    wire first_gear_period_now = (period_tick & quiet) & gamma_gear_below_one; // step 12
     wire disturbed_next_now = residual_large | (disturbed & within_period); // step 13
     wire risen_next_now = radius_large | (risen & within_period); // step 13
     wire held_next_now = holding & counting; // step 13
@@ -717,14 +720,14 @@ module optical (
     wire last_gear_passed_now = gear_passed_now & last_gamma_gear; // step 12
     wire proved = last_gear_passed & halfway; // step 13
     wire nothing_proven_yet_now = ~(known | last_gamma_gear_now); // step 0
-    wire proved_and_not_recall_now = proved & ~recall; // step 13
-    wire remember_now = proved_and_not_recall | nothing_proven_yet; // step 14
-    wire gamma_shift_or_proved_now = gamma_shift | proved; // step 13
-    wire remember_recent_now = gamma_shift_or_proved | recall_any; // step 14
+    wire remember_now = proved | nothing_proven_yet; // step 13
+    wire search_improves = (gear_passed | first_gear_period) & gamma_gear_below_gamma_gear_last; // step 13
+    wire remember_better_now = search_improves | proved; // step 13
+    wire remember_recent_now = remember_better | recall_any; // step 14
     wire return_ends = gear_passed | gamma_restart; // step 13
     wire return_goes_on = recall & ~return_ends; // step 13
     wire signal_changed = restart_risen & not_fading; // step 13
-    wire still_known_now = known & ~signal_changed; // step 13
+    wire still_known = known & ~signal_changed; // step 13
     wire fades = (gamma_restart & held_long) | fading; // step 13
     wire fade_ends = (recall_again | proved) | signal_changed; // step 13
     wire signed [25:0] recent_1_next = remember_recent ? theta_1_deviation_next : recent_1; // s26.26, step 19
@@ -740,7 +743,7 @@ module optical (
     wire returning_next_now = return_goes_on | recall_again; // step 13
     wire fading_next_now = fades & ~fade_ends; // step 13
     wire halfway_next_now = halfway ^ last_gear_passed; // step 13
-    wire known_next_now = still_known | proved_and_not_recall; // step 14
+    wire known_next_now = still_known | proved; // step 13
 
     // Flags
     //   what the machine control needs to know
@@ -818,7 +821,8 @@ module optical (
             unseen_behind <= unseen_behind_now;
             may_add_behind <= may_add_behind_now;
             gamma_settled <= gamma_settled_now;
-            not_gamma_gear_below_one <= not_gamma_gear_below_one_now;
+            gamma_gear_below_one <= gamma_gear_below_one_now;
+            search_begun <= search_begun_now;
             not_fading <= not_fading_now;
             proven_stand <= proven_stand_now;
             nominal <= nominal_now;
@@ -826,6 +830,7 @@ module optical (
             restart_cause <= restart_cause_now;
             gamma_gear_below_gamma_gear_last <= gamma_gear_below_gamma_gear_last_now;
             last_gamma_gear <= last_gamma_gear_now;
+            quiet <= quiet_now;
             gear_done <= gear_done_now;
             periods_count_ends <= periods_count_ends_now;
             nothing_proven_yet <= nothing_proven_yet_now;
@@ -911,6 +916,7 @@ module optical (
             periods_end <= periods_end_now;
             within_period <= within_period_now;
             still_held <= still_held_now;
+            first_gear_period <= first_gear_period_now;
             last_gear_passed <= last_gear_passed_now;
         end
         if (step == 5'd13) begin
@@ -927,12 +933,12 @@ module optical (
             held_next <= held_next_now;
             recall_any <= recall_any_now;
             gamma_gear_next <= gamma_gear_next_now;
-            proved_and_not_recall <= proved_and_not_recall_now;
-            gamma_shift_or_proved <= gamma_shift_or_proved_now;
-            still_known <= still_known_now;
+            remember <= remember_now;
+            remember_better <= remember_better_now;
             returning_next <= returning_next_now;
             fading_next <= fading_next_now;
             halfway_next <= halfway_next_now;
+            known_next <= known_next_now;
             lock_falls <= lock_falls_now;
         end
         if (step == 5'd14) begin
@@ -940,9 +946,7 @@ module optical (
             kick <= kick_now;
             step_4 <= step_4_now;
             theta_2_deviation_next <= theta_2_deviation_next_now;
-            remember <= remember_now;
             remember_recent <= remember_recent_now;
-            known_next <= known_next_now;
             lock_lost_next <= lock_lost_next_now;
         end
         if (step == 5'd15) begin
