@@ -65,12 +65,14 @@ fn the_fade_is_held_and_then_followed() {
             continue;
         }
         let states = played(&design, "fade");
-        let held: Vec<usize> = (1..ROWS).filter(|k| states[*k].held).collect();
-        let (begins, ends) = (held[0], held[held.len() - 1] + 1);
         let gear = |k: usize| states[k].gamma_gear.to_f64();
         let settled = design.constants.gamma_gear_settled.value();
+        let begins = (1..ROWS).find(|k| states[*k].held).unwrap();
         assert!(gear(begins) >= settled, "{name}: held before");
-        assert_eq!((gear(ends - 1) > 0.0, gear(ends)), (true, 0.0), "{name}");
+        let again = (begins..ROWS).find(|k| gear(*k) == 0.0).unwrap();
+        assert!(states[again - 1].held, "{name}: not held until then");
+        let periods = travels / (ROWS * 2 / 3) as f64 * (again - begins) as f64;
+        assert!((32.0..36.0).contains(&periods), "{name}: {periods}");
         seen.push(name);
     }
     assert!(seen.contains(&"optical"), "{seen:?}");
