@@ -1,5 +1,6 @@
 //! The stretches of a recording in which its drive is calm. Where a drive starts, stops and turns back, its angle has corners
-//! that only close knots follow; they would hide a vibration that goes on all the time. Away from the corners, wide knots do.
+//! that only close knots follow; they would hide a vibration that goes on all the time. Away from the corners, wide knots do;
+//! and without any, where hardly anything but a line needs close ones.
 
 use crate::causes::VIBRATION;
 use crate::context::Context;
@@ -12,6 +13,8 @@ use crate::spline::Spline;
 const CORNER: f64 = 4.0;
 /// So many times the power of the rest the line has: noise alone and what corners leave have lines, too.
 const LOUD: f64 = 0.5;
+/// So many times the power of the rest a line has that needs no corners beside it: it is why the knots are close.
+const ALONE: f64 = 4.0;
 /// Cycles of the line between two knots: of a slower one, which such knots follow, the drive itself leaves something.
 const FAST: f64 = 0.6;
 /// Radians rms that may be left: of more, it is the drive that swings.
@@ -156,11 +159,12 @@ struct Look {
 }
 
 impl Look {
-    /// Whether there are corners, not too many, and a line beside them.
+    /// Whether there are corners, not too many, and a line beside them; or hardly anything but a line.
     fn tells(&self) -> bool {
         let fast = self.line * self.knots > FAST;
         let small = self.rms < SMALL;
-        self.contrast > CONTRAST && self.share <= MOST && self.loudness > LOUD && fast && small
+        let beside = self.contrast > CONTRAST && self.loudness > LOUD;
+        (beside || self.loudness > ALONE) && self.share <= MOST && fast && small
     }
 }
 
@@ -175,7 +179,8 @@ pub(crate) fn beside(mut found: Diagnosis, calm: Diagnosis, hertz: f64) -> Diagn
         known(f) && own.is_some_and(|own| (own / hertz - 1.0).abs() < SAME)
     };
     if let Some(mut finding) = calm.findings.into_iter().find(near) {
-        finding.evidence += ", away from the corners of the motion";
+        finding.evidence +=
+            ", where the motion is followed with wider knots, away from its corners";
         finding.gain = found.unchanged();
         found.findings.push(finding);
     }

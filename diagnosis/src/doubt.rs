@@ -21,6 +21,13 @@ const LEFTOVER: f64 = 0.05;
 /// angle only, neither is what the other leaves.
 const APART: f64 = 2.0;
 
+/// A code's error changes so often within a period that hardly any of it is of a low order: of steps of an amplitude's share
+/// q, so many times √q of it (a sine's turning points alone stay within one step for long).
+const OF_LOW_ORDER: f64 = 2.0;
+
+/// Static errors beside a channel's coarse steps, each smaller than those: more of them are their doing.
+const MANY: usize = 2;
+
 /// What depends on the code depends on the angle too.
 fn home(domain: Domain) -> Domain {
     if domain == Domain::Code {
@@ -105,9 +112,11 @@ fn too_much_left(
     (share < HOLDS).then(|| unnamed(domain, nearest, gain, &but))
 }
 
-/// Static errors of another kind that are a small part of the strongest.
+/// Static errors of another kind that are a small part of the strongest. What has no name spans the strongest, too, and
+/// stands aside.
 fn leftovers(system: &System, found: &mut Selection, own: &[usize]) -> Option<Unnamed> {
-    let gains: Vec<f64> = own.iter().map(|i| gain_of(system, found, &[*i])).collect();
+    let named = found.of(found.accepted.clone(), system);
+    let gains: Vec<f64> = own.iter().map(|i| gain_of(system, &named, &[*i])).collect();
     let strongest = (0..own.len()).max_by(|a, b| gains[*a].total_cmp(&gains[*b]))?;
     let name = found.accepted[own[strongest]].candidate.name;
     let small = |j: &usize| {
@@ -132,21 +141,31 @@ fn leftovers(system: &System, found: &mut Selection, own: &[usize]) -> Option<Un
 pub(crate) fn beside_codes(system: &System, found: &mut Selection, digital: &[Finding]) {
     let context = system.context;
     let lsb = context.adc.cos.lsb.max(context.adc.sin.lsb) / context.ellipse.amplitude();
-    let error = |f: &Finding| match f.cause.as_str() {
+    let error = |f: &Finding| {
         // Of a bit that is lost half of the time, and of even steps.
-        "stuck_bit" => f.parameter("bit").map(|bit| 2f64.powf(bit) / 2.0),
-        "coarse_quantisation" => f.parameter("step_lsb").map(|step| step / 12f64.sqrt()),
-        _ => None,
+        let (step, rms) = match f.cause.as_str() {
+            "stuck_bit" => (2f64.powf(f.parameter("bit")?), 0.5),
+            "coarse_quantisation" => (f.parameter("step_lsb")?, 12f64.sqrt().recip()),
+            _ => return None,
+        };
+        let step = lsb * step;
+        let low = (OF_LOW_ORDER * step.sqrt()).min(1.0);
+        Some([step * rms, step * rms * low])
     };
-    let error = lsb * digital.iter().filter_map(error).fold(0.0, f64::max);
+    let errors = digital.iter().filter_map(error);
+    let [whole, low] = errors.fold([0.0; 2], |[a, b]: [f64; 2], e| [a.max(e[0]), b.max(e[1])]);
     let samples: f64 = context.weight.iter().sum();
+    let size = |gain: f64| system.noise() * (2.0 * gain.max(0.0) / samples).sqrt();
+    let own = |i: &usize| home(found.accepted[*i].candidate.domain) == Domain::Angle;
+    let all = (0..found.accepted.len()).filter(own);
+    let gains = all.map(|i| (i, gain_of(system, found, &[i])));
+    let small: Vec<(usize, f64)> = gains.filter(|(_, gain)| size(*gain) < whole).collect();
+    // Many at once are the pattern that the codes make.
+    let error = if small.len() > MANY { whole } else { low };
     let mut first = None;
-    for i in 0..found.accepted.len() {
-        let candidate = &found.accepted[i].candidate;
-        let gain = gain_of(system, found, &[i]);
-        let size = system.noise() * (2.0 * gain.max(0.0) / samples).sqrt();
-        if home(candidate.domain) == Domain::Angle && size < error {
-            first = first.or(Some((candidate.name, gain)));
+    for (i, gain) in small {
+        if size(gain) < error {
+            first = first.or(Some((found.accepted[i].candidate.name, gain)));
             found.accepted[i].doubted = true;
         }
     }

@@ -20,6 +20,7 @@ mod finding;
 mod flicker;
 mod generic;
 mod held;
+mod jumps;
 mod knots;
 mod library;
 mod lines;

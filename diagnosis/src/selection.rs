@@ -101,7 +101,7 @@ impl Selection {
     }
 
     /// The five parameters and these causes, without the shapes that stand in for what has no name.
-    fn of(&self, mut accepted: Vec<Accepted>, system: &System) -> Self {
+    pub(crate) fn of(&self, mut accepted: Vec<Accepted>, system: &System) -> Self {
         let mut shapes = self.base.shapes.clone();
         for one in &mut accepted {
             one.first = shapes.len();

@@ -2,26 +2,11 @@
 
 use std::f64::consts::PI;
 
-use nonius_calibration::{Method, Options, calibrate};
 use nonius_recording::Recording;
 
 use crate::checks::{Checked, ninth};
-use crate::context::unwrapped;
 use crate::finding::{Finding, Parameter, Place};
-
-/// Samples on either side of a jump that are compared, and the order of the curve through them; on slow axes more of them
-/// show it.
-const SIDES: [(usize, i32); 4] = [(8, 3), (24, 3), (64, 5), (200, 5)];
-/// So many times the ninth decile of what the curve leaves is a jump: eight standard deviations.
-const FAR: f64 = 4.9;
-/// A jump is so near a whole number of samples, beside what noise makes of it.
-const WHOLE: f64 = 0.15;
-/// Most samples lost at one place that are believed without a clock.
-const MOST: f64 = 32.0;
-/// So many times the samples on a side, to either side, tell how large the noise is just there.
-const AROUND: usize = 8;
-/// Most samples that the ellipse is fitted to.
-const ENOUGH: usize = 8192;
+use crate::jumps::jumps;
 
 /// Samples on either side whose slope tells how far the scale moves.
 const LINE: usize = 8;
@@ -207,118 +192,4 @@ pub(crate) fn dropped(recording: &Recording, checked: &mut Checked) {
     if lost < n / 10 {
         checked.gaps = gaps;
     }
-}
-
-/// What a step between two samples in the middle adds to a curve of that order through `side` samples on either side: the
-/// weights of the samples that give its size, free of that curve.
-fn step_weights(side: usize, order: i32) -> Vec<f64> {
-    let middle = side as f64 - 0.5;
-    let column = |f: &dyn Fn(f64) -> f64| -> Vec<f64> {
-        (0..2 * side)
-            .map(|i| f((i as f64 - middle) / middle))
-            .collect()
-    };
-    let curve: Vec<Vec<f64>> = (0..=order)
-        .map(|degree| column(&|x| x.powi(degree)))
-        .collect();
-    let step = column(&|x| 0.5 * x.signum());
-    let free = crate::solve::without(&step, &curve);
-    let square: f64 = free.iter().map(|v| v * v).sum();
-    free.iter().map(|v| v / square).collect()
-}
-
-/// Lays straight lines over samples that do not count.
-fn bridge(values: &mut [f64], weight: &[f64]) {
-    let mut last = 0;
-    for (k, weight) in weight.iter().enumerate().skip(1) {
-        if *weight == 0.0 {
-            continue;
-        }
-        let (from, by) = (values[last], values[k] - values[last]);
-        for (i, value) in values[last + 1..k].iter_mut().enumerate() {
-            *value = from + by * (i + 1) as f64 / (k - last) as f64;
-        }
-        last = k;
-    }
-}
-
-/// Places where the angle jumps by what it moves in whole samples: before which sample, how many are missing.
-fn jumps(recording: &Recording, checked: &Checked) -> Vec<(usize, usize)> {
-    let n = recording.samples();
-    let every = n.div_ceil(ENOUGH).max(1);
-    let kept = |values: &[f64]| -> Vec<f64> { values.iter().copied().step_by(every).collect() };
-    let (cos, sin) = (kept(&recording.cos), kept(&recording.sin));
-    let Ok(fit) = calibrate(&cos, &sin, Method::Unbiased, &Options::default()) else {
-        return vec![];
-    };
-    let pairs = recording.cos.iter().zip(&recording.sin);
-    let angle = pairs.map(|(c, s)| {
-        let (c, s) = fit.ellipse.corrected(*c, *s);
-        s.atan2(c)
-    });
-    let mut angle = unwrapped(angle.collect());
-    bridge(&mut angle, &checked.weight);
-    let mut found: Vec<(usize, usize)> = vec![];
-    for (side, order) in SIDES {
-        if n < 32 * side {
-            break;
-        }
-        let weights = step_weights(side, order);
-        let size = |k: usize| -> f64 {
-            let near = &angle[k - side..k + side];
-            near.iter().zip(&weights).map(|(a, w)| a * w).sum()
-        };
-        let sizes: Vec<f64> = (0..n)
-            .map(|k| {
-                if k < side || k + side > n {
-                    0.0
-                } else {
-                    size(k)
-                }
-            })
-            .collect();
-        let plain: Vec<f64> = sizes.iter().map(|s| s.abs()).collect();
-        let typical = ninth(&plain);
-        let mut far = vec![];
-        for k in side..=n - side {
-            if plain[k] < FAR * typical {
-                continue;
-            }
-            // A jump shows itself on either side of it.
-            let before = &plain[k.saturating_sub(AROUND * side)..k - side];
-            let after = &plain[(k + side).min(n)..(k + AROUND * side).min(n)];
-            let noise = typical.max(ninth(before)).max(ninth(after));
-            let near = &plain[k - side / 2..(k + side / 2 + 1).min(n)];
-            let highest = near.iter().all(|p| *p <= plain[k]);
-            if plain[k] > FAR * noise && highest {
-                far.push((k, noise / 1.645));
-            }
-        }
-        let mut whole = vec![];
-        let mut others = 0;
-        for (k, sigma) in far {
-            // Whether a sample nearby does not count, or was found already.
-            let known = |j: usize| k.abs_diff(j) <= side;
-            let bad = (k - 2..k + 2).any(|j| checked.weight[j] == 0.0);
-            let bad = bad || checked.extra.iter().any(|j| known(*j));
-            if bad || found.iter().any(|f| known(f.0)) {
-                continue;
-            }
-            let moves = (angle[k + side - 1] - angle[k - side] - sizes[k]) / (2 * side - 1) as f64;
-            let samples = sizes[k] / moves;
-            let error = sigma / moves.abs();
-            let off = (samples - samples.round()).abs();
-            if samples > 0.5 && samples < MOST && error < 0.15 && off < WHOLE + 3.0 * error {
-                whole.push((k, samples.round() as usize));
-            } else {
-                others += 1;
-            }
-        }
-        // Where the angle jumps by anything, a whole number is chance.
-        if whole.len() > 4 * others {
-            found.extend(whole);
-        }
-    }
-    found.sort_unstable();
-    found
 }

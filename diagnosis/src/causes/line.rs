@@ -77,15 +77,30 @@ struct Search<'a> {
 
 impl Search<'_> {
     /// Frequency of the highest line of a spectrum, in cycles per sample.
-    fn line(&self, power: Vec<f64>, length: usize) -> Option<f64> {
-        let low = SLOWEST / self.context.samples() as f64;
+    fn line(&self, power: &[f64], length: usize) -> Option<f64> {
         if self.coloured {
-            let level = flattened(&power);
-            let f = peak(&level, length, low, 0.499)?;
-            let highest = level[(f * length as f64).round() as usize];
-            return (highest > STANDS_OUT).then_some(f);
+            return self.narrow(power, length);
         }
-        peak(&power, length, low, 0.499)
+        peak(power, length, self.lowest(), 0.499)
+    }
+
+    /// Frequency of the line that stands highest above what is near it, where one stands out.
+    fn narrow(&self, power: &[f64], length: usize) -> Option<f64> {
+        let level = flattened(power);
+        let f = peak(&level, length, self.lowest(), 0.499)?;
+        let highest = level[(f * length as f64).round() as usize];
+        (highest > STANDS_OUT).then_some(f)
+    }
+
+    /// Frequency of a line in the motion: an axis that shakes has broad peaks, too, which may be the higher ones.
+    fn of_motion(&self, power: &[f64], length: usize) -> Option<f64> {
+        let narrow = self.narrow(power, length);
+        narrow.or_else(|| self.line(power, length))
+    }
+
+    /// Cycles per sample below which nothing is a line.
+    fn lowest(&self) -> f64 {
+        SLOWEST / self.context.samples() as f64
     }
 
     /// The same of what is along the radius and along the circle, in the frame of the channels.
@@ -97,7 +112,7 @@ impl Search<'_> {
         };
         let (in_c, in_s): (Vec<f64>, Vec<f64>) = (0..radial.len()).map(frame).unzip();
         let (power, length) = pair_spectrum(&in_c, &in_s);
-        self.line(power, length)
+        self.line(&power, length)
     }
 
     /// Seconds.
@@ -210,10 +225,10 @@ pub(crate) fn candidates(
         list.extend(search.interference(f, library));
     }
     let ([radial, fast], length) = two_spectra(&residual.radial, residual.fast());
-    if let Some(f) = search.line(radial, length) {
+    if let Some(f) = search.line(&radial, length) {
         list.push(search.ripple(f, library));
     }
-    if let Some(f) = search.line(fast, length) {
+    if let Some(f) = search.of_motion(&fast, length) {
         list.push(search.vibration(f, library));
     }
     list
@@ -233,7 +248,7 @@ pub(crate) fn weighed(
         list.extend(search.interference(f, library));
     }
     let (power, length) = spectrum(&weighed.fast);
-    if let Some(f) = search.line(power, length) {
+    if let Some(f) = search.of_motion(&power, length) {
         list.push(search.vibration(f, library));
     }
     list

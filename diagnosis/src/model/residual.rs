@@ -35,16 +35,18 @@ pub(crate) struct Weighed {
 impl System<'_> {
     /// A residual weighed by its noise, where the axis vibrates.
     pub(crate) fn weighed(&self, residual: &Residual) -> Option<Weighed> {
-        if !self.vibrates() {
+        let [radial, tangential, motion] = &self.samples.whiteners;
+        // A reference shows the axis by itself.
+        let axis = residual.motion.as_ref().map_or(tangential, |_| motion);
+        if !self.vibrates() && (residual.motion.is_none() || axis.is_white()) {
             return None;
         }
-        let [radial, tangential, _] = &self.samples.whiteners;
         Some(Weighed {
             matched: [
                 radial.matched(&residual.radial),
                 tangential.matched(&residual.tangential),
             ],
-            fast: tangential.unpredictable(&residual.tangential),
+            fast: axis.unpredictable(residual.fast()),
         })
     }
 

@@ -1,6 +1,6 @@
 //! Causes in the data: samples that are off, lost or doubled, and noise with the signal.
 
-use crate::harness::{Case, NOISE, PLAIN, finds, near, shows, shows_in};
+use crate::harness::{Case, NOISE, PLAIN, Rows, damaged, finds, names, near, shows, shows_in};
 
 #[test]
 fn samples() {
@@ -100,6 +100,45 @@ fn a_lost_sample_is_no_glitch() {
             row[0] = k as f64 / 50e3;
         }
     });
+}
+
+/// A sample that is lost from sensor and reference alike, where the sensor's noise alone would hide it.
+fn lost_in_noise(rows: &mut Rows) {
+    let moves = |k: usize| (rows[k + 1][3] - rows[k - 1][3]).abs() / 2.0;
+    let slow = (5000..15_000).find(|k| (0.008..0.009).contains(&moves(*k)));
+    rows.remove(slow.expect("a place where it moves by twice the noise"));
+    for (k, row) in rows.iter_mut().enumerate() {
+        row[0] = k as f64 / 50e3;
+    }
+}
+
+#[test]
+fn a_lost_sample_that_a_reference_shows() {
+    let noisy = Case {
+        noise: |_, _, _, n| 4.0 * NOISE * n[0],
+        ..PLAIN
+    };
+    assert_eq!(names(&damaged(&noisy, lost_in_noise)), [""; 0]);
+    let with_reference = Case {
+        reference: true,
+        ..noisy
+    };
+    shows_in(&with_reference, "dropped_samples", lost_in_noise);
+}
+
+/// What jumps in the reference alone is no sample that was lost.
+#[test]
+fn a_reference_that_jumps_alone() {
+    let with_reference = Case {
+        reference: true,
+        ..PLAIN
+    };
+    let found = damaged(&with_reference, |rows| {
+        let moves = rows[9000][3] - rows[8999][3];
+        rows[9000..].iter_mut().for_each(|row| row[3] += moves);
+    });
+    let names = names(&found);
+    assert!(!names.contains(&"dropped_samples"), "{names:?}");
 }
 
 #[test]

@@ -256,13 +256,19 @@ pub(crate) fn shows(name: &str, damage: impl Fn(&mut Rows)) {
 
 /// The same of any recording.
 pub(crate) fn shows_in(case: &Case, name: &str, damage: impl Fn(&mut Rows)) {
+    let found = damaged(case, damage);
+    assert_eq!(names(&found), [name], "{}", found.unexplained.signature);
+}
+
+/// What is found in a recording that is `damaged`; it keeps its length.
+pub(crate) fn damaged(case: &Case, damage: impl Fn(&mut Rows)) -> Diagnosis {
     let mut random = StdRng::seed_from_u64(3);
     let drive = Drive::drawn(&mut random);
     let mut rows = simulated(case, &drive, SAMPLES, &mut random);
     damage(&mut rows);
     let found = of_rows(case, &rows);
-    assert_eq!(names(&found), [name], "{}", found.unexplained.signature);
     assert_eq!(found.positions.len(), rows.len());
+    found
 }
 
 /// Standard error of a parameter of a finding, which is within four of them of what it truly is.

@@ -112,6 +112,19 @@ fn beside_the_corners_of_a_drive() {
     assert!(found.findings.is_empty(), "{:?}", found.findings);
 }
 
+/// Where hardly anything but a slow vibration needs close knots, it is looked for with wider ones, corners or not.
+#[test]
+fn a_slow_vibration_alone() {
+    let found = finds(
+        "vibration",
+        &Case {
+            motion: |t, drive| 30.0 * TAU * t - drive + 0.05 * (TAU * 47.0 * t).sin(),
+            ..PLAIN
+        },
+    );
+    near(&found, "frequency_hz", 47.0);
+}
+
 /// What a drive that swings leaves at its own frequency is no vibration between corners.
 #[test]
 fn a_drive_that_swings() {
@@ -149,6 +162,21 @@ fn beside_a_reference() {
         },
     );
     near(&found, "amplitude", 0.002);
+}
+
+/// Beside an axis that shakes a reference shows a vibration by itself, where the shaking is the higher of the two.
+#[test]
+fn beside_a_reference_and_a_rumble() {
+    let found = finds(
+        "vibration",
+        &Case {
+            motion: |t, _| rumble(t) + 0.0015 * (TAU * 2431.0 * t).sin(),
+            reference: true,
+            ..PLAIN
+        },
+    );
+    near(&found, "frequency_hz", 2431.0);
+    near(&found, "amplitude", 0.0015);
 }
 
 /// What is large beside it is taken off the signals, and not off the reference.

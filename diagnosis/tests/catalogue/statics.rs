@@ -1,6 +1,6 @@
 //! Static causes of each channel.
 
-use crate::harness::{Case, LSB, PLAIN, alone, finds, near, shows, within_errors};
+use crate::harness::{Case, LSB, PLAIN, alone, damaged, finds, names, near, shows, within_errors};
 
 #[test]
 fn bends_and_harmonics() {
@@ -65,6 +65,26 @@ fn rails_and_codes() {
             row[1] = (row[1] / LSB / 16.0).round() * 16.0 * LSB;
         }
     });
+}
+
+/// Steps of the codes stand in every angle, but hardly in its low orders: a bend beside them keeps its name.
+#[test]
+fn a_bend_beside_coarse_steps() {
+    let bent = Case {
+        channels: |c, s, _, _, _| (c + 0.004 * c * c, s),
+        ..PLAIN
+    };
+    let found = damaged(&bent, |rows| {
+        for row in rows {
+            row[1] = (row[1] / LSB / 32.0).round() * 32.0 * LSB;
+        }
+    });
+    let left = &found.unexplained.signature;
+    assert_eq!(
+        names(&found),
+        ["coarse_quantisation", "even_nonlinearity"],
+        "{left}"
+    );
 }
 
 #[test]

@@ -1,0 +1,236 @@
+//! Samples that are missing without a gap in time: the angle jumps by what it moves in whole samples.
+
+use nonius_calibration::{Method, Options, calibrate};
+use nonius_recording::Recording;
+
+use crate::checks::{Checked, ninth};
+use crate::context::unwrapped;
+
+/// Samples on either side of a jump that are compared, and the order of the curve through them; on slow axes more of them
+/// show it, and on axes that shake a curve that bends more.
+const SIDES: [(usize, i32); 5] = [(8, 3), (8, 5), (24, 3), (64, 5), (200, 5)];
+/// So many times the ninth decile of what the curve leaves is a jump: eight standard deviations.
+const FAR: f64 = 4.9;
+/// A jump is so near a whole number of samples, beside what noise makes of it.
+const WHOLE: f64 = 0.15;
+/// Most samples lost at one place that are believed without a clock.
+const MOST: f64 = 32.0;
+/// So many times the samples on a side, to either side, tell how large the noise is just there.
+const AROUND: usize = 8;
+/// Most samples that the ellipse is fitted to.
+const ENOUGH: usize = 8192;
+/// So many of the sides do to compare a sensor with its reference: that the axis shakes is in both.
+const WITH_REFERENCE: usize = 4;
+/// Standard deviations by which the sensor has to be seen to jump with its reference.
+const TOGETHER: f64 = 3.0;
+
+/// A place where an angle jumps: before which sample, how far, and how large the noise is there.
+struct Jump {
+    before: usize,
+    size: f64,
+    sigma: f64,
+}
+
+/// What a step between two samples in the middle adds to a curve of that order through `side` samples on either side: the
+/// weights of the samples that give its size, free of that curve.
+fn step_weights(side: usize, order: i32) -> Vec<f64> {
+    let middle = side as f64 - 0.5;
+    let column = |f: &dyn Fn(f64) -> f64| -> Vec<f64> {
+        (0..2 * side)
+            .map(|i| f((i as f64 - middle) / middle))
+            .collect()
+    };
+    let curve: Vec<Vec<f64>> = (0..=order)
+        .map(|degree| column(&|x| x.powi(degree)))
+        .collect();
+    let step = column(&|x| 0.5 * x.signum());
+    let free = crate::solve::without(&step, &curve);
+    let square: f64 = free.iter().map(|v| v * v).sum();
+    free.iter().map(|v| v / square).collect()
+}
+
+/// Lays straight lines over samples that do not count.
+fn bridge(values: &mut [f64], weight: &[f64]) {
+    let mut last = 0;
+    for (k, weight) in weight.iter().enumerate().skip(1) {
+        if *weight == 0.0 {
+            continue;
+        }
+        let (from, by) = (values[last], values[k] - values[last]);
+        for (i, value) in values[last + 1..k].iter_mut().enumerate() {
+            *value = from + by * (i + 1) as f64 / (k - last) as f64;
+        }
+        last = k;
+    }
+}
+
+/// The angle of a recording that draws an ellipse, continuous, radians.
+fn angle(recording: &Recording, weight: &[f64]) -> Option<Vec<f64>> {
+    let every = recording.samples().div_ceil(ENOUGH).max(1);
+    let kept = |values: &[f64]| -> Vec<f64> { values.iter().copied().step_by(every).collect() };
+    let (cos, sin) = (kept(&recording.cos), kept(&recording.sin));
+    let fit = calibrate(&cos, &sin, Method::Unbiased, &Options::default()).ok()?;
+    let pairs = recording.cos.iter().zip(&recording.sin);
+    let angle = pairs.map(|(c, s)| {
+        let (c, s) = fit.ellipse.corrected(*c, *s);
+        s.atan2(c)
+    });
+    let mut angle = unwrapped(angle.collect());
+    bridge(&mut angle, weight);
+    Some(angle)
+}
+
+/// An angle, looked at with curves through so many samples on either side.
+struct Look<'a> {
+    angle: &'a [f64],
+    side: usize,
+    /// How far it jumps before each sample, by those curves.
+    sizes: Vec<f64>,
+}
+
+impl<'a> Look<'a> {
+    fn new(angle: &'a [f64], side: usize, order: i32) -> Self {
+        let weights = step_weights(side, order);
+        let size = |k: usize| -> f64 {
+            let near = &angle[k - side..k + side];
+            near.iter().zip(&weights).map(|(a, w)| a * w).sum()
+        };
+        let n = angle.len();
+        let inside = |k: usize| k >= side && k + side <= n;
+        let sizes = (0..n).map(|k| if inside(k) { size(k) } else { 0.0 });
+        Self {
+            angle,
+            side,
+            sizes: sizes.collect(),
+        }
+    }
+
+    /// Ninth decile of the sizes on either side of a place; a jump shows itself up to a side away from it.
+    fn noise(&self, k: usize, typical: f64) -> f64 {
+        let (n, side) = (self.sizes.len(), self.side);
+        let before = k.saturating_sub(AROUND * side)..k.saturating_sub(side);
+        let after = (k + side).min(n)..(k + AROUND * side).min(n);
+        let ninth = |range| ninth(&magnitudes(&self.sizes[range]));
+        typical.max(ninth(before)).max(ninth(after))
+    }
+
+    /// Where it jumps farther than noise does.
+    fn far(&self) -> Vec<Jump> {
+        let (n, side) = (self.sizes.len(), self.side);
+        let plain = magnitudes(&self.sizes);
+        let typical = ninth(&plain);
+        let mut far = vec![];
+        for k in side..=n - side {
+            if plain[k] < FAR * typical {
+                continue;
+            }
+            let noise = self.noise(k, typical);
+            let near = &plain[k - side / 2..(k + side / 2 + 1).min(n)];
+            let highest = near.iter().all(|p| *p <= plain[k]);
+            if plain[k] > FAR * noise && highest {
+                far.push(Jump {
+                    before: k,
+                    size: self.sizes[k],
+                    sigma: noise / 1.645,
+                });
+            }
+        }
+        far
+    }
+
+    /// How many samples are missing where it jumps, if that is a whole number.
+    fn missing(&self, jump: &Jump) -> Option<usize> {
+        let (k, side) = (jump.before, self.side);
+        let way = self.angle[k + side - 1] - self.angle[k - side];
+        let moves = (way - jump.size) / (2 * side - 1) as f64;
+        let samples = jump.size / moves;
+        let error = jump.sigma / moves.abs();
+        let off = (samples - samples.round()).abs();
+        let whole = samples > 0.5 && samples < MOST && error < 0.15 && off < WHOLE + 3.0 * error;
+        whole.then(|| samples.round() as usize)
+    }
+}
+
+fn magnitudes(values: &[f64]) -> Vec<f64> {
+    values.iter().map(|v| v.abs()).collect()
+}
+
+/// Places where the angle jumps by what it moves in whole samples: before which sample, how many are missing. What only a
+/// reference shows counts where the sensor jumps with it.
+pub(crate) fn jumps(recording: &Recording, checked: &Checked) -> Vec<(usize, usize)> {
+    let Some(angle) = angle(recording, &checked.weight) else {
+        return vec![];
+    };
+    let reference = recording.reference_rad.as_deref();
+    let against = reference.map_or(vec![], |reference| without(&angle, reference));
+    let mut found: Vec<(usize, usize)> = vec![];
+    for (side, order) in SIDES {
+        if angle.len() < 32 * side {
+            break;
+        }
+        let look = Look::new(&angle, side, order);
+        found.extend(whole(&look, look.far(), checked, &found));
+        if let Some(reference) = reference {
+            let exact = Look::new(reference, side, order);
+            let far = exact.far().into_iter().filter(|j| together(&against, j));
+            found.extend(whole(&exact, far.collect(), checked, &found));
+        }
+    }
+    found.sort_unstable();
+    found
+}
+
+/// A sensor's angle less its reference, whose sense may be another.
+fn without(angle: &[f64], reference: &[f64]) -> Vec<f64> {
+    let steps = |values: &[f64]| values.windows(2).map(|w| w[1] - w[0]).collect::<Vec<_>>();
+    let pairs = steps(angle).into_iter().zip(steps(reference));
+    let alike: f64 = pairs.map(|(a, r)| a * r).sum();
+    let sense = alike.signum();
+    let pairs = angle.iter().zip(reference);
+    pairs.map(|(a, r)| a - sense * r).collect()
+}
+
+/// Whether the sensor jumps with its reference: what is between them does not jump, and would if the reference alone did.
+fn together(against: &[f64], reference: &Jump) -> bool {
+    let k = reference.before;
+    let apart = |(side, order): (usize, i32)| {
+        let reach = (AROUND + 1) * side;
+        let near = k.saturating_sub(reach)..(k + reach).min(against.len());
+        let look = Look::new(&against[near.clone()], side, order);
+        let here = k - near.start;
+        (look.sizes[here].abs(), look.noise(here, 0.0) / 1.645)
+    };
+    let looks = SIDES.into_iter().take(WITH_REFERENCE).map(apart);
+    let surest = looks.min_by(|a, b| a.1.total_cmp(&b.1));
+    surest.is_some_and(|(size, sigma)| size + TOGETHER * sigma < reference.size.abs())
+}
+
+/// Those of the jumps that are of whole samples, where no sample nearby is bad and none was found before; none where the
+/// angle jumps by anything, for a whole number is chance there.
+fn whole(
+    look: &Look,
+    far: Vec<Jump>,
+    checked: &Checked,
+    found: &[(usize, usize)],
+) -> Vec<(usize, usize)> {
+    let mut list = vec![];
+    let mut others = 0;
+    for jump in far {
+        let k = jump.before;
+        let known = |j: usize| k.abs_diff(j) <= look.side;
+        let bad = (k - 2..k + 2).any(|j| checked.weight[j] == 0.0);
+        let bad = bad || checked.extra.iter().any(|j| known(*j));
+        if bad || found.iter().any(|f| known(f.0)) {
+            continue;
+        }
+        match look.missing(&jump) {
+            Some(samples) => list.push((k, samples)),
+            None => others += 1,
+        }
+    }
+    if list.len() > 4 * others {
+        list
+    } else {
+        vec![]
+    }
+}
