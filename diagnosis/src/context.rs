@@ -10,6 +10,9 @@ use crate::spline::Spline;
 /// Most samples that the first ellipse is fitted to; the model of all samples has the five parameters again.
 const FIRST: usize = 8192;
 
+/// So near to one, what the angle does for each radian that its reference moves fast has to be, or that motion is noise.
+const FOLLOWS: f64 = 0.1;
+
 /// The recording, corrected, with everything that shapes are made of. One value per sample.
 #[derive(Clone, Debug)]
 pub struct Context {
@@ -42,6 +45,8 @@ pub struct Context {
     pub fast: Vec<f64>,
     /// Angle of the revolution in radians, where periods per revolution are known.
     pub phi: Option<Vec<f64>>,
+    /// What else of it only a reference shows, radians; empty where there is none.
+    shaking: Vec<f64>,
     /// Temperature, centred and of unit spread.
     pub temperature: Option<Vec<f64>>,
     /// Angle less reference in radians, constant and sense removed.
@@ -120,6 +125,7 @@ impl Context {
             speed: vec![],
             acceleration: vec![],
             fast: vec![0.0; recording.samples()],
+            shaking: vec![],
             phi: None,
             temperature,
             against_reference: None,
@@ -178,24 +184,6 @@ impl Context {
             let finer = spacing.followed < spacing.motion;
             self.finer = finer.then(|| make(spacing.followed));
         }
-        if let Some(spline) = self.finer.as_ref().or(self.spline.as_ref()) {
-            let slow: Vec<f64> = self.slow();
-            let fit = spline.fit(&slow, &self.weight);
-            let rate = self.rate;
-            let smooth = spline.values(&fit).into_iter().zip(&self.fast);
-            self.alpha = smooth.map(|(a, f)| a + f).collect();
-            (self.sin, self.cos) = self.alpha.iter().map(|a| a.sin_cos()).unzip();
-            let change = spline.derivative(&fit).into_iter();
-            let fast = gradient(&self.fast);
-            self.speed = change.zip(fast).map(|(v, f)| (v + f) * rate).collect();
-            self.acceleration = gradient(&self.speed);
-            self.acceleration.iter_mut().for_each(|a| *a *= rate);
-            let sizes = self.speed.iter().map(|v| v.abs());
-            self.periods_travelled = sizes.clone().sum::<f64>() / rate / TAU;
-            self.top_speed = sizes.fold(f64::MIN_POSITIVE, f64::max);
-        }
-        let per = self.periods_per_revolution.map(f64::from);
-        self.phi = per.map(|n| self.alpha.iter().map(|a| a / n).collect());
         self.against_reference = reference.map(|r| {
             let slope: f64 = self
                 .measured
@@ -225,6 +213,26 @@ impl Context {
                 / total.max(1.0);
             near.iter().map(|d| d - mean).collect()
         });
+        self.shaking = self.shown_by_reference();
+        if let Some(spline) = self.finer.as_ref().or(self.spline.as_ref()) {
+            let slow: Vec<f64> = self.slow();
+            let fit = spline.fit(&slow, &self.weight);
+            let rate = self.rate;
+            let fast: Vec<f64> = self.fast_motion().collect();
+            let smooth = spline.values(&fit).into_iter().zip(&fast);
+            self.alpha = smooth.map(|(a, f)| a + f).collect();
+            (self.sin, self.cos) = self.alpha.iter().map(|a| a.sin_cos()).unzip();
+            let change = spline.derivative(&fit).into_iter();
+            let fast = fine_gradient(&fast);
+            self.speed = change.zip(fast).map(|(v, f)| (v + f) * rate).collect();
+            self.acceleration = gradient(&self.speed);
+            self.acceleration.iter_mut().for_each(|a| *a *= rate);
+            let sizes = self.speed.iter().map(|v| v.abs());
+            self.periods_travelled = sizes.clone().sum::<f64>() / rate / TAU;
+            self.top_speed = sizes.fold(f64::MIN_POSITIVE, f64::max);
+        }
+        let per = self.periods_per_revolution.map(f64::from);
+        self.phi = per.map(|n| self.alpha.iter().map(|a| a / n).collect());
     }
 
     /// Acceleration of the drive, radians per second squared: where the axis shakes, [`Self::acceleration`] is that of the
@@ -259,8 +267,34 @@ impl Context {
 
     /// The angle of the pair without known fast motion, radians.
     fn slow(&self) -> Vec<f64> {
-        let pairs = self.measured.iter().zip(&self.fast);
+        let pairs = self.measured.iter().zip(self.fast_motion());
         pairs.map(|(m, f)| m - f).collect()
+    }
+
+    /// Real motion that is faster than the spline, as far as it is known, radians.
+    fn fast_motion(&self) -> impl Iterator<Item = f64> {
+        let shaking = self.shaking.iter().copied().chain(std::iter::repeat(0.0));
+        self.fast.iter().zip(shaking).map(|(f, s)| f + s)
+    }
+
+    /// What else of the fast motion a reference shows; nothing where the angle does not move with it, for then it is the
+    /// reference's noise.
+    fn shown_by_reference(&self) -> Vec<f64> {
+        let (Some(against), Some(spline)) = (&self.against_reference, &self.spline) else {
+            return vec![];
+        };
+        let unknown = |k: usize| self.measured[k] - self.fast[k];
+        let angle: Vec<f64> = (0..self.samples()).map(unknown).collect();
+        let moves: Vec<f64> = angle.iter().zip(against).map(|(a, d)| a - d).collect();
+        let own = spline.residual(&angle, &self.weight);
+        let moves = spline.residual(&moves, &self.weight);
+        let along = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
+        let square = along(&moves, &moves);
+        let follows = along(&own, &moves) / square.max(f64::MIN_POSITIVE);
+        let apart: f64 = own.iter().zip(&moves).map(|(o, m)| (o - m).powi(2)).sum();
+        let error = (apart / self.samples() as f64 / square.max(f64::MIN_POSITIVE)).sqrt();
+        let real = (follows - 1.0).abs() < FOLLOWS && error < FOLLOWS / 3.0;
+        if real { moves } else { vec![] }
     }
 
     /// Takes what is known off the raw signals, corrected by another ellipse.
@@ -304,6 +338,15 @@ fn gradient(values: &[f64]) -> Vec<f64> {
             (values[b] - values[a]) / (b - a).max(1) as f64
         })
         .collect()
+}
+
+/// Change per sample of what moves fast: right to the fourth order.
+fn fine_gradient(values: &[f64]) -> Vec<f64> {
+    let mut change = gradient(values);
+    for (k, w) in values.windows(5).enumerate() {
+        change[k + 2] = (8.0 * (w[3] - w[1]) - (w[4] - w[0])) / 12.0;
+    }
+    change
 }
 
 fn r_first(reference: Option<&[f64]>) -> f64 {
