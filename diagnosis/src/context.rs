@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use nonius_calibration::{Ellipse, Method, Options, calibrate};
 use nonius_recording::{AdcPair, Recording};
 
+use crate::solve::dot;
 use crate::spline::Spline;
 
 /// Most samples that the first ellipse is fitted to; the model of all samples has the five parameters again.
@@ -43,10 +44,10 @@ pub struct Context {
     pub acceleration: Vec<f64>,
     /// Real motion that is faster than the spline and known, radians.
     pub fast: Vec<f64>,
-    /// Angle of the revolution in radians, where periods per revolution are known.
-    pub phi: Option<Vec<f64>>,
     /// What else of it only a reference shows, radians; empty where there is none.
     shaking: Vec<f64>,
+    /// Angle of the revolution in radians, where periods per revolution are known.
+    pub phi: Option<Vec<f64>>,
     /// Temperature, centred and of unit spread.
     pub temperature: Option<Vec<f64>>,
     /// Angle less reference in radians, constant and sense removed.
@@ -86,6 +87,20 @@ pub(crate) fn unwrapped(mut angle: Vec<f64>) -> Vec<f64> {
         angle[k] -= TAU * (jump / TAU).round();
     }
     angle
+}
+
+/// An angle less its reference, radians: that may count the other way, and whole periods apart are the same angle.
+pub(crate) fn against(angle: &[f64], reference: &[f64]) -> Vec<f64> {
+    let from = |values: &[f64]| values.first().copied().unwrap_or_default();
+    let (a0, r0) = (from(angle), from(reference));
+    let pairs = || angle.iter().zip(reference);
+    let alike: f64 = pairs().map(|(a, r)| (a - a0) * (r - r0)).sum();
+    let sense = if alike < 0.0 { -1.0 } else { 1.0 };
+    let first = a0 - sense * r0;
+    let apart = pairs().map(|(a, r)| a - sense * r);
+    apart
+        .map(|d| d - TAU * ((d - first) / TAU).round())
+        .collect()
 }
 
 impl Context {
@@ -185,33 +200,10 @@ impl Context {
             self.finer = finer.then(|| make(spacing.followed));
         }
         self.against_reference = reference.map(|r| {
-            let slope: f64 = self
-                .measured
-                .iter()
-                .zip(r)
-                .map(|(a, r)| (a - self.measured[0]) * (r - r_first(reference)))
-                .sum();
-            let sense = if slope < 0.0 { -1.0 } else { 1.0 };
-            let raw: Vec<f64> = self
-                .measured
-                .iter()
-                .zip(r)
-                .map(|(a, r)| a - sense * r)
-                .collect();
-            // Whole periods apart are the same angle.
-            let first = raw[0];
-            let near: Vec<f64> = raw
-                .iter()
-                .map(|d| d - TAU * ((d - first) / TAU).round())
-                .collect();
+            let apart = against(&self.measured, r);
             let total: f64 = self.weight.iter().sum();
-            let mean = near
-                .iter()
-                .zip(&self.weight)
-                .map(|(d, w)| d * w)
-                .sum::<f64>()
-                / total.max(1.0);
-            near.iter().map(|d| d - mean).collect()
+            let mean = dot(&apart, &self.weight) / total.max(1.0);
+            apart.iter().map(|d| d - mean).collect()
         });
         self.shaking = self.shown_by_reference();
         if let Some(spline) = self.finer.as_ref().or(self.spline.as_ref()) {
@@ -288,11 +280,10 @@ impl Context {
         let moves: Vec<f64> = angle.iter().zip(against).map(|(a, d)| a - d).collect();
         let own = spline.residual(&angle, &self.weight);
         let moves = spline.residual(&moves, &self.weight);
-        let along = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
-        let square = along(&moves, &moves);
-        let follows = along(&own, &moves) / square.max(f64::MIN_POSITIVE);
-        let apart: f64 = own.iter().zip(&moves).map(|(o, m)| (o - m).powi(2)).sum();
-        let error = (apart / self.samples() as f64 / square.max(f64::MIN_POSITIVE)).sqrt();
+        let square = dot(&moves, &moves).max(f64::MIN_POSITIVE);
+        let follows = dot(&own, &moves) / square;
+        let apart: Vec<f64> = own.iter().zip(&moves).map(|(o, m)| o - m).collect();
+        let error = (dot(&apart, &apart) / self.samples() as f64 / square).sqrt();
         let real = (follows - 1.0).abs() < FOLLOWS && error < FOLLOWS / 3.0;
         if real { moves } else { vec![] }
     }
@@ -347,12 +338,6 @@ fn fine_gradient(values: &[f64]) -> Vec<f64> {
         change[k + 2] = (8.0 * (w[3] - w[1]) - (w[4] - w[0])) / 12.0;
     }
     change
-}
-
-fn r_first(reference: Option<&[f64]>) -> f64 {
-    reference
-        .and_then(|r| r.first().copied())
-        .unwrap_or_default()
 }
 
 /// Centred, of unit spread; `None` if it does not change.

@@ -4,7 +4,7 @@ use nonius_calibration::{Method, Options, calibrate};
 use nonius_recording::Recording;
 
 use crate::checks::{Checked, ninth};
-use crate::context::unwrapped;
+use crate::context::{against, unwrapped};
 
 /// Samples on either side of a jump that are compared, and the order of the curve through them; on slow axes more of them
 /// show it, and on axes that shake a curve that bends more.
@@ -161,8 +161,8 @@ pub(crate) fn jumps(recording: &Recording, checked: &Checked) -> Vec<(usize, usi
     let Some(angle) = angle(recording, &checked.weight) else {
         return vec![];
     };
-    let reference = recording.reference_rad.as_deref();
-    let against = reference.map_or(vec![], |reference| without(&angle, reference));
+    let reference = recording.reference_rad.clone().map(unwrapped);
+    let apart = reference.as_ref().map(|r| against(&angle, r));
     let mut found: Vec<(usize, usize)> = vec![];
     for (side, order) in SIDES {
         if angle.len() < 32 * side {
@@ -170,9 +170,9 @@ pub(crate) fn jumps(recording: &Recording, checked: &Checked) -> Vec<(usize, usi
         }
         let look = Look::new(&angle, side, order);
         found.extend(whole(&look, look.far(), checked, &found));
-        if let Some(reference) = reference {
+        if let Some((reference, apart)) = reference.as_ref().zip(apart.as_ref()) {
             let exact = Look::new(reference, side, order);
-            let far = exact.far().into_iter().filter(|j| together(&against, j));
+            let far = exact.far().into_iter().filter(|j| together(apart, j));
             found.extend(whole(&exact, far.collect(), checked, &found));
         }
     }
@@ -180,27 +180,17 @@ pub(crate) fn jumps(recording: &Recording, checked: &Checked) -> Vec<(usize, usi
     found
 }
 
-/// A sensor's angle less its reference, whose sense may be another.
-fn without(angle: &[f64], reference: &[f64]) -> Vec<f64> {
-    let steps = |values: &[f64]| values.windows(2).map(|w| w[1] - w[0]).collect::<Vec<_>>();
-    let pairs = steps(angle).into_iter().zip(steps(reference));
-    let alike: f64 = pairs.map(|(a, r)| a * r).sum();
-    let sense = alike.signum();
-    let pairs = angle.iter().zip(reference);
-    pairs.map(|(a, r)| a - sense * r).collect()
-}
-
 /// Whether the sensor jumps with its reference: what is between them does not jump, and would if the reference alone did.
-fn together(against: &[f64], reference: &Jump) -> bool {
+fn together(apart: &[f64], reference: &Jump) -> bool {
     let k = reference.before;
-    let apart = |(side, order): (usize, i32)| {
+    let jumps = |(side, order): (usize, i32)| {
         let reach = (AROUND + 1) * side;
-        let near = k.saturating_sub(reach)..(k + reach).min(against.len());
-        let look = Look::new(&against[near.clone()], side, order);
+        let near = k.saturating_sub(reach)..(k + reach).min(apart.len());
+        let look = Look::new(&apart[near.clone()], side, order);
         let here = k - near.start;
         (look.sizes[here].abs(), look.noise(here, 0.0) / 1.645)
     };
-    let looks = SIDES.into_iter().take(WITH_REFERENCE).map(apart);
+    let looks = SIDES.into_iter().take(WITH_REFERENCE).map(jumps);
     let surest = looks.min_by(|a, b| a.1.total_cmp(&b.1));
     surest.is_some_and(|(size, sigma)| size + TOGETHER * sigma < reference.size.abs())
 }

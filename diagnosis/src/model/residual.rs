@@ -37,8 +37,11 @@ impl System<'_> {
     pub(crate) fn weighed(&self, residual: &Residual) -> Option<Weighed> {
         let [radial, tangential, motion] = &self.samples.whiteners;
         // A reference shows the axis by itself.
-        let axis = residual.motion.as_ref().map_or(tangential, |_| motion);
-        if !self.vibrates() && (residual.motion.is_none() || axis.is_white()) {
+        let (axis, shakes) = match residual.motion {
+            Some(_) => (motion, !motion.is_white()),
+            None => (tangential, self.vibrates()),
+        };
+        if !shakes {
             return None;
         }
         Some(Weighed {

@@ -2,6 +2,18 @@
 
 use crate::harness::{Case, NOISE, PLAIN, Rows, damaged, finds, names, near, shows, shows_in};
 
+/// How far the scale moves from sample to sample, radians.
+fn moves(rows: &Rows, k: usize) -> f64 {
+    (rows[k + 1][3] - rows[k - 1][3]).abs() / 2.0
+}
+
+/// No gap in time tells what was lost or put in.
+fn at_even_times(rows: &mut Rows) {
+    for (k, row) in rows.iter_mut().enumerate() {
+        row[0] = k as f64 / 50e3;
+    }
+}
+
 #[test]
 fn samples() {
     shows("glitches", |rows| {
@@ -41,10 +53,9 @@ fn samples_repeated_in_noise() {
     };
     shows_in(&noisy, "repeated_samples", |rows| {
         // Where it moves by six times the noise, not by more.
-        let moves = |k: usize| (rows[k + 1][3] - rows[k - 1][3]).abs() / 2.0;
         let fast: Vec<usize> = (1000..19_000)
             .step_by(700)
-            .filter(|k| (0.025..0.03).contains(&moves(*k)))
+            .filter(|k| (0.025..0.03).contains(&moves(rows, *k)))
             .collect();
         assert!(fast.len() > 2);
         for k in fast {
@@ -63,19 +74,16 @@ fn samples_put_in_in_noise() {
         ..PLAIN
     };
     shows_in(&noisy, "repeated_samples", |rows| {
-        let moves = |k: usize| (rows[k + 1][3] - rows[k - 1][3]).abs() / 2.0;
         let mut fast: Vec<usize> = (1000..19_000)
             .step_by(700)
-            .filter(|k| (0.025..0.03).contains(&moves(*k)))
+            .filter(|k| (0.025..0.03).contains(&moves(rows, *k)))
             .collect();
         assert!(fast.len() > 2);
         while let Some(k) = fast.pop() {
             let again = rows[k - 1];
             rows.insert(k, again);
         }
-        for (k, row) in rows.iter_mut().enumerate() {
-            row[0] = k as f64 / 50e3;
-        }
+        at_even_times(rows);
     });
 }
 
@@ -87,29 +95,23 @@ fn a_lost_sample_is_no_glitch() {
         ..PLAIN
     };
     shows_in(&noisy, "dropped_samples", |rows| {
-        let moves = |k: usize| (rows[k + 1][3] - rows[k - 1][3]).abs() / 2.0;
         let mut fast: Vec<usize> = (1000..19_000)
             .step_by(300)
-            .filter(|k| (0.025..0.035).contains(&moves(*k)))
+            .filter(|k| (0.025..0.035).contains(&moves(rows, *k)))
             .collect();
         assert!(fast.len() > 5);
         while let Some(k) = fast.pop() {
             rows.remove(k);
         }
-        for (k, row) in rows.iter_mut().enumerate() {
-            row[0] = k as f64 / 50e3;
-        }
+        at_even_times(rows);
     });
 }
 
 /// A sample that is lost from sensor and reference alike, where the sensor's noise alone would hide it.
 fn lost_in_noise(rows: &mut Rows) {
-    let moves = |k: usize| (rows[k + 1][3] - rows[k - 1][3]).abs() / 2.0;
-    let slow = (5000..15_000).find(|k| (0.008..0.009).contains(&moves(*k)));
+    let slow = (5000..15_000).find(|k| (0.008..0.009).contains(&moves(rows, *k)));
     rows.remove(slow.expect("a place where it moves by twice the noise"));
-    for (k, row) in rows.iter_mut().enumerate() {
-        row[0] = k as f64 / 50e3;
-    }
+    at_even_times(rows);
 }
 
 #[test]
