@@ -67,9 +67,10 @@ fn the_fade_is_held_and_then_followed() {
         let states = played(&design, "fade");
         let gear = |k: usize| states[k].gamma_gear.to_f64();
         let settled = design.constants.gamma_gear_settled.value();
-        let begins = (1..ROWS).find(|k| states[*k].held).unwrap();
+        let begins = (1..ROWS).find(|k| states[*k].held).expect("held");
         assert!(gear(begins) >= settled, "{name}: held before");
-        let again = (begins..ROWS).find(|k| gear(*k) == 0.0).unwrap();
+        let again = (begins..ROWS).find(|k| gear(*k) == 0.0);
+        let again = again.expect("the search begins again");
         assert!(states[again - 1].held, "{name}: not held until then");
         let periods = travels / (ROWS * 2 / 3) as f64 * (again - begins) as f64;
         assert!((32.0..36.0).contains(&periods), "{name}: {periods}");
