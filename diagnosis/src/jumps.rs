@@ -32,16 +32,18 @@ struct Jump {
 }
 
 /// What a step between two samples in the middle adds to a curve of that order through `side` samples on either side: the
-/// weights of the samples that give its size, free of that curve.
-fn step_weights(side: usize, order: i32) -> Vec<f64> {
+/// weights of the samples that give its size, free of that curve, and of one of the samples.
+fn step_weights(side: usize, order: i32, but: Option<usize>) -> Vec<f64> {
     let middle = side as f64 - 0.5;
     let column = |f: &dyn Fn(f64) -> f64| -> Vec<f64> {
         (0..2 * side)
             .map(|i| f((i as f64 - middle) / middle))
             .collect()
     };
+    let single = |one: usize| (0..2 * side).map(|i| f64::from(i == one)).collect();
     let curve: Vec<Vec<f64>> = (0..=order)
         .map(|degree| column(&|x| x.powi(degree)))
+        .chain(but.map(single))
         .collect();
     let step = column(&|x| 0.5 * x.signum());
     let free = crate::solve::without(&step, &curve);
@@ -84,13 +86,14 @@ fn angle(recording: &Recording, weight: &[f64]) -> Option<Vec<f64>> {
 struct Look<'a> {
     angle: &'a [f64],
     side: usize,
+    order: i32,
     /// How far it jumps before each sample, by those curves.
     sizes: Vec<f64>,
 }
 
 impl<'a> Look<'a> {
     fn new(angle: &'a [f64], side: usize, order: i32) -> Self {
-        let weights = step_weights(side, order);
+        let weights = step_weights(side, order, None);
         let size = |k: usize| -> f64 {
             let near = &angle[k - side..k + side];
             near.iter().zip(&weights).map(|(a, w)| a * w).sum()
@@ -101,6 +104,7 @@ impl<'a> Look<'a> {
         Self {
             angle,
             side,
+            order,
             sizes: sizes.collect(),
         }
     }
@@ -138,6 +142,17 @@ impl<'a> Look<'a> {
         far
     }
 
+    /// Whether it is only one sample that is off, this one beside the jump: all others show a step in the curve as well.
+    fn is_one_sample(&self, jump: &Jump, one: usize) -> bool {
+        /// Share of the jump that the others show at least.
+        const OTHERS: f64 = 0.5;
+        let from = jump.before - self.side;
+        let weights = step_weights(self.side, self.order, Some(one - from));
+        let near = self.angle[from..].iter().zip(&weights);
+        let size: f64 = near.map(|(a, w)| a * w).sum();
+        size / jump.size < OTHERS
+    }
+
     /// How many samples are missing where it jumps, if that is a whole number.
     fn missing(&self, jump: &Jump) -> Option<usize> {
         let (k, side) = (jump.before, self.side);
@@ -164,15 +179,27 @@ pub(crate) fn jumps(recording: &Recording, checked: &Checked) -> Vec<(usize, usi
     let reference = recording.reference_rad.clone().map(unwrapped);
     let apart = reference.as_ref().map(|r| against(&angle, r));
     let mut found: Vec<(usize, usize)> = vec![];
+    let same = |k: usize| {
+        recording.cos[k] == recording.cos[k - 1] && recording.sin[k] == recording.sin[k - 1]
+    };
+    // A sample that repeats the one before may stand in the place of another: none is missing then.
+    let repeats = |look: &Look, jump: &Jump| {
+        let beside = [jump.before - 1, jump.before];
+        beside
+            .into_iter()
+            .any(|one| same(one) && look.is_one_sample(jump, one))
+    };
     for (side, order) in SIDES {
         if angle.len() < 32 * side {
             break;
         }
         let look = Look::new(&angle, side, order);
-        found.extend(whole(&look, look.far(), checked, &found));
+        let far = look.far().into_iter().filter(|j| !repeats(&look, j));
+        found.extend(whole(&look, far.collect(), checked, &found));
         if let Some((reference, apart)) = reference.as_ref().zip(apart.as_ref()) {
             let exact = Look::new(reference, side, order);
-            let far = exact.far().into_iter().filter(|j| together(apart, j));
+            let far = exact.far().into_iter();
+            let far = far.filter(|j| together(apart, j) && !repeats(&exact, j));
             found.extend(whole(&exact, far.collect(), checked, &found));
         }
     }

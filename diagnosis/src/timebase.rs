@@ -26,15 +26,16 @@ fn step(values: &[f64], lsb: f64) -> f64 {
     if smallest < f64::MAX { smallest } else { lsb }
 }
 
-/// Noise of a channel, rms, from its third differences: motion hardly shows in them.
+/// Noise of a channel, rms, from its eighth differences: motion of ten samples per period and more hardly shows in them.
 fn noise(values: &[f64]) -> f64 {
-    let mut sizes: Vec<f64> = values
-        .windows(4)
-        .map(|w| (w[3] - 3.0 * w[2] + 3.0 * w[1] - w[0]).abs())
-        .collect();
+    const BINOMIAL: [f64; 9] = [1.0, -8.0, 28.0, -56.0, 70.0, -56.0, 28.0, -8.0, 1.0];
+    let difference = |w: &[f64]| -> f64 { w.iter().zip(BINOMIAL).map(|(v, b)| v * b).sum() };
+    let windows = values.windows(BINOMIAL.len());
+    let mut sizes: Vec<f64> = windows.map(|w| difference(w).abs()).collect();
     sizes.sort_unstable_by(f64::total_cmp);
     let median = sizes.get(sizes.len() / 2).copied().unwrap_or(0.0);
-    median / 0.6745 / 20f64.sqrt()
+    let white: f64 = BINOMIAL.iter().map(|b| b * b).sum();
+    median / 0.6745 / white.sqrt()
 }
 
 /// How fast a channel changes about sample `k`, per sample, whether that sample was put in or not: the middle of the slopes
