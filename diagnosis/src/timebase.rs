@@ -88,6 +88,32 @@ impl Channel<'_> {
     }
 }
 
+/// How often the reference repeats itself about a sample where the channels, which are the `same`, do not, if it repeats
+/// itself there: the more seldom, the more it says. One that goes on says nothing.
+fn repeats_alone(recording: &Recording, same: impl Fn(usize) -> bool) -> impl Fn(usize) -> f64 {
+    /// Samples on either side.
+    const ABOUT: usize = 2000;
+    let n = recording.samples();
+    let with_it: Vec<bool> = recording.reference_rad.as_deref().map_or(vec![], |r| {
+        std::iter::once(false)
+            .chain(r.windows(2).map(|w| w[0] == w[1]))
+            .collect()
+    });
+    // How many are alone up to each sample.
+    let mut alone = vec![0];
+    for k in 0..n {
+        let one = k > 0 && with_it.get(k) == Some(&true) && !same(k);
+        alone.push(alone[k] + usize::from(one));
+    }
+    move |k| {
+        if with_it.get(k) != Some(&true) {
+            return 1.0;
+        }
+        let (from, to) = (k.saturating_sub(ABOUT), (k + ABOUT).min(n));
+        (alone[to] - alone[from] + 1) as f64 / (to - from + 1) as f64
+    }
+}
+
 /// Samples that repeat the one before while the scale moves.
 pub(crate) fn repeated(recording: &Recording, checked: &mut Checked) {
     let n = recording.samples();
@@ -102,7 +128,11 @@ pub(crate) fn repeated(recording: &Recording, checked: &mut Checked) {
         noise: noise(v),
         uneven: uneven(v),
     });
-    let chance = |k: usize| -> f64 { channels.iter().map(|c| c.chance(k)).product() };
+    let of_reference = repeats_alone(recording, same);
+    let chance = |k: usize| -> f64 {
+        let of_channels: f64 = channels.iter().map(|c| c.chance(k)).product();
+        of_channels * of_reference(k)
+    };
     let twins: Vec<usize> = (LINE..n.saturating_sub(LINE))
         .filter(|&k| same(k) && !same(k - 1) && !same(k + 1))
         .filter(|&k| chance(k) * (n as f64) < BY_CHANCE)

@@ -87,6 +87,35 @@ fn samples_put_in_in_noise() {
     });
 }
 
+/// Rows that were put in where the scale moves by little more than the noise.
+fn put_in_slowly(rows: &mut Rows) {
+    let mut slow: Vec<usize> = (1000..19_000)
+        .step_by(700)
+        .filter(|k| (0.008..0.02).contains(&moves(rows, *k)))
+        .collect();
+    assert!(slow.len() > 2);
+    while let Some(k) = slow.pop() {
+        let again = rows[k - 1];
+        rows.insert(k, again);
+    }
+    at_even_times(rows);
+}
+
+/// Where noise could have brought the codes back, the reference tells: it hardly ever repeats itself without them.
+#[test]
+fn samples_put_in_that_a_reference_shows() {
+    let noisy = Case {
+        noise: |_, _, _, n| 4.0 * NOISE * n[0],
+        ..PLAIN
+    };
+    assert_eq!(names(&damaged(&noisy, put_in_slowly)), [""; 0]);
+    let with_reference = Case {
+        reference: true,
+        ..noisy
+    };
+    shows_in(&with_reference, "repeated_samples", put_in_slowly);
+}
+
 /// A lost sample makes a step, and its edge lies as far off the curve through its neighbours as a glitch does.
 #[test]
 fn a_lost_sample_is_no_glitch() {
