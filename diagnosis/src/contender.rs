@@ -89,6 +89,7 @@ pub(crate) fn contender(
         };
         let rest: Vec<&Scored> = scored[..i].iter().chain(&scored[i + 1..]).collect();
         let mut rivals = rivals(&beside, &own, &rest);
+        let wider = wider(&beside, &own, &rest);
         if own.candidate.as_drift {
             rivals.retain(|name| name != DRIFT);
             rivals.push(DRIFT.to_owned());
@@ -106,6 +107,9 @@ pub(crate) fn contender(
         let locked = goes_with_angle(system.context, &own.candidate);
         let nameable = listed(own.candidate.name) && rivals.iter().all(|r| listed(r)) && !locked;
         if nameable && slow && rivals.len() <= 1 && held.refusal.is_none() {
+            if rivals.is_empty() {
+                rivals.extend(wider);
+            }
             system.retain(|i| i < mark);
             cause.confounded = rivals;
             match &named {
@@ -123,7 +127,7 @@ pub(crate) fn contender(
         } else if locked {
             "at this constant speed it goes with the angle as well".to_owned()
         } else if !slow {
-            "steps explain more".to_owned()
+            "steps explain it as well".to_owned()
         } else if let Some(refusal) = held.refusal {
             refusal
         } else {
@@ -208,6 +212,23 @@ fn rivals(beside: &Beside, best: &Scored, others: &[&Scored]) -> Vec<String> {
         }
     }
     names
+}
+
+/// A cause of the same domain that has more parameters and is this one for some of their values, as a harmonic of the scale
+/// is a bend of the channels at one phase: the simpler one goes first, but nothing in a recording tells them apart.
+fn wider(beside: &Beside, best: &Scored, others: &[&Scored]) -> Option<String> {
+    let holds = |other: &&&Scored| {
+        let c = &other.candidate;
+        let wider = c.domain == best.candidate.domain && other.freedom > best.freedom;
+        wider && c.name != best.candidate.name && {
+            let together = both(&c.shapes, &best.candidate.shapes);
+            beside.gain(&together).1 == other.freedom
+        }
+    };
+    others
+        .iter()
+        .find(holds)
+        .map(|other| other.candidate.name.to_owned())
 }
 
 /// Whether, at a speed that hardly changes, a line stands where something that goes with the angle would: at half orders of

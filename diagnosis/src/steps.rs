@@ -20,6 +20,11 @@ const KNOTS: [usize; 8] = [2, 3, 4, 6, 8, 12, 20, 40];
 /// Most numbers of a step, beside its place, and of a knot.
 const CHANNELS: usize = 2;
 
+/// Log-likelihood by which lines have to explain more than steps do of what is strong: a slow change does by far.
+const CLEARLY: f64 = 10.0;
+/// From which log-likelihood of lines on it is strong: an SNR of 25.
+const STRONG: f64 = 300.0;
+
 /// What changes.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) enum Change {
@@ -48,8 +53,8 @@ struct Changing<'a> {
     change: Change,
 }
 
-/// Log-likelihood that steps explain of a radial residual, with noise of that rms, where they explain more than lines do,
-/// of whichever of these changes.
+/// Log-likelihood that steps explain of a radial residual, with noise of that rms, where lines do not explain as much of
+/// whichever of these changes.
 pub(crate) fn instead(
     context: &Context,
     radial: &[f64],
@@ -81,7 +86,8 @@ pub(crate) fn instead(
             numbers * price + (count as f64).ln(),
         ));
     }
-    (lines < steps).then_some(steps)
+    let clearly = if lines > STRONG { CLEARLY } else { 0.0 };
+    (lines < steps + clearly).then_some(steps)
 }
 
 impl Changing<'_> {
