@@ -33,7 +33,7 @@ const NEAR: usize = 8;
 /// Share of what any spectrum explains that 1/f has to hold.
 const HOLDS: f64 = 0.9;
 /// Share of what flicker noise explains that two levels in its place may leave to it.
-const LEFT: f64 = 0.25;
+const LEFT: f64 = 0.1;
 /// Shapes of noise that could have been claimed.
 const TRIALS: f64 = 30.0;
 /// Global probability below which it is shown.

@@ -250,6 +250,10 @@ fn search(
     }
     if system.every() == 1 {
         closed.extend(doubt(system, catalogue, &mut found));
+        if system.flicker.is_some() {
+            // Slow noise is in all that is slow, as most of what depends on the speed is.
+            closed.push(Domain::Speed);
+        }
         let left = leftover(system, catalogue, &found.fit, &closed);
         found.unnamed.extend(left);
     }
