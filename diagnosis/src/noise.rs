@@ -146,7 +146,15 @@ pub(crate) fn findings(system: &System, residual: &Residual) -> (Vec<Finding>, V
         if log_p > SHOWN.ln() || with.x[BASE + 1] <= 0.0 {
             continue;
         }
-        let why = refusal(&depends, own, kind, &with, gain, &white[1], &both);
+        let why = refusal(
+            &depends,
+            own,
+            kind,
+            &with,
+            [gain, inflation],
+            &white[1],
+            &both,
+        );
         if let Some(why) = why {
             unnamed.push(Unnamed {
                 log_p,
@@ -169,13 +177,14 @@ pub(crate) fn findings(system: &System, residual: &Residual) -> (Vec<Finding>, V
     (list, unnamed)
 }
 
-/// Why noise that depends on something is not of a kind.
+/// Why noise that depends on something is not of a kind, which explains `gain` where squares that go together make
+/// everything look so many times as sure as it is.
 fn refusal(
     depends: &Dependence,
     mut squares: Squares,
     kind: Kind,
     with: &Fitted,
-    gain: f64,
+    [gain, inflation]: [f64; 2],
     tangential: &[f64],
     shapes: &crate::variance::Shapes,
 ) -> Option<String> {
@@ -196,7 +205,7 @@ fn refusal(
     // What as many free numbers explain of noise that is of the kind does not count against it.
     let chance = freedom / 2.0 + 2.0 * (2.0 * freedom).sqrt();
     let beyond = (any.likelihood - known.likelihood - chance).max(0.0) * squares.every as f64;
-    let share = gain / (gain + beyond);
+    let share = gain / (gain + beyond / inflation);
     if share < HOLDS {
         return Some(format!(
             "the size of the noise depends on something; nearest likeness: {name}, but it holds {:.0} % of what any dependence on angle, speed and time explains",
