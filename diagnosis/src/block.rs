@@ -86,14 +86,6 @@ impl Block<'_> {
         }
     }
 
-    /// Writes a change of the raw channels, in fractions of their amplitudes, as a change of the corrected pair.
-    pub(crate) fn raw(&self, cos: &[f64], sin: &[f64], c: &mut [f64], s: &mut [f64]) {
-        let (tan, secant) = (self.beta.tan(), 1.0 / self.beta.cos());
-        for (k, (x, y)) in cos.iter().zip(sin).enumerate() {
-            (c[k], s[k]) = (*x, y * secant + x * tan);
-        }
-    }
-
     /// 1, cos α, sin α, cos 2α … sin mα, each times `by`, one after the other in `out`.
     pub(crate) fn waves(&self, top: usize, by: Option<&[f64]>, out: &mut [f64]) {
         let n = self.len();

@@ -2,6 +2,7 @@
 
 use crate::beside::Beside;
 use crate::cause::{Candidate, Domain, Sign};
+use crate::causes::AC_COUPLING;
 use crate::library::Shape;
 use crate::model::{Fit, System, atoms_of};
 use crate::solve::Solution;
@@ -86,8 +87,12 @@ pub(crate) fn score(beside: &Beside, candidate: Candidate) -> Option<Scored> {
 }
 
 /// Whether a cause can be so large. Where little of it is seen, as of a delay at a speed that hardly changes, the rest would
-/// have to be made up for by opposite errors of offset, gain and phase.
+/// have to be made up for by opposite errors of offset, gain and phase. Not so of a high pass: it turns and shrinks both
+/// channels alike, which nobody sees.
 pub(crate) fn likely(system: &System, scored: &Scored) -> bool {
+    if scored.candidate.name == AC_COUPLING {
+        return true;
+    }
     let samples: f64 = system.context.weight.iter().sum();
     let large = LARGEST * (2.0 * samples).sqrt() / system.noise();
     !matches!(scored.candidate.domain, Domain::Speed | Domain::Angle)

@@ -222,15 +222,17 @@ fn search(
                 cause.first = found.fit.shapes.len();
                 let shapes = both(&found.fit.shapes, &cause.candidate.shapes);
                 let halves = system.halves(&shapes);
-                // How it was when the recording began is seen in the first block alone, and no other half knows it.
-                let lasting = &shapes[..shapes.len() - cause.candidate.given()];
+                // How it was when the recording began may be seen in the first block alone.
+                let fit = system.fit(shapes.clone());
+                let given = &fit.solution.x[shapes.len() - cause.candidate.given()..];
+                let held_out = halves.held_out_given(&shapes, given);
                 // What does not hold on data that was not fitted is no cause.
-                if halves.held_out(lasting) > halves.held_out(&found.fit.shapes) * 1.01 {
+                if held_out > halves.held_out(&found.fit.shapes) * 1.01 {
                     refused.push(cause.candidate.name);
                 } else {
                     let before = found.fit;
                     found.accepted.push(*cause);
-                    found.fit = system.fit(shapes);
+                    found.fit = fit;
                     if !last
                         && !exact::tangents_do(system, &found.fit, &found.accepted, exact::NAMED)
                     {

@@ -4,6 +4,8 @@ use std::cell::RefCell;
 use std::f64::consts::TAU;
 use std::rc::Rc;
 
+use rustfft::num_complex::Complex;
+
 use super::speed::follows;
 use super::{AC_COUPLING, Catalogue};
 use crate::block::Block;
@@ -15,36 +17,52 @@ use crate::library::{Library, Shape};
 /// Scale periods of travel that ac coupling needs to be told from shapes of the angle.
 const FEWEST: f64 = 6.0;
 
-/// The slow part of a channel, block after block.
-fn slow(block: &Block, which: usize, rate: f64, state: &RefCell<(usize, f64)>) -> Vec<f64> {
+/// The pair behind a low pass of so much per sample and a corner frequency, block after block, as a part of the pair itself.
+/// It begins as if the scale had always moved as it does then: what was before is the charges'.
+fn slow(
+    block: &Block,
+    rate: f64,
+    corner: f64,
+    state: &RefCell<(usize, Complex<f64>)>,
+) -> Vec<Complex<f64>> {
     let mut state = state.borrow_mut();
-    if block.start != state.0 {
-        *state = (block.start, 0.0);
+    if block.start != state.0 || block.start == 0 {
+        let pair = Complex::new(block.cos[0], block.sin[0]);
+        let response = Complex::new(1.0, block.speed[0] / (TAU * corner)).inv();
+        *state = (block.start, pair * response);
     }
     let mut now = state.1;
-    let values = block.u[which]
-        .iter()
-        .map(|v| {
-            now += rate * (v - now);
-            -now
+    let pairs = block.cos.iter().zip(block.sin);
+    let values = pairs
+        .map(|(c, s)| {
+            let pair = Complex::new(*c, *s);
+            now += rate * (pair - now);
+            now * pair.conj()
         })
         .collect();
     *state = (block.start + block.len(), now);
     values
 }
 
-/// What a high pass takes away, over its corner frequency in hertz.
+/// What a high pass takes away, over its corner frequency in hertz. The same filter in both channels is one of the corrected
+/// pair; its radius and its angle, as they are and not in first order: where the corner is a fourth of the signals'
+/// frequency, the angle is turned so far that half of what the radius loses is second order.
 fn high_pass(sample_rate: f64) -> impl Fn(f64, &mut Library) -> Vec<Shape> + 'static {
     move |corner, library| {
         let rate = (TAU * corner / sample_rate).clamp(0.0, 0.5);
-        let states: [RefCell<(usize, f64)>; 2] = Default::default();
+        let state: RefCell<(usize, Complex<f64>)> = RefCell::default();
         let mut shapes = vec![library.pair(move |block: &Block, c, s| {
-            let [cos, sin] = [0, 1].map(|which| {
-                let mut lost = slow(block, which, rate, &states[which]);
-                lost.iter_mut().for_each(|v| *v /= corner.max(1e-300));
-                lost
-            });
-            block.raw(&cos, &sin, c, s);
+            let lost = slow(block, rate, corner.max(1e-300), &state);
+            for (k, lost) in lost.into_iter().enumerate() {
+                let (radius, angle) = (1.0 - lost).to_polar();
+                // Where hardly anything is left, its angle says nothing.
+                let change = Complex::new(radius - 1.0, angle * (2.0 * radius).min(1.0));
+                let change = change * Complex::new(block.cos[k], block.sin[k]);
+                (c[k], s[k]) = (
+                    change.re / corner.max(1e-300),
+                    change.im / corner.max(1e-300),
+                );
+            }
         })];
         // The charge of either capacitor when the recording begins is anything; it leaks away.
         shapes.extend(charges(corner, library));

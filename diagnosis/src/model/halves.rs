@@ -58,10 +58,22 @@ impl Halves {
 
     /// Rms of radial and tangential residual together, on blocks that were not fitted.
     pub(crate) fn held_out(&self, shapes: &[Shape]) -> f64 {
+        self.held_out_given(shapes, &[])
+    }
+
+    /// The same where the amounts of the last shapes are given: what is seen in one block alone no other half knows.
+    pub(crate) fn held_out_given(&self, shapes: &[Shape], given: &[f64]) -> f64 {
         let shapes = self.mapped(shapes);
+        let (free, last) = (shapes.len() - given.len(), given.len());
+        let known = DVector::from_column_slice(given);
         let mut sum = 0.0;
         for half in 0..2 {
-            let x = self.white[half].of(&shapes).solve().x;
+            let all = self.white[half].of(&shapes);
+            let taken = all.gram.view((0, free), (free, last)) * &known;
+            let right = all.right.rows(0, free) - taken;
+            let gram = all.gram.view((0, 0), (free, free)).into_owned();
+            let mut x = Normal::new(gram, right, 0.0).solve().x;
+            x.extend(given);
             sum += (0..2)
                 .map(|row| self.left(1 - half, row, &shapes, &x))
                 .sum::<f64>();
