@@ -13,8 +13,8 @@ use crate::library::Shape;
 use crate::model::System;
 use crate::selection::{Selection, Unnamed};
 
-/// Share of what a static error explains below which another kind of static error is what the first one's model leaves: an
-/// SNR between a fourth and a fifth of its.
+/// Share of what static errors, or errors of speed, explain below which another kind of them is what the strongest one's
+/// model leaves: an SNR between a fourth and a fifth of its.
 const LEFTOVER: f64 = 0.05;
 
 /// Scale periods travelled from which what depends on the code is told from what depends on the angle: where each code stands at one
@@ -62,8 +62,8 @@ pub(crate) fn doubt(system: &System, catalogue: &Catalogue, found: &mut Selectio
             own.iter().for_each(|i| found.accepted[*i].doubted = true);
             found.unnamed.push(unnamed);
             closed.push(domain);
-        } else if domain == Domain::Angle
-            && let Some(unnamed) = leftovers(system, found, &own)
+        } else if matches!(domain, Domain::Angle | Domain::Speed)
+            && let Some(unnamed) = leftovers(system, found, domain, &own)
         {
             found.unnamed.push(unnamed);
             closed.push(domain);
@@ -112,16 +112,22 @@ fn too_much_left(
     (share < HOLDS).then(|| unnamed(domain, nearest, gain, &but))
 }
 
-/// Static errors of another kind that are a small part of the strongest. What has no name spans the strongest, too, and
-/// stands aside.
-fn leftovers(system: &System, found: &mut Selection, own: &[usize]) -> Option<Unnamed> {
+/// Static errors, or errors of speed, of another kind that are a small part of the strongest. What has no name spans the
+/// strongest, too, and stands aside.
+fn leftovers(
+    system: &System,
+    found: &mut Selection,
+    domain: Domain,
+    own: &[usize],
+) -> Option<Unnamed> {
     let named = found.of(found.accepted.clone(), system);
     let gains: Vec<f64> = own.iter().map(|i| gain_of(system, &named, &[*i])).collect();
     let strongest = (0..own.len()).max_by(|a, b| gains[*a].total_cmp(&gains[*b]))?;
     let name = found.accepted[own[strongest]].candidate.name;
-    let small = |j: &usize| {
-        found.accepted[own[*j]].candidate.name != name && gains[*j] < LEFTOVER * gains[strongest]
-    };
+    // Of what they explain together: each by itself explains little that the others could not where they are much alike.
+    let all = gain_of(system, &named, own);
+    let small =
+        |j: &usize| found.accepted[own[*j]].candidate.name != name && gains[*j] < LEFTOVER * all;
     let small: Vec<usize> = (0..own.len()).filter(small).collect();
     let first = *small.first()?;
     let nearest = found.accepted[own[first]].candidate.name;
@@ -130,10 +136,10 @@ fn leftovers(system: &System, found: &mut Selection, own: &[usize]) -> Option<Un
     }
     let but = format!(
         "it is {:.1} % of what {} explains, whose model may leave as much",
-        100.0 * gains[first] / gains[strongest],
+        100.0 * gains[first] / all,
         name.replace('_', " ")
     );
-    Some(unnamed(Domain::Angle, nearest, gains[first], &but))
+    Some(unnamed(domain, nearest, gains[first], &but))
 }
 
 /// Takes names of static errors back that are smaller than the error that a stuck bit or coarse steps make in the codes:

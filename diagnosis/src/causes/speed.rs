@@ -119,12 +119,11 @@ pub(super) fn cause(
 
 pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
     let speed = Speed::new(context, &mut catalogue.library);
-    // Against a reference, what a latency leaves where the speed hardly changes looks like any of these.
-    let varies = if context.against_reference.is_some() {
-        varies_much(context)
-    } else {
-        varies(context)
-    };
+    // Against a reference, what a latency leaves where the speed hardly changes looks like any of these; not like a channel
+    // behind a low pass, which is late by itself.
+    let late = context.against_reference.is_some();
+    let changes = self::varies(context);
+    let varies = changes && (!late || varies_much(context));
     if varies {
         let orders = [ODD, EVEN, SIGN]
             .into_iter()
@@ -136,9 +135,11 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
         list.push(latency(&speed));
         list.extend(late_bandwidths(&speed, &mut catalogue.library));
     }
+    if changes {
+        list.extend(mismatches(&speed, &mut catalogue.library));
+    }
     if varies {
         list.push(skew(&speed));
-        list.extend(mismatches(&speed, &mut catalogue.library));
         list.push(common_bandwidth(&speed));
         list.push(crosstalk(&speed));
     }
@@ -206,8 +207,10 @@ fn skew(speed: &Speed) -> Candidate {
 /// A low pass in one channel.
 fn mismatches(speed: &Speed, library: &mut Library) -> Vec<Candidate> {
     let names: [&'static [&'static str]; 2] = [&["tau_cos_s"], &["tau_sin_s"]];
-    let mut one = |which: usize, reach: f64| {
-        let tau = reach / speed.top;
+    // A time constant is known twice, by how much there is of it and by its law; a little of a long one is none.
+    let mut one = |which: usize, i: usize| {
+        let tau = REACHES[i] / speed.top;
+        let least = i.checked_sub(1).map_or(0.0, |i| REACHES[i] / speed.top);
         let make = move |tau: f64, library: &mut Library| {
             vec![library.pair(move |block: &Block, c, s| {
                 block.channel(which, &low_pass(block, which, tau), c, s);
@@ -217,7 +220,7 @@ fn mismatches(speed: &Speed, library: &mut Library) -> Vec<Candidate> {
         Candidate {
             trials: (2 * REACHES.len()) as f64,
             exact: follows(tau, make),
-            sign: Sign::Positive,
+            sign: Sign::Known(least),
             evidence: Rc::new(|p| {
                 let t = p[0].value;
                 format!(
@@ -229,8 +232,8 @@ fn mismatches(speed: &Speed, library: &mut Library) -> Vec<Candidate> {
     };
     let all = [0, 1]
         .into_iter()
-        .flat_map(|which| REACHES.map(|r| (which, r)));
-    all.map(|(which, reach)| one(which, reach)).collect()
+        .flat_map(|which| (0..REACHES.len()).map(move |i| (which, i)));
+    all.map(|(which, i)| one(which, i)).collect()
 }
 
 /// A low pass in both channels, seen in the radius.
