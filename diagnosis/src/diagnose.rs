@@ -279,8 +279,8 @@ fn conclude(
     }
     let unnamed = || selection.unnamed.iter().chain(&strange);
     let (held_before, held_after) = (
-        halves.held_out(&selection.base.shapes),
-        halves.held_out(&extended.fit.shapes),
+        halves.held_out(&selection.base, 0),
+        halves.held_out(&extended.fit, 0),
     );
     let (position_before, position_after) = (
         halves.position_error(&selection.base),

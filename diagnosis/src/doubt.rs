@@ -17,6 +17,9 @@ use crate::selection::{Selection, Unnamed};
 /// model leaves: an SNR between a fourth and a fifth of its.
 const LEFTOVER: f64 = 0.05;
 
+/// Share of what one of them explains alone from which on another is as strong.
+const ALIKE: f64 = 0.95;
+
 /// Scale periods travelled from which what depends on the code is told from what depends on the angle: where each code stands at one
 /// angle only, neither is what the other leaves.
 const APART: f64 = 2.0;
@@ -122,10 +125,17 @@ fn leftovers(
 ) -> Option<Unnamed> {
     let named = found.of(found.accepted.clone(), system);
     let gains: Vec<f64> = own.iter().map(|i| gain_of(system, &named, &[*i])).collect();
-    let strongest = (0..own.len()).max_by(|a, b| gains[*a].total_cmp(&gains[*b]))?;
-    let name = found.accepted[own[strongest]].candidate.name;
-    // Of what they explain together: each by itself explains little that the others could not where they are much alike.
+    // Of what they explain together: each explains little that the others could not where they are much alike.
     let all = gain_of(system, &named, own);
+    let alone = |i: &usize| {
+        let others: Vec<usize> = own.iter().copied().filter(|o| o != i).collect();
+        all - gain_of(system, &named, &others)
+    };
+    let alone: Vec<f64> = own.iter().map(alone).collect();
+    let most = alone.iter().copied().fold(0.0, f64::max);
+    // A wider one that holds the strongest was found after it.
+    let strongest = alone.iter().position(|gain| *gain > ALIKE * most)?;
+    let name = found.accepted[own[strongest]].candidate.name;
     let small =
         |j: &usize| found.accepted[own[*j]].candidate.name != name && gains[*j] < LEFTOVER * all;
     let small: Vec<usize> = (0..own.len()).filter(small).collect();

@@ -222,12 +222,10 @@ fn search(
                 cause.first = found.fit.shapes.len();
                 let shapes = both(&found.fit.shapes, &cause.candidate.shapes);
                 let halves = system.halves(&shapes);
-                // How it was when the recording began may be seen in the first block alone.
-                let fit = system.fit(shapes.clone());
-                let given = &fit.solution.x[shapes.len() - cause.candidate.given()..];
-                let held_out = halves.held_out_given(&shapes, given);
+                let fit = system.fit(shapes);
+                let held_out = halves.held_out(&fit, cause.candidate.given());
                 // What does not hold on data that was not fitted is no cause.
-                if held_out > halves.held_out(&found.fit.shapes) * 1.01 {
+                if held_out > halves.held_out(&found.fit, 0) * 1.01 {
                     refused.push(cause.candidate.name);
                 } else {
                     let before = found.fit;

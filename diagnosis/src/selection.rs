@@ -162,8 +162,8 @@ impl Selection {
                 evidence: format!("{seen}; it raises the log-likelihood by {gain:.1}"),
                 parameters,
                 gain: Gain {
-                    held_out_residual_rms_before: halves.held_out(&without.shapes),
-                    held_out_residual_rms_after: halves.held_out(&fit.shapes),
+                    held_out_residual_rms_before: halves.held_out(&without, 0),
+                    held_out_residual_rms_after: halves.held_out(fit, 0),
                     position_error_rms_before_rad: halves.position_error(&without),
                     position_error_rms_after_rad: halves.position_error(fit),
                 },

@@ -6,6 +6,9 @@ use super::{Fit, Moments, System, atoms_of};
 use crate::library::Shape;
 use crate::solve::Normal;
 
+/// Precision of an amount that a fit has nothing of, in units of the noise.
+const UNSEEN: f64 = 1e12;
+
 /// The sums of either half of interleaved blocks, for some atoms only.
 pub(crate) struct Halves {
     /// Where each atom stands in the sums.
@@ -56,26 +59,27 @@ impl Halves {
         normal.power - 2.0 * normal.right.dot(&x) + (&normal.gram * &x).dot(&x)
     }
 
-    /// Rms of radial and tangential residual together, on blocks that were not fitted.
-    pub(crate) fn held_out(&self, shapes: &[Shape]) -> f64 {
-        self.held_out_given(shapes, &[])
-    }
-
-    /// The same where the amounts of the last shapes are given: what is seen in one block alone no other half knows.
-    pub(crate) fn held_out_given(&self, shapes: &[Shape], given: &[f64]) -> f64 {
-        let shapes = self.mapped(shapes);
-        let (free, last) = (shapes.len() - given.len(), given.len());
-        let known = DVector::from_column_slice(given);
+    /// Rms of radial and tangential residual together, on blocks that were not fitted. One half may hardly see something that
+    /// the other does, a dip at one place or how it was when the recording began: amounts are expected to be about as large
+    /// as those of the fit, and so many of the last ones are given.
+    pub(crate) fn held_out(&self, fit: &Fit, given: usize) -> f64 {
+        let x = &fit.solution.x;
+        let free = x.len() - given;
+        let known = DVector::from_column_slice(&x[free..]);
+        let shapes = self.mapped(&fit.shapes);
         let mut sum = 0.0;
         for half in 0..2 {
-            let all = self.white[half].of(&shapes);
-            let taken = all.gram.view((0, free), (free, last)) * &known;
-            let right = all.right.rows(0, free) - taken;
-            let gram = all.gram.view((0, 0), (free, free)).into_owned();
-            let mut x = Normal::new(gram, right, 0.0).solve().x;
-            x.extend(given);
+            let seen = self.white[half].of(&shapes);
+            let taken = seen.gram.view((0, free), (free, given)) * &known;
+            let mut gram = seen.gram.view((0, 0), (free, free)).into_owned();
+            for (i, x) in x[..free].iter().enumerate() {
+                gram[(i, i)] += x.powi(-2).min(UNSEEN);
+            }
+            let half_alone = Normal::new(gram, seen.right.rows(0, free) - taken, 0.0);
+            let mut own = half_alone.solve().x;
+            own.extend(&x[free..]);
             sum += (0..2)
-                .map(|row| self.left(1 - half, row, &shapes, &x))
+                .map(|row| self.left(1 - half, row, &shapes, &own))
                 .sum::<f64>();
         }
         let count = 2.0 * (self.counts[0] + self.counts[1]);
