@@ -17,6 +17,8 @@ use crate::selection::{Selection, Unnamed};
 /// model leaves: an SNR between a fourth and a fifth of its.
 const LEFTOVER: f64 = 0.05;
 
+/// Gain in log-likelihood (an SNR of 5) below which nothing is left of it.
+const ANYTHING: f64 = 12.5;
 /// Share of what one of them explains alone from which on another is as strong.
 const ALIKE: f64 = 0.95;
 
@@ -123,33 +125,59 @@ fn leftovers(
     domain: Domain,
     own: &[usize],
 ) -> Option<Unnamed> {
-    let named = found.of(found.accepted.clone(), system);
-    let gains: Vec<f64> = own.iter().map(|i| gain_of(system, &named, &[*i])).collect();
-    // Of what they explain together: each explains little that the others could not where they are much alike.
-    let all = gain_of(system, &named, own);
-    let alone = |i: &usize| {
-        let others: Vec<usize> = own.iter().copied().filter(|o| o != i).collect();
-        all - gain_of(system, &named, &others)
+    let everything = found.of(found.accepted.clone(), system);
+    let all = gain_of(system, &everything, own);
+    // A harmonic holds all that a bend does, which is nothing beside it; errors of speed hold a part of each other.
+    let strength: Vec<f64> = match domain {
+        Domain::Speed => own
+            .iter()
+            .map(|i| gain_of(system, &everything, &[*i]))
+            .collect(),
+        _ => own
+            .iter()
+            .map(|i| {
+                let others: Vec<usize> = own.iter().copied().filter(|o| o != i).collect();
+                all - gain_of(system, &everything, &others)
+            })
+            .collect(),
     };
-    let alone: Vec<f64> = own.iter().map(alone).collect();
-    let most = alone.iter().copied().fold(0.0, f64::max);
+    let most = strength.iter().copied().fold(0.0, f64::max);
     // A wider one that holds the strongest was found after it.
-    let strongest = alone.iter().position(|gain| *gain > ALIKE * most)?;
+    let strongest = strength.iter().position(|gain| *gain > ALIKE * most)?;
     let name = found.accepted[own[strongest]].candidate.name;
-    let small =
-        |j: &usize| found.accepted[own[*j]].candidate.name != name && gains[*j] < LEFTOVER * all;
-    let small: Vec<usize> = (0..own.len()).filter(small).collect();
-    let first = *small.first()?;
-    let nearest = found.accepted[own[first]].candidate.name;
-    for j in &small {
-        found.accepted[own[*j]].doubted = true;
+    // The smallest goes first: without it the others explain more by themselves.
+    let mut largest: Option<(f64, &'static str)> = None;
+    loop {
+        let sure = |i: &usize| !found.accepted[*i].doubted;
+        let kept: Vec<usize> = (0..found.accepted.len()).filter(sure).collect();
+        let named = found.of(
+            kept.iter().map(|i| found.accepted[*i].clone()).collect(),
+            system,
+        );
+        let gain = |i: &usize| {
+            let at = kept.iter().position(|k| k == i)?;
+            let other = found.accepted[*i].candidate.name != name;
+            other.then(|| (gain_of(system, &named, &[at]), *i))
+        };
+        let smallest = own
+            .iter()
+            .filter_map(gain)
+            .min_by(|a, b| a.0.total_cmp(&b.0));
+        let Some((gain, i)) = smallest.filter(|(gain, _)| *gain < LEFTOVER * all) else {
+            break;
+        };
+        found.accepted[i].doubted = true;
+        if gain > largest.map_or(ANYTHING, |l| l.0) {
+            largest = Some((gain, found.accepted[i].candidate.name));
+        }
     }
+    let (gain, nearest) = largest?;
     let but = format!(
         "it is {:.1} % of what {} explains, whose model may leave as much",
-        100.0 * gains[first] / all,
+        100.0 * gain / all,
         name.replace('_', " ")
     );
-    Some(unnamed(domain, nearest, gains[first], &but))
+    Some(unnamed(domain, nearest, gain, &but))
 }
 
 /// Takes names of static errors back that are smaller than the error that a stuck bit or coarse steps make in the codes:

@@ -34,6 +34,7 @@ mod score;
 mod select;
 mod selection;
 mod sensor;
+mod simpler;
 mod solve;
 mod spline;
 mod statistics;

@@ -12,6 +12,7 @@ use crate::library::Shape;
 use crate::model::{Fit, Residual, System, atoms_of};
 use crate::score::{SHOWN, Scored, likely, score, worth};
 use crate::selection::{Accepted, Selection, Unnamed};
+use crate::simpler::simpler;
 use crate::statistics::{after_trials, log_tail};
 
 /// Most causes of one recording.
@@ -249,6 +250,7 @@ fn search(
         return found;
     }
     if system.every() == 1 {
+        simpler(system, catalogue, &mut found);
         closed.extend(doubt(system, catalogue, &mut found));
         if system.flicker.is_some() {
             // Slow noise is in all that is slow, as most of what depends on the speed is.
