@@ -49,7 +49,8 @@ fn short_campaign() {
 fn wrong_names_do_not_come_back() {
     let seeds = [
         20_000_447, 71_000_308, 80_000_195, 80_000_773, 80_000_780, 83_000_308, 83_000_408,
-        83_000_448, 86_000_775, 86_000_610, 85_000_855, 86_000_170, 86_000_879,
+        83_000_448, 86_000_775, 86_000_610, 85_000_855, 86_000_170, 86_000_879, 86_000_873,
+        86_001_333, 87_001_556,
     ];
     for seed in seeds {
         let case = Case::draw(seed, 20_000).expect("a case can be drawn");
@@ -65,7 +66,8 @@ fn wrong_names_do_not_come_back() {
 #[test]
 fn what_was_missed_is_found() {
     for seed in [
-        86_000_804, 86_000_315, 86_000_996, 86_000_775, 86_000_610, 86_000_961,
+        86_000_804, 86_000_315, 86_000_996, 86_000_775, 86_000_610, 86_000_961, 86_000_932,
+        86_000_745, 87_001_236,
     ] {
         let case = Case::draw(seed, 20_000).expect("a case can be drawn");
         let verdict = verdict(&case.csv()).unwrap_or_else(|why| panic!("{seed}: {why}"));

@@ -119,8 +119,8 @@ pub(super) fn cause(
 
 pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
     let speed = Speed::new(context, &mut catalogue.library);
-    // Against a reference, what a latency leaves where the speed hardly changes looks like any of these; not like a channel
-    // behind a low pass, which is late by itself.
+    // Against a reference, what a latency leaves where the speed hardly changes looks like the others; not like one channel
+    // that is late by itself.
     let late = context.against_reference.is_some();
     let changes = self::varies(context);
     let varies = changes && (!late || varies_much(context));
@@ -136,10 +136,10 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
         list.extend(late_bandwidths(&speed, &mut catalogue.library));
     }
     if changes {
+        list.push(skew(&speed));
         list.extend(mismatches(&speed, &mut catalogue.library));
     }
     if varies {
-        list.push(skew(&speed));
         list.push(common_bandwidth(&speed));
         list.push(crosstalk(&speed));
     }
