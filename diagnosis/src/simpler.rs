@@ -2,10 +2,12 @@
 //! beside something that is not known yet it explains more than the bend does. Once everything is known, the simpler one is
 //! named if it explains as much, the numbers of either paid for, and says that the other would, too.
 
+use crate::beside::Beside;
 use crate::cause::Candidate;
 use crate::causes::Catalogue;
 use crate::library::Shape;
 use crate::model::{Fit, System};
+use crate::score::score;
 use crate::select::both;
 use crate::selection::{Accepted, Selection};
 
@@ -32,6 +34,10 @@ pub(crate) fn simpler(system: &System, catalogue: &Catalogue, found: &mut Select
 /// The fit with a simpler cause in the place of a wide one, if that holds it and explains no more.
 fn swapped(system: &System, found: &Selection, wide: &Accepted, simple: &Candidate) -> Option<Fit> {
     let mut shapes: Vec<Shape> = found.fit.shapes.clone();
+    shapes.drain(wide.range());
+    // It has to be one that can be.
+    score(&Beside::new(&system.total, &shapes), simple.clone())?;
+    shapes = found.fit.shapes.clone();
     shapes.splice(wide.range(), simple.shapes.iter().cloned());
     let fit = system.fit(shapes);
     let samples: f64 = system.context.weight.iter().sum();
