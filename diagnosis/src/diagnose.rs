@@ -278,9 +278,10 @@ fn conclude(
         None => {}
     }
     let unnamed = || selection.unnamed.iter().chain(&strange);
+    let own = selection.base.shapes.len();
     let (held_before, held_after) = (
-        halves.held_out(&selection.base, 0),
-        halves.held_out(&extended.fit, 0),
+        halves.held_out(&selection.base, own, 0),
+        halves.held_out(&extended.fit, own, 0),
     );
     let (position_before, position_after) = (
         halves.position_error(&selection.base),

@@ -224,9 +224,10 @@ fn search(
                 let shapes = both(&found.fit.shapes, &cause.candidate.shapes);
                 let halves = system.halves(&shapes);
                 let fit = system.fit(shapes);
-                let held_out = halves.held_out(&fit, cause.candidate.given());
+                let own = found.base.shapes.len();
+                let held_out = halves.held_out(&fit, own, cause.candidate.given());
                 // What does not hold on data that was not fitted is no cause.
-                if held_out > halves.held_out(&found.fit, 0) * 1.01 {
+                if held_out > halves.held_out(&found.fit, own, 0) * 1.01 {
                     refused.push(cause.candidate.name);
                 } else {
                     let before = found.fit;

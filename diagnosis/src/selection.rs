@@ -138,7 +138,7 @@ impl Selection {
     /// that can be simulated.
     pub(crate) fn findings(&self, system: &System, halves: &Halves) -> Vec<Finding> {
         let mut list = vec![];
-        let fit = &self.fit;
+        let (fit, own) = (&self.fit, self.base.shapes.len());
         for (i, accepted) in self.accepted.iter().enumerate() {
             let range = accepted.range();
             let error: Vec<f64> = range
@@ -162,8 +162,8 @@ impl Selection {
                 evidence: format!("{seen}; it raises the log-likelihood by {gain:.1}"),
                 parameters,
                 gain: Gain {
-                    held_out_residual_rms_before: halves.held_out(&without, 0),
-                    held_out_residual_rms_after: halves.held_out(fit, 0),
+                    held_out_residual_rms_before: halves.held_out(&without, own, 0),
+                    held_out_residual_rms_after: halves.held_out(fit, own, 0),
                     position_error_rms_before_rad: halves.position_error(&without),
                     position_error_rms_after_rad: halves.position_error(fit),
                 },

@@ -6,6 +6,8 @@ use super::{Fit, Moments, System, atoms_of};
 use crate::library::Shape;
 use crate::solve::Normal;
 
+/// So many times as large as in a fit an amount may well be in half of it.
+const LARGER: f64 = 10.0;
 /// Precision of an amount that a fit has nothing of, in units of the noise.
 const UNSEEN: f64 = 1e12;
 
@@ -60,9 +62,9 @@ impl Halves {
     }
 
     /// Rms of radial and tangential residual together, on blocks that were not fitted. One half may hardly see something that
-    /// the other does, a dip at one place or how it was when the recording began: amounts are expected to be about as large
-    /// as those of the fit, and so many of the last ones are given.
-    pub(crate) fn held_out(&self, fit: &Fit, given: usize) -> f64 {
+    /// the other does, a dip at one place or how it was when the recording began: amounts from the number `own` on are
+    /// expected to be hardly larger than those of the fit, and so many of the last ones are given.
+    pub(crate) fn held_out(&self, fit: &Fit, own: usize, given: usize) -> f64 {
         let x = &fit.solution.x;
         let free = x.len() - given;
         let known = DVector::from_column_slice(&x[free..]);
@@ -72,14 +74,14 @@ impl Halves {
             let seen = self.white[half].of(&shapes);
             let taken = seen.gram.view((0, free), (free, given)) * &known;
             let mut gram = seen.gram.view((0, 0), (free, free)).into_owned();
-            for (i, x) in x[..free].iter().enumerate() {
-                gram[(i, i)] += x.powi(-2).min(UNSEEN);
+            for (i, x) in x[..free].iter().enumerate().skip(own) {
+                gram[(i, i)] += (LARGER * x).powi(-2).min(UNSEEN);
             }
             let half_alone = Normal::new(gram, seen.right.rows(0, free) - taken, 0.0);
-            let mut own = half_alone.solve().x;
-            own.extend(&x[free..]);
+            let mut amounts = half_alone.solve().x;
+            amounts.extend(&x[free..]);
             sum += (0..2)
-                .map(|row| self.left(1 - half, row, &shapes, &own))
+                .map(|row| self.left(1 - half, row, &shapes, &amounts))
                 .sum::<f64>();
         }
         let count = 2.0 * (self.counts[0] + self.counts[1]);
