@@ -13,6 +13,10 @@ use crate::selection::{Accepted, Selection};
 
 /// Puts the simpler cause in the place of each wider one that holds it and explains no more.
 pub(crate) fn simpler(system: &System, catalogue: &Catalogue, found: &mut Selection) {
+    // What stands in for something without a name would make up for anything.
+    if !found.unnamed.is_empty() {
+        return;
+    }
     for i in 0..found.accepted.len() {
         let wide = &found.accepted[i];
         // What is off the signals already stays what it is.
