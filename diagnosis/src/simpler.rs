@@ -25,7 +25,8 @@ pub(crate) fn simpler(system: &System, catalogue: &Catalogue, found: &mut Select
         }
         let simple = catalogue.candidates.iter().filter(|c| {
             let own = &wide.candidate;
-            c.domain == own.domain && c.name != own.name && c.shapes.len() < own.shapes.len()
+            let other = c.domain == own.domain && c.name != own.name && !c.as_drift;
+            other && c.shapes.len() < own.shapes.len()
         });
         let swaps = simple.filter_map(|c| Some((c.clone(), swapped(system, found, wide, c)?)));
         let best = swaps.max_by(|a, b| a.1.solution.gain().total_cmp(&b.1.solution.gain()));
