@@ -61,6 +61,11 @@ impl<'a> Beside<'a> {
         (solution.gain(), solution.rank)
     }
 
+    /// Whether wide shapes do all that simple ones do: those have no number of their own beside them.
+    pub(crate) fn holds(&self, wide: &[Shape], simple: &[Shape]) -> bool {
+        self.gain(&[wide, simple].concat()).1 == self.gain(wide).1
+    }
+
     /// The amounts of shapes beside the fit.
     pub(crate) fn solve(&self, shapes: &[Shape]) -> Solution {
         self.rest.solve_beside(self.whole, shapes)

@@ -199,6 +199,11 @@ fn ends(values: &[f64]) -> (f64, f64) {
     values.iter().fold(start, fold)
 }
 
+/// Whether both channels have the code of the sample before.
+pub(crate) fn repeats(recording: &Recording, k: usize) -> bool {
+    recording.cos[k] == recording.cos[k - 1] && recording.sin[k] == recording.sin[k - 1]
+}
+
 /// Ninth decile of sizes.
 pub(crate) fn ninth(sizes: &[f64]) -> f64 {
     let mut sizes = sizes.to_vec();
@@ -241,11 +246,8 @@ fn glitches(recording: &Recording, checked: &mut Checked) {
             let larger = there * alike[range(expected[k])].max(1.0);
             let limit = (FAR * typical * larger).max(floor);
             // A doubled sample is late, not wrong.
-            let same = |j: usize| {
-                recording.cos[j] == recording.cos[j - 1] && recording.sin[j] == recording.sin[j - 1]
-            };
-            let doubled =
-                (k - 1..=k + 1).any(|near| checked.weight[near] == 0.0) || same(k) || same(k + 1);
+            let bad = (k - 1..=k + 1).any(|near| checked.weight[near] == 0.0);
+            let doubled = bad || repeats(recording, k) || repeats(recording, k + 1);
             // Across a gap in time there is no such curve.
             let step = |j: usize| recording.time_s[j] - recording.time_s[j - 1];
             let gap = (k + 1 - REACH..=k + REACH).any(|j| step(j) * rate > 1.5);

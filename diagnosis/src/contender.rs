@@ -12,7 +12,7 @@ use crate::model::{Fit, System, amounts};
 use crate::score::{RIVALS, Scored, score};
 use crate::select::both;
 use crate::selection::{Accepted, Unnamed};
-use crate::statistics::log_tail;
+use crate::statistics::{log_tail, price};
 use crate::steps::{self, Change};
 
 /// Gain in log-likelihood (an SNR of 300) from which on a choice between causes is made where tangents are exact.
@@ -150,7 +150,7 @@ pub(crate) fn contender(
         }
         system.extend();
         let shapes = both(&own.candidate.shapes, &held.beyond);
-        let price = 0.5 * (system.context.samples() as f64).ln();
+        let price = price(system.context.samples() as f64);
         let paid = own.gain - price * own.freedom as f64;
         first = Some(Contender::Unnamed(Nameless {
             unnamed,
@@ -239,10 +239,7 @@ fn wider(beside: &Beside, best: &Scored, others: &[&Scored]) -> Option<String> {
     let holds = |other: &&&Scored| {
         let c = &other.candidate;
         let wider = c.domain == best.candidate.domain && other.freedom > best.freedom;
-        wider && c.name != best.candidate.name && {
-            let together = both(&c.shapes, &best.candidate.shapes);
-            beside.gain(&together).1 == other.freedom
-        }
+        wider && c.name != best.candidate.name && beside.holds(&c.shapes, &best.candidate.shapes)
     };
     others
         .iter()

@@ -18,6 +18,7 @@ use crate::repair::{Repaired, repair};
 use crate::score::KINDS;
 use crate::select::select;
 use crate::selection::{Accepted, Selection, Unnamed};
+use crate::statistics;
 
 /// Most times that a recording is looked at anew.
 const ROUNDS: usize = 10;
@@ -171,7 +172,7 @@ fn whole(
     // Beside flicker noise, names have to be worth their numbers.
     let likelihood = |d: &Diagnosis| flicker::likelihood_of(&d.context, &d.residuals[1].0);
     let n = other.context.samples() as f64;
-    let price = 0.5 * n.ln() * numbers as f64 + KINDS.ln();
+    let price = statistics::price(n) * numbers as f64 + KINDS.ln();
     let worth = match (likelihood(&other), likelihood(&found)) {
         (Some(with), Some(without)) => with - without > price,
         _ => false,

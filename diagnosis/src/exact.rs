@@ -15,6 +15,7 @@ use crate::model::{Fit, System, above_motion, atoms_of};
 use crate::select::begin;
 use crate::selection::Accepted;
 use crate::spline::Spline;
+use crate::statistics::price;
 use crate::sweep::Samples;
 
 /// Gain in log-likelihood from which on inner numbers can be fitted.
@@ -271,7 +272,7 @@ fn settled(
         let found = begin(&mut system, &catalogue, carried);
         score = system.halves(&found.fit.shapes).log_likelihood(&found.fit);
         // Free numbers and trials are paid for.
-        let price = (context.samples() as f64).ln() / 2.0;
+        let price = price(context.samples() as f64);
         let paid = |a: &Accepted| price * a.x.len() as f64 + a.candidate.trials.ln();
         score -= found.accepted.iter().map(paid).sum::<f64>();
         let Some(next) = found.again.into_iter().next() else {

@@ -3,7 +3,7 @@
 use nonius_calibration::{Method, Options, calibrate};
 use nonius_recording::Recording;
 
-use crate::checks::{Checked, ninth};
+use crate::checks::{Checked, ninth, repeats};
 use crate::context::{against, unwrapped};
 
 /// Samples on either side of a jump that are compared, and the order of the curve through them; on slow axes more of them
@@ -179,27 +179,24 @@ pub(crate) fn jumps(recording: &Recording, checked: &Checked) -> Vec<(usize, usi
     let reference = recording.reference_rad.clone().map(unwrapped);
     let apart = reference.as_ref().map(|r| against(&angle, r));
     let mut found: Vec<(usize, usize)> = vec![];
-    let same = |k: usize| {
-        recording.cos[k] == recording.cos[k - 1] && recording.sin[k] == recording.sin[k - 1]
-    };
     // A sample that repeats the one before may stand in the place of another: none is missing then.
-    let repeats = |look: &Look, jump: &Jump| {
+    let replaced = |look: &Look, jump: &Jump| {
         let beside = [jump.before - 1, jump.before];
         beside
             .into_iter()
-            .any(|one| same(one) && look.is_one_sample(jump, one))
+            .any(|one| repeats(recording, one) && look.is_one_sample(jump, one))
     };
     for (side, order) in SIDES {
         if angle.len() < 32 * side {
             break;
         }
         let look = Look::new(&angle, side, order);
-        let far = look.far().into_iter().filter(|j| !repeats(&look, j));
+        let far = look.far().into_iter().filter(|j| !replaced(&look, j));
         found.extend(whole(&look, far.collect(), checked, &found));
         if let Some((reference, apart)) = reference.as_ref().zip(apart.as_ref()) {
             let exact = Look::new(reference, side, order);
             let far = exact.far().into_iter();
-            let far = far.filter(|j| together(apart, j) && !repeats(&exact, j));
+            let far = far.filter(|j| together(apart, j) && !replaced(&exact, j));
             found.extend(whole(&exact, far.collect(), checked, &found));
         }
     }

@@ -8,8 +8,8 @@ use crate::causes::Catalogue;
 use crate::library::Shape;
 use crate::model::{Fit, System};
 use crate::score::score;
-use crate::select::both;
 use crate::selection::{Accepted, Selection};
+use crate::statistics::price;
 
 /// Puts the simpler cause in the place of each wider one that holds it and explains no more.
 pub(crate) fn simpler(system: &System, catalogue: &Catalogue, found: &mut Selection) {
@@ -38,21 +38,21 @@ pub(crate) fn simpler(system: &System, catalogue: &Catalogue, found: &mut Select
 
 /// The fit with a simpler cause in the place of a wide one, if that holds it and explains no more.
 fn swapped(system: &System, found: &Selection, wide: &Accepted, simple: &Candidate) -> Option<Fit> {
-    let mut shapes: Vec<Shape> = found.fit.shapes.clone();
-    shapes.drain(wide.range());
+    let mut others: Vec<Shape> = found.fit.shapes.clone();
+    others.drain(wide.range());
+    let beside = Beside::new(&system.total, &others);
     // It has to be one that can be.
-    score(&Beside::new(&system.total, &shapes), simple.clone())?;
-    shapes = found.fit.shapes.clone();
+    score(&beside, simple.clone())?;
+    if !beside.holds(&wide.candidate.shapes, &simple.shapes) {
+        return None;
+    }
+    let mut shapes = found.fit.shapes.clone();
     shapes.splice(wide.range(), simple.shapes.iter().cloned());
     let fit = system.fit(shapes);
     let samples: f64 = system.context.weight.iter().sum();
     let fewer = wide.candidate.shapes.len() - simple.shapes.len();
-    let price = 0.5 * samples.max(1.0).ln() * fewer as f64;
-    if found.fit.solution.gain() - fit.solution.gain() > price {
-        return None;
-    }
-    let together = system.fit(both(&found.fit.shapes, &simple.shapes));
-    (together.solution.rank == found.fit.solution.rank).then_some(fit)
+    let price = price(samples.max(1.0)) * fewer as f64;
+    (found.fit.solution.gain() - fit.solution.gain() <= price).then_some(fit)
 }
 
 fn replace(found: &mut Selection, i: usize, candidate: Candidate, fit: Fit) {

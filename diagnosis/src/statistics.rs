@@ -19,6 +19,11 @@ pub(crate) fn after_trials(log_p: f64, trials: f64) -> f64 {
     (log_p + trials.max(1.0).ln()).min(0.0)
 }
 
+/// Log-likelihood that a free number has to be worth among so many samples (Bayesian information criterion).
+pub(crate) fn price(samples: f64) -> f64 {
+    0.5 * samples.ln()
+}
+
 #[cfg(test)]
 mod tests {
     use super::log_tail;

@@ -10,6 +10,7 @@ use crate::context::Context;
 use crate::generic::hat;
 use crate::pair::PairSums;
 use crate::solve::Normal;
+use crate::statistics::price;
 
 /// Stretches of the recording between which a step may stand.
 const STRETCHES: usize = 200;
@@ -66,7 +67,7 @@ pub(crate) fn instead(
         return None;
     }
     // Of a number.
-    let price = 0.5 * (radial.len() as f64).ln();
+    let price = price(radial.len() as f64);
     let (mut lines, mut steps) = (f64::MIN, f64::MIN);
     for change in changes {
         let changing = Changing {

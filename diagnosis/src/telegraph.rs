@@ -6,6 +6,7 @@
 
 use crate::context::Context;
 use crate::pair::PairSums;
+use crate::statistics::price;
 
 /// Most samples that are looked at.
 const ENOUGH: usize = 60_000;
@@ -43,7 +44,7 @@ pub(crate) fn two_levels(context: &Context, radial: &[f64]) -> Option<TwoLevels>
         return None;
     }
     let of_white = -0.5 * n as f64 * (white.ln() + 1.0);
-    let price = 0.5 * FREEDOM * (n as f64).ln();
+    let price = FREEDOM * price(n as f64);
     let (likelihood, chain) = STRETCHES
         .into_iter()
         .filter_map(|length| Chain::start(context, part, length, white))

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use nonius_recording::Recording;
 
-use crate::checks::{Checked, ninth};
+use crate::checks::{Checked, ninth, repeats};
 use crate::finding::{Finding, Parameter, Place};
 use crate::jumps::jumps;
 
@@ -88,9 +88,9 @@ impl Channel<'_> {
     }
 }
 
-/// How often the reference repeats itself about a sample where the channels, which are the `same`, do not, if it repeats
-/// itself there: the more seldom, the more it says. One that goes on says nothing.
-fn repeats_alone(recording: &Recording, same: impl Fn(usize) -> bool) -> impl Fn(usize) -> f64 {
+/// How often the reference repeats itself about a sample where the channels do not, if it repeats itself there: the more
+/// seldom, the more it says. One that goes on says nothing.
+fn repeats_alone(recording: &Recording) -> impl Fn(usize) -> f64 + use<> {
     /// Samples on either side.
     const ABOUT: usize = 2000;
     let n = recording.samples();
@@ -102,7 +102,7 @@ fn repeats_alone(recording: &Recording, same: impl Fn(usize) -> bool) -> impl Fn
     // How many are alone up to each sample.
     let mut alone = vec![0];
     for k in 0..n {
-        let one = k > 0 && with_it.get(k) == Some(&true) && !same(k);
+        let one = k > 0 && with_it.get(k) == Some(&true) && !repeats(recording, k);
         alone.push(alone[k] + usize::from(one));
     }
     move |k| {
@@ -117,9 +117,7 @@ fn repeats_alone(recording: &Recording, same: impl Fn(usize) -> bool) -> impl Fn
 /// Samples that repeat the one before while the scale moves.
 pub(crate) fn repeated(recording: &Recording, checked: &mut Checked) {
     let n = recording.samples();
-    let same = |k: usize| {
-        recording.cos[k] == recording.cos[k - 1] && recording.sin[k] == recording.sin[k - 1]
-    };
+    let same = |k: usize| repeats(recording, k);
     let adc = recording.metadata.adc;
     let channels = [(&recording.cos, adc.cos.lsb), (&recording.sin, adc.sin.lsb)];
     let channels = channels.map(|(v, lsb)| Channel {
@@ -128,7 +126,7 @@ pub(crate) fn repeated(recording: &Recording, checked: &mut Checked) {
         noise: noise(v),
         uneven: uneven(v),
     });
-    let of_reference = repeats_alone(recording, same);
+    let of_reference = repeats_alone(recording);
     let chance = |k: usize| -> f64 {
         let of_channels: f64 = channels.iter().map(|c| c.chance(k)).product();
         of_channels * of_reference(k)

@@ -49,19 +49,17 @@ fn slow(
 /// frequency, the angle is turned so far that half of what the radius loses is second order.
 fn high_pass(sample_rate: f64) -> impl Fn(f64, &mut Library) -> Vec<Shape> + 'static {
     move |corner, library| {
+        let corner: f64 = f64::max(corner, 1e-300);
         let rate = (TAU * corner / sample_rate).clamp(0.0, 0.5);
         let state: RefCell<(usize, Complex<f64>)> = RefCell::default();
         let mut shapes = vec![library.pair(move |block: &Block, c, s| {
-            let lost = slow(block, rate, corner.max(1e-300), &state);
+            let lost = slow(block, rate, corner, &state);
             for (k, lost) in lost.into_iter().enumerate() {
                 let (radius, angle) = (1.0 - lost).to_polar();
                 // Where hardly anything is left, its angle says nothing.
                 let change = Complex::new(radius - 1.0, angle * (2.0 * radius).min(1.0));
-                let change = change * Complex::new(block.cos[k], block.sin[k]);
-                (c[k], s[k]) = (
-                    change.re / corner.max(1e-300),
-                    change.im / corner.max(1e-300),
-                );
+                let change = change * Complex::new(block.cos[k], block.sin[k]) / corner;
+                (c[k], s[k]) = (change.re, change.im);
             }
         })];
         // The charge of either capacitor when the recording begins is anything; it leaks away.

@@ -2,6 +2,12 @@
 
 use crate::harness::{Case, NOISE, PLAIN, Rows, damaged, finds, names, near, shows, shows_in};
 
+/// Four times as noisy.
+const NOISY: Case = Case {
+    noise: |_, _, _, n| 4.0 * NOISE * n[0],
+    ..PLAIN
+};
+
 /// How far the scale moves from sample to sample, radians.
 fn moves(rows: &Rows, k: usize) -> f64 {
     (rows[k + 1][3] - rows[k - 1][3]).abs() / 2.0
@@ -47,11 +53,7 @@ fn a_glitch_beyond_every_other_value() {
 /// Even where the scale moves by little more than the noise from sample to sample: chance hardly brings both codes back.
 #[test]
 fn samples_repeated_in_noise() {
-    let noisy = Case {
-        noise: |_, _, _, n| 4.0 * NOISE * n[0],
-        ..PLAIN
-    };
-    shows_in(&noisy, "repeated_samples", |rows| {
+    shows_in(&NOISY, "repeated_samples", |rows| {
         // Where it moves by six times the noise, not by more.
         let fast: Vec<usize> = (1000..19_000)
             .step_by(700)
@@ -69,49 +71,35 @@ fn samples_repeated_in_noise() {
 /// The same of samples that were put in, which make all that follows late.
 #[test]
 fn samples_put_in_in_noise() {
-    let noisy = Case {
-        noise: |_, _, _, n| 4.0 * NOISE * n[0],
-        ..PLAIN
-    };
-    shows_in(&noisy, "repeated_samples", |rows| {
-        let mut fast: Vec<usize> = (1000..19_000)
-            .step_by(700)
-            .filter(|k| (0.025..0.03).contains(&moves(rows, *k)))
-            .collect();
-        assert!(fast.len() > 2);
-        while let Some(k) = fast.pop() {
-            let again = rows[k - 1];
-            rows.insert(k, again);
-        }
-        at_even_times(rows);
-    });
+    shows_in(&NOISY, "repeated_samples", |rows| put_in(rows, 0.025..0.03));
 }
 
-/// Rows that were put in where the scale moves by little more than the noise.
-fn put_in_slowly(rows: &mut Rows) {
-    let mut slow: Vec<usize> = (1000..19_000)
+/// Puts rows in where the scale moves by so much.
+fn put_in(rows: &mut Rows, moving: std::ops::Range<f64>) {
+    let mut places: Vec<usize> = (1000..19_000)
         .step_by(700)
-        .filter(|k| (0.008..0.02).contains(&moves(rows, *k)))
+        .filter(|k| moving.contains(&moves(rows, *k)))
         .collect();
-    assert!(slow.len() > 2);
-    while let Some(k) = slow.pop() {
+    assert!(places.len() > 2);
+    while let Some(k) = places.pop() {
         let again = rows[k - 1];
         rows.insert(k, again);
     }
     at_even_times(rows);
 }
 
+/// The same by little more than the noise.
+fn put_in_slowly(rows: &mut Rows) {
+    put_in(rows, 0.008..0.02);
+}
+
 /// Where noise could have brought the codes back, the reference tells: it hardly ever repeats itself without them.
 #[test]
 fn samples_put_in_that_a_reference_shows() {
-    let noisy = Case {
-        noise: |_, _, _, n| 4.0 * NOISE * n[0],
-        ..PLAIN
-    };
-    assert_eq!(names(&damaged(&noisy, put_in_slowly)), [""; 0]);
+    assert_eq!(names(&damaged(&NOISY, put_in_slowly)), [""; 0]);
     let with_reference = Case {
         reference: true,
-        ..noisy
+        ..NOISY
     };
     shows_in(&with_reference, "repeated_samples", put_in_slowly);
 }
@@ -145,14 +133,10 @@ fn lost_in_noise(rows: &mut Rows) {
 
 #[test]
 fn a_lost_sample_that_a_reference_shows() {
-    let noisy = Case {
-        noise: |_, _, _, n| 4.0 * NOISE * n[0],
-        ..PLAIN
-    };
-    assert_eq!(names(&damaged(&noisy, lost_in_noise)), [""; 0]);
+    assert_eq!(names(&damaged(&NOISY, lost_in_noise)), [""; 0]);
     let with_reference = Case {
         reference: true,
-        ..noisy
+        ..NOISY
     };
     shows_in(&with_reference, "dropped_samples", lost_in_noise);
 }
