@@ -2,7 +2,7 @@
 
 /// Order of the prediction: enough for a few broad resonances of an axis, too short to swallow a line.
 pub(crate) const ORDER: usize = 24;
-const _: () = assert!(ORDER.is_multiple_of(4), "they are taken off by fours");
+const _: () = assert!(ORDER.is_multiple_of(8), "they are taken off by eights");
 /// Reflections below so many of their standard errors are those of white noise.
 const WHITE: f64 = 4.5;
 /// Samples of a spectrum; several of them are averaged.
@@ -117,16 +117,27 @@ impl Whitener {
         for (from, to) in plain.chunks(stride).zip(white.chunks_mut(stride)) {
             let to = &mut to[ORDER..ORDER + samples];
             to.copy_from_slice(&from[ORDER..ORDER + samples]);
-            // Several at once: each sample is read and written less often.
-            let (groups, _) = self.coefficients.as_chunks::<4>();
-            for (group, i) in groups.iter().zip(0..) {
-                let [a, b, c, d] = *group;
-                let past = |j: usize| from[ORDER - 1 - 4 * i - j..].iter();
-                let pasts = past(0).zip(past(1)).zip(past(2)).zip(past(3));
-                for (t, (((p, q), r), s)) in to.iter_mut().zip(pasts) {
-                    *t = *t - a * p - b * q - c * r - d * s;
-                }
+            predicted_off(&self.coefficients, from, to);
+        }
+    }
+}
+
+/// Takes off values what their past predicts; the past begins `ORDER` values before them. For the widest registers that the
+/// processor has: a sixth of a diagnosis is spent here.
+#[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
+fn predicted_off(coefficients: &[f64], past: &[f64], values: &mut [f64]) {
+    // Several at once: each sample is read and written less often.
+    let (groups, _) = coefficients.as_chunks::<8>();
+    for (group, i) in groups.iter().zip(0..) {
+        let start = ORDER - 8 * i - 8;
+        // The past of value k, the oldest of eight first.
+        let past = &past[start..start + 7 + values.len()];
+        for (t, past) in values.iter_mut().zip(past.windows(8)) {
+            let mut sum = *t;
+            for j in 0..8 {
+                sum -= group[j] * past[7 - j];
             }
+            *t = sum;
         }
     }
 }
