@@ -148,6 +148,8 @@ fn isolated(channels: &[Vec<f64>; 2], which: usize, k: usize) -> bool {
     /// What one sample does to the ones around it, and what a step does.
     const ONE: [f64; 7] = [-1.0, 6.0, -15.0, 20.0, -15.0, 6.0, -1.0];
     const STEP: [f64; 6] = [-1.0, 5.0, -10.0, 10.0, -5.0, 1.0];
+    /// A step looks like one sample by 0.917; one whose next rings back by four tenths is as much like either.
+    const AS_MUCH: f64 = 0.96;
     let off = &channels[which];
     if off[k].abs() < off[k - 1].abs().max(off[k + 1].abs()) {
         return false;
@@ -163,7 +165,7 @@ fn isolated(channels: &[Vec<f64>; 2], which: usize, k: usize) -> bool {
     };
     let one = like(&ONE, k - REACH);
     let step = like(&STEP, k - REACH).max(like(&STEP, k + 1 - REACH));
-    one > step
+    one > AS_MUCH * step
 }
 
 /// Whether a step of both channels before or after a sample explains clearly more than that the sample is off: of a jump of
