@@ -53,8 +53,8 @@ pub(crate) fn check(recording: &Recording) -> Checked {
                     step: step as i64,
                 })
             };
-            let found = bits_and_steps(name, codes, bits).map(of_channel);
-            digital.extend(found);
+            let found = bits_and_steps(name, codes, bits);
+            digital.extend(found.into_iter().map(of_channel));
         }
     }
     checked.findings.splice(..0, digital);
@@ -73,16 +73,53 @@ fn divisor(mut a: i64, mut b: i64) -> i64 {
     a
 }
 
-/// A bit that never changes while the codes sweep; steps of several codes.
-fn bits_and_steps(channel: &str, codes: &[i64], bits: u32) -> Option<Finding> {
-    let (low, high) = (codes.iter().min()?, codes.iter().max()?);
+/// The steps that codes lie apart, few of them left out: a sample that is wrong by a little holds any code. The sorted codes
+/// without repetition; empty where nothing is to be told.
+fn on_a_grid(codes: &[i64]) -> (i64, Vec<i64>) {
+    /// Share of samples that may lie elsewhere.
+    const ELSEWHERE: f64 = 1e-3;
+    let distinct = |mut codes: Vec<i64>| {
+        codes.sort_unstable();
+        codes.dedup();
+        codes
+    };
+    let steps = |d: &[i64]| d.windows(2).fold(0, |g, w| divisor(g, w[1] - w[0]));
+    let all = distinct(codes.to_vec());
+    let step = steps(&all);
+    let mut apart: Vec<i64> = all.windows(2).map(|w| w[1] - w[0]).collect();
+    if step > 1 || apart.is_empty() {
+        return (step, all);
+    }
+    let middle = apart.len() / 2;
+    let usual = *apart.select_nth_unstable(middle).1;
+    // Between two steps of codes, those few that are wrong hold one.
+    if usual < 4 {
+        return (step, all);
+    }
+    let mut places: Vec<i64> = codes.iter().map(|c| c.rem_euclid(usual)).collect();
+    let middle = places.len() / 2;
+    let place = *places.select_nth_unstable(middle).1;
+    let on: Vec<i64> = (codes.iter().copied())
+        .filter(|c| c.rem_euclid(usual) == place)
+        .collect();
+    if (codes.len() - on.len()) as f64 > ELSEWHERE * codes.len() as f64 {
+        return (step, all);
+    }
+    let on = distinct(on);
+    (steps(&on), on)
+}
+
+/// Bits that never change while the codes sweep; steps of several codes.
+fn bits_and_steps(channel: &str, codes: &[i64], bits: u32) -> Vec<Finding> {
+    let (step, distinct) = on_a_grid(codes);
+    let (Some(low), Some(high)) = (distinct.first(), distinct.last()) else {
+        return vec![];
+    };
     let span = high - low;
     if span < 16 {
-        return None;
+        return vec![];
     }
-    let mut distinct: Vec<i64> = codes.to_vec();
-    distinct.sort_unstable();
-    distinct.dedup();
+    let mut found = vec![];
     let offset = 1i64 << (bits - 1);
     let constant: Vec<u32> = (0..bits)
         .filter(|bit| (2i64 << bit) <= span / 2)
@@ -94,10 +131,9 @@ fn bits_and_steps(channel: &str, codes: &[i64], bits: u32) -> Option<Finding> {
         .collect();
     let lowest: Vec<u32> = (0..bits).take_while(|b| constant.contains(b)).collect();
     // All codes lie a whole number of steps apart: the steps are coarse, or one last bit is stuck.
-    let step = distinct.windows(2).fold(0, |g, w| divisor(g, w[1] - w[0]));
     if distinct.len() >= FEWEST && step > 1 {
-        let bit = step == 2 && constant.len() == 1;
-        return Some(Finding::digital(
+        let bit = step == 2 && lowest.len() == 1;
+        found.push(Finding::digital(
             if bit {
                 "stuck_bit"
             } else {
@@ -111,14 +147,16 @@ fn bits_and_steps(channel: &str, codes: &[i64], bits: u32) -> Option<Finding> {
             format!("the {channel} channel moves over {span} codes in steps of {step} codes"),
         ));
     }
-    let stuck = constant.iter().find(|b| !lowest.contains(b))?;
-    Some(Finding::digital(
-        "stuck_bit",
-        vec![Parameter::exact("bit", f64::from(*stuck), "1")],
-        format!(
-            "bit {stuck} of the {channel} channel never changes while its codes sweep over {span} codes"
-        ),
-    ))
+    if let Some(stuck) = constant.iter().find(|b| !lowest.contains(b)) {
+        found.push(Finding::digital(
+            "stuck_bit",
+            vec![Parameter::exact("bit", f64::from(*stuck), "1")],
+            format!(
+                "bit {stuck} of the {channel} channel never changes while its codes sweep over {span} codes"
+            ),
+        ));
+    }
+    found
 }
 
 /// Samples on either side of the curve through the neighbours.
