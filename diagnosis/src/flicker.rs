@@ -12,8 +12,9 @@ use rustfft::num_complex::Complex;
 
 use crate::context::Context;
 use crate::finding::{Chip, Finding, Gain, Parameter};
+use crate::one_over_f;
 use crate::selection::Unnamed;
-use crate::statistics::{after_trials, log_tail};
+use crate::statistics::{after_trials, log_tail, price};
 use crate::telegraph;
 
 /// Its name.
@@ -32,8 +33,6 @@ const HUM: f64 = 6.0;
 const NEAR: usize = 8;
 /// Share of what any spectrum explains that 1/f has to hold.
 const HOLDS: f64 = 0.9;
-/// Share of what flicker noise explains that two levels in its place may leave to it.
-const LEFT: f64 = 0.1;
 /// Shapes of noise that could have been claimed.
 const TRIALS: f64 = 30.0;
 /// Global probability below which it is shown.
@@ -241,15 +240,14 @@ pub(crate) fn likelihood_of(context: &Context, radial: &[f64]) -> Option<f64> {
     Some(corner(&lines, &bands(&lines)).1)
 }
 
-/// Whether two levels explain more of the radius than flicker noise with a gain in log-likelihood does, and leave no such noise.
-fn jumps(context: &Context, radial: &[f64], gain: f64, slowest: usize) -> bool {
-    let Some(two) = telegraph::two_levels(context, radial).filter(|two| two.gain > gain) else {
-        return false;
-    };
-    let mut lines = spectrum(context, &two.left, slowest);
-    without_hum(&mut lines);
-    let bands = bands(&lines);
-    corner(&lines, &bands).1 - beside(&bands, 0.0).1 < LEFT * gain
+/// Whether two levels explain more of the radius than flicker noise of a corner frequency does.
+fn jumps(context: &Context, radial: &[f64], corner: f64) -> bool {
+    telegraph::gain(context, radial).is_some_and(|two| two > paid(context, radial, corner))
+}
+
+/// Log-likelihood that flicker noise explains of the radius sample by sample, its number paid for.
+fn paid(context: &Context, radial: &[f64], corner: f64) -> f64 {
+    one_over_f::gain(context, radial, corner) - price(radial.len() as f64)
 }
 
 /// Flicker noise in what everything else leaves of the radius.
@@ -260,8 +258,10 @@ pub(crate) fn find(context: &Context, radial: &[f64]) -> Option<Flicker> {
 /// Flicker noise where it explains clearly more than a slow change or steps do, whose log-likelihood, their numbers paid for,
 /// is given: of weak noise hardly more than its slowest parts are seen.
 pub(crate) fn instead(context: &Context, radial: &[f64], change: f64) -> Option<Flicker> {
-    const CLEARLY: f64 = 1.5;
-    find_from(context, radial, 1).filter(|f| !f.jumps && f.gain > CLEARLY * change)
+    const CLEARLY: f64 = 1.1;
+    let found = find_from(context, radial, 1).filter(|f| !f.jumps)?;
+    let gain = paid(context, radial, found.corner);
+    (gain > CLEARLY * change).then_some(found)
 }
 
 /// Flicker noise in a spectrum from so many cycles per recording on.
@@ -303,7 +303,7 @@ fn find_from(context: &Context, radial: &[f64], slowest: usize) -> Option<Flicke
         gain,
         log_p,
         slowest,
-        jumps: jumps(context, radial, gain, slowest),
+        jumps: jumps(context, radial, best.0),
     })
 }
 

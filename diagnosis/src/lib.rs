@@ -26,6 +26,7 @@ mod library;
 mod lines;
 mod model;
 mod noise;
+mod one_over_f;
 mod pair;
 mod part;
 mod repair;

@@ -9,7 +9,7 @@ use crate::pair::PairSums;
 use crate::statistics::price;
 
 /// Most samples that are looked at.
-const ENOUGH: usize = 60_000;
+pub(crate) const ENOUGH: usize = 60_000;
 /// Samples of the stretches whose levels a fit starts from; about as long as it stays.
 const STRETCHES: [usize; 3] = [16, 64, 256];
 /// Steps of a fit.
@@ -27,16 +27,9 @@ struct Chain {
     variance: f64,
 }
 
-/// What two levels make of a radial residual.
-pub(crate) struct TwoLevels {
-    /// Log-likelihood that they explain beyond white noise, their numbers paid for.
-    pub(crate) gain: f64,
-    /// What they leave of the residual.
-    pub(crate) left: Vec<f64>,
-}
-
-/// The best two levels; none where they explain nothing.
-pub(crate) fn two_levels(context: &Context, radial: &[f64]) -> Option<TwoLevels> {
+/// Log-likelihood that the best two levels explain of a radial residual beyond white noise, their numbers paid for; none where
+/// they explain nothing.
+pub(crate) fn gain(context: &Context, radial: &[f64]) -> Option<f64> {
     let n = radial.len().min(ENOUGH);
     let part = &radial[..n];
     let white = part.iter().map(|r| r * r).sum::<f64>() / n.max(1) as f64;
@@ -45,16 +38,13 @@ pub(crate) fn two_levels(context: &Context, radial: &[f64]) -> Option<TwoLevels>
     }
     let of_white = -0.5 * n as f64 * (white.ln() + 1.0);
     let price = FREEDOM * price(n as f64);
-    let (likelihood, chain) = STRETCHES
+    let likelihood = STRETCHES
         .into_iter()
         .filter_map(|length| Chain::start(context, part, length, white))
         .filter_map(|chain| chain.fitted(context, part))
-        .max_by(|a, b| a.0.total_cmp(&b.0))?;
+        .max_by(f64::total_cmp)?;
     let gain = (likelihood - of_white - price) / n as f64 * radial.len() as f64;
-    (gain > 0.0).then(|| TwoLevels {
-        gain,
-        left: chain.step(context, radial).left,
-    })
+    (gain > 0.0).then_some(gain)
 }
 
 /// What a step of a fit says.
@@ -63,8 +53,6 @@ struct Step {
     likelihood: f64,
     /// The chain after it.
     next: Chain,
-    /// What the chain before it leaves.
-    left: Vec<f64>,
 }
 
 impl Chain {
@@ -110,18 +98,16 @@ impl Chain {
         })
     }
 
-    /// The best chain near, and its log-likelihood.
-    fn fitted(self, context: &Context, radial: &[f64]) -> Option<(f64, Self)> {
-        let mut best: Option<(f64, Self)> = None;
+    /// Log-likelihood of the best chain near.
+    fn fitted(self, context: &Context, radial: &[f64]) -> Option<f64> {
+        let mut best: Option<f64> = None;
         let mut now = self;
         for _ in 0..STEPS {
             let step = now.step(context, radial);
             if !step.likelihood.is_finite() {
                 break;
             }
-            if best.as_ref().is_none_or(|b| step.likelihood > b.0) {
-                best = Some((step.likelihood, now));
-            }
+            best = Some(best.map_or(step.likelihood, |b| b.max(step.likelihood)));
             now = step.next;
         }
         best
@@ -158,14 +144,12 @@ impl Chain {
         }
         let (mut sums, mut left, mut stood) = ([PairSums::default(); 2], [0.0; 2], [0.0; 2]);
         let mut back = [1.0, 1.0];
-        let mut off = radial.to_vec();
         for k in (0..n).rev() {
             let (cos, sin, r) = (context.cos[k], context.sin[k], radial[k]);
             let both = [forward[k][0] * back[0], forward[k][1] * back[1]];
             let total = both[0] + both[1];
-            for ((sums, share), [c, d]) in sums.iter_mut().zip(both).zip(self.level) {
+            for (sums, share) in sums.iter_mut().zip(both) {
                 sums.add(cos, sin, r, share / total);
-                off[k] -= share / total * (c * cos + d * sin);
             }
             let Some(before) = k.checked_sub(1).map(|b| forward[b]) else {
                 break;
@@ -198,10 +182,6 @@ impl Chain {
             leave: [rate(0), rate(1)],
             variance: ((power - explained) / n as f64).max(f64::MIN_POSITIVE),
         };
-        Step {
-            likelihood,
-            next,
-            left: off,
-        }
+        Step { likelihood, next }
     }
 }
