@@ -5,7 +5,7 @@
 //! and its image about twice the angle. The spectrum is compared with what white noise and 1/f make of that (Whittle's
 //! likelihood). The name is given only where they hold nine tenths of what a spectrum of any shape explains: correlated
 //! noise, drift and hum are not 1/f. Nor are offsets that jump between two levels, though their spectrum may be: there the
-//! levels explain more than the spectrum does, and leave none of it.
+//! levels explain as much as such noise does, each by its likelihood in time.
 
 use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
@@ -227,7 +227,7 @@ pub(crate) fn gathered(context: &Context, radial: &[f64]) -> Vec<Band> {
     bands(&lines)
 }
 
-/// Log-likelihood of a radial residual as white noise and flicker noise; none of too short a record.
+/// Log-likelihood of a radial residual as white noise and flicker noise, but for a constant; none of too short a record.
 pub(crate) fn likelihood_of(context: &Context, radial: &[f64]) -> Option<f64> {
     if radial.len() < 64 {
         return None;
@@ -237,12 +237,18 @@ pub(crate) fn likelihood_of(context: &Context, radial: &[f64]) -> Option<f64> {
         return None;
     }
     without_hum(&mut lines);
-    Some(corner(&lines, &bands(&lines)).1)
+    let corner = corner(&lines, &bands(&lines)).0;
+    let power: f64 = radial.iter().map(|r| r * r).sum();
+    let white = -0.5 * radial.len() as f64 * power.max(f64::MIN_POSITIVE).ln();
+    Some(white + one_over_f::gain(context, radial, corner))
 }
 
-/// Whether two levels explain more of the radius than flicker noise of a corner frequency does.
+/// Whether two levels explain nearly as much of the radius as flicker noise of a corner frequency does, or more: of noise that
+/// is 1/f they explain half, and of levels that are not quite two, as stray light makes, more than such noise or as much.
 fn jumps(context: &Context, radial: &[f64], corner: f64) -> bool {
-    telegraph::gain(context, radial).is_some_and(|two| two > paid(context, radial, corner))
+    const NEARLY: f64 = 0.75;
+    let two = telegraph::gain(context, radial);
+    two.is_some_and(|two| two > NEARLY * paid(context, radial, corner))
 }
 
 /// Log-likelihood that flicker noise explains of the radius sample by sample, its number paid for.
@@ -325,7 +331,7 @@ impl Flicker {
             return Err(Unnamed {
                 log_p: self.log_p,
                 gain: self.gain,
-                signature: "the noise of the channels rises towards low frequencies; nearest likeness: flicker noise, but two levels between which the offsets jump explain more".into(),
+                signature: "the noise of the channels rises towards low frequencies; nearest likeness: flicker noise, but two levels between which the offsets jump explain nearly as much".into(),
             });
         }
         let [density, error] = self.density;
