@@ -94,6 +94,7 @@ pub(crate) fn spacing(
     let apart = |spacing: f64| (spacing / closer(n as f64, spacing)).max(FINEST);
     let followed = apart(best.1);
     let level = levels_off(&stretches, best.1).map_or(0.0, apart);
+    let level = order_alone(&stretches, followed).unwrap_or(level);
     Spacing {
         followed,
         motion: if level > FARTHER * followed {
@@ -117,6 +118,53 @@ fn levels_off(stretches: &[Stretch], finest: f64) -> Option<f64> {
         spacing /= 2f64.sqrt();
     }
     None
+}
+
+/// The widest spacing, of those wider than `finest`, whose spline leaves nothing but noise beside one order of the revolution:
+/// closer knots would follow that, and hide it.
+fn order_alone(stretches: &[Stretch], finest: f64) -> Option<f64> {
+    /// So many spacings in an octave.
+    const STEPS: i32 = 4;
+    /// Octaves.
+    const FARTHEST: i32 = 5;
+    /// Log-likelihood from which on an order is one.
+    const WORTH: f64 = 30.0;
+    /// Standard deviations of what closer knots explain of noise.
+    const BY_CHANCE: f64 = 2.0;
+    let counting: f64 = stretches.iter().map(|s| s.weight.iter().sum::<f64>()).sum();
+    if stretches.iter().any(|s| s.revolution.is_none()) {
+        return None;
+    }
+    // What knots leave with the order and without, and how many they are.
+    let look = |spacing: f64| {
+        let [mut with, mut without, mut count] = [0.0; 3];
+        for stretch in stretches {
+            let spline = Spline::new(stretch.angle.len(), spacing, stretch.weight);
+            let square = |v: &[f64]| v.iter().map(|r| r * r).sum::<f64>();
+            let left = stretch.without_cycles(&spline);
+            with += square(&strongest(&left).1);
+            without += square(&stretch.without_lines(&left, &spline));
+            count += spline.count() as f64;
+        }
+        (with, without, count)
+    };
+    let likelihood = |more: f64, less: f64| 0.5 * counting * (more / less.max(1e-300)).ln();
+    let (_, closest, most) = look(finest);
+    let mut found = None;
+    for step in 1..=STEPS * FARTHEST {
+        let spacing = finest * 2f64.powf(f64::from(step) / f64::from(STEPS));
+        let (with, without, count) = look(spacing);
+        let fewer = 0.5 * (most - count);
+        let beyond = likelihood(without, closest) - fewer;
+        // Wider ones leave more of the drive.
+        if beyond > BY_CHANCE * fewer.sqrt() {
+            break;
+        }
+        if likelihood(with, without) > WORTH {
+            found = Some(spacing);
+        }
+    }
+    found
 }
 
 /// How much closer than the likelihood asks for. There, what the spline leaves of the motion raises the log-likelihood by
