@@ -2,11 +2,13 @@
 //! that only close knots follow; they would hide a vibration that goes on all the time. Away from the corners, wide knots do;
 //! and without any, where hardly anything but a line needs close ones.
 
+use std::f64::consts::PI;
+
 use crate::causes::VIBRATION;
 use crate::context::Context;
 use crate::diagnose::Diagnosis;
 use crate::finding::Finding;
-use crate::lines::{median, strongest};
+use crate::lines::{median, spectrum, strongest};
 use crate::spline::Spline;
 
 /// A stretch with more than so many times the power of the usual one has a corner in it.
@@ -15,6 +17,8 @@ const CORNER: f64 = 4.0;
 const LOUD: f64 = 0.5;
 /// So many times the power of the rest a line has that needs no corners beside it: it is why the knots are close.
 const ALONE: f64 = 4.0;
+/// So many times what is usual near it in the spectrum a line stands whatever else there is: a resonance of the axis is broad.
+const HIGH: f64 = 150.0;
 /// Cycles of the line between two knots: of a slower one, which such knots follow, the drive itself leaves something.
 const FAST: f64 = 0.6;
 /// Radians rms that may be left: of more, it is the drive that swings.
@@ -127,6 +131,7 @@ impl Angle {
             spacing,
             line,
             loudness: mean(&all) / mean(&left) - 1.0,
+            height: height(&all, line),
             rms: mean(&all).sqrt(),
             knots: apart,
             contrast: mean(&left) / usual,
@@ -149,6 +154,8 @@ struct Look {
     rms: f64,
     /// Its power over that of the rest.
     loudness: f64,
+    /// Its power in the spectrum over what is usual near it.
+    height: f64,
     /// Mean power of the rest over that of the usual stretch.
     contrast: f64,
     /// Which stretches have far more than the usual one, or stand beside such: there the motion has corners.
@@ -164,8 +171,32 @@ impl Look {
         let fast = self.line * self.knots > FAST;
         let small = self.rms < SMALL;
         let beside = self.contrast > CONTRAST && self.loudness > LOUD;
-        (beside || self.loudness > ALONE) && self.share <= MOST && fast && small
+        let alone = self.loudness > ALONE || self.height > HIGH;
+        (beside || alone) && self.share <= MOST && fast && small
     }
+}
+
+/// How high a line stands in the spectrum of values over what is usual near it.
+fn height(values: &[f64], line: f64) -> f64 {
+    /// Lines of the spectrum on either side that are the line's own through the window, and that are near.
+    const OWN: usize = 4;
+    const NEAR: usize = 40;
+    let n = values.len() as f64;
+    let windowed = values.iter().enumerate();
+    let windowed: Vec<f64> = windowed
+        .map(|(k, v)| v * (PI * (k as f64 + 0.5) / n).sin().powi(2))
+        .collect();
+    let (power, length) = spectrum(&windowed);
+    let at = ((line * length as f64).round() as usize).min(power.len() - 1);
+    // A spectrum of values padded to so many times their number has as many lines for one.
+    let each = length / values.len().max(1);
+    let near = |from: usize, to: usize| power.get(from..to.min(power.len())).unwrap_or_default();
+    let below = near(
+        at.saturating_sub(NEAR * each),
+        at.saturating_sub(OWN * each),
+    );
+    let above = near(at + OWN * each, at + NEAR * each);
+    power[at] / median(&[below, above].concat()).max(f64::MIN_POSITIVE)
 }
 
 /// Adds the vibration that only the calm stretches show: at the frequency of the line for which they were looked at.
