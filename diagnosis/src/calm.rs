@@ -1,10 +1,10 @@
 //! The stretches of a recording in which its drive is calm. Where a drive starts, stops and turns back, its angle has corners
-//! that only close knots follow; they would hide a vibration that goes on all the time. Away from the corners, wide knots do;
-//! and without any, where hardly anything but a line needs close ones.
+//! that only close knots follow; they would hide a vibration or cogging that goes on all the time. Away from the corners, wide
+//! knots do; and without any, where hardly anything but that needs close ones.
 
 use std::f64::consts::PI;
 
-use crate::causes::VIBRATION;
+use crate::causes::{COGGING, VIBRATION, highest_order};
 use crate::context::Context;
 use crate::diagnose::Diagnosis;
 use crate::finding::Finding;
@@ -19,6 +19,8 @@ const LOUD: f64 = 0.5;
 const ALONE: f64 = 4.0;
 /// So many times what is usual near it in the spectrum a line stands whatever else there is: a resonance of the axis is broad.
 const HIGH: f64 = 150.0;
+/// The same of an order of the revolution: what a drive leaves stands at no one of them.
+const HIGH_ORDER: f64 = 60.0;
 /// Cycles of the line between two knots: of a slower one, which such knots follow, the drive itself leaves something.
 const FAST: f64 = 0.6;
 /// Radians rms that may be left: of more, it is the drive that swings.
@@ -46,8 +48,37 @@ pub(crate) struct Calm {
     corners: Vec<bool>,
     /// Samples between the knots that do elsewhere.
     spacing: f64,
-    /// Frequency of the line that stands there.
-    pub(crate) hertz: f64,
+    /// What stands there.
+    pub(crate) mark: Mark,
+}
+
+/// What stands out of a motion.
+#[derive(Clone, Copy)]
+pub(crate) enum Mark {
+    /// A line, of that frequency: hertz, or cycles per mean where means are looked at.
+    Line(f64),
+    /// An order of the revolution.
+    Order(usize),
+}
+
+impl Mark {
+    /// Whether another is the same but for what is seen of it.
+    fn is(self, other: Self) -> bool {
+        match (self, other) {
+            (Self::Line(a), Self::Line(b)) => (a / b - 1.0).abs() < SAME,
+            (Self::Order(a), Self::Order(b)) => a == b,
+            _ => false,
+        }
+    }
+
+    /// What a finding says that it is, if it says so.
+    fn of(finding: &Finding) -> Option<Self> {
+        match finding.cause.as_str() {
+            VIBRATION => finding.parameter("frequency_hz").map(Self::Line),
+            COGGING => finding.parameter("order").map(|o| Self::Order(o as usize)),
+            _ => None,
+        }
+    }
 }
 
 impl Calm {
@@ -58,18 +89,18 @@ impl Calm {
         let angle = Angle::new(context, ((motion / SHORT) as usize).max(1));
         let spacings = (0..).map(|i| widest / 2f64.powf(0.5 * f64::from(i)));
         let spacings = spacings.take_while(|spacing| *spacing > WIDER * motion);
-        let looks: Vec<Look> = spacings.map(|spacing| angle.look(spacing)).collect();
-        // A line stands where it is whatever the knots; what is left of the drive does not.
-        let same = |pair: &[Look]| (pair[0].line / pair[1].line - 1.0).abs() < SAME;
-        let pairs = looks.windows(2).filter(|pair| same(pair));
-        let each = pairs.flat_map(|pair| pair.iter().map(|look| (look, pair[1].spacing)));
-        let told = each.filter(|(look, _)| look.tells());
-        let (best, spacing) = told.max_by(|a, b| a.0.contrast.total_cmp(&b.0.contrast))?;
+        let looks: Vec<Looks> = spacings.map(|spacing| angle.look(spacing)).collect();
+        let lines: Vec<&Look> = looks.iter().map(|l| &l.line).collect();
+        let orders: Vec<&Look> = looks.iter().filter_map(|l| l.order.as_ref()).collect();
+        let (best, spacing) = told(&lines).or_else(|| told(&orders))?;
         let corner = |k: usize| best.corners[k / angle.every / best.length];
         Some(Self {
             corners: (0..context.samples()).map(corner).collect(),
             spacing,
-            hertz: best.line / angle.every as f64 * context.rate,
+            mark: match best.mark {
+                Mark::Line(line) => Mark::Line(line / angle.every as f64 * context.rate),
+                order => order,
+            },
         })
     }
 
@@ -93,66 +124,94 @@ impl Calm {
     }
 }
 
+/// The look that tells most, and how far apart knots may be then. What stands out does so whatever the knots; what is left of
+/// the drive does not.
+fn told<'a>(looks: &[&'a Look]) -> Option<(&'a Look, f64)> {
+    let same = |pair: &&[&Look]| pair[0].mark.is(pair[1].mark);
+    let pairs = looks.windows(2).filter(same);
+    let each = pairs.flat_map(|pair| pair.iter().map(|look| (*look, pair[1].spacing)));
+    let told = each.filter(|(look, _)| look.tells());
+    let best = |look: &Look| match look.mark {
+        Mark::Line(_) => look.contrast,
+        Mark::Order(_) => look.height,
+    };
+    told.max_by(|a, b| best(a.0).total_cmp(&best(b.0)))
+}
+
 /// The angle, mean by mean of so many samples.
 struct Angle {
     every: usize,
     angle: Vec<f64>,
     weight: Vec<f64>,
+    /// Periods per revolution, and the angle of the revolution in the middle of each mean.
+    revolution: Option<(u32, Vec<f64>)>,
 }
 
 impl Angle {
     fn new(context: &Context, every: usize) -> Self {
         let mean = |of: &[f64]| of.iter().sum::<f64>() / of.len() as f64;
         let means = |of: &[f64]| of.chunks(every).map(mean).collect();
+        let middle = |phi: &Vec<f64>| -> Vec<f64> {
+            let chunks = phi.chunks(every);
+            chunks.map(|chunk| chunk[chunk.len() / 2]).collect()
+        };
+        let revolution = context.periods_per_revolution.zip(context.phi.as_ref());
         Self {
             every,
             angle: means(&context.measured),
             weight: means(&context.weight),
+            revolution: revolution.map(|(per, phi)| (per, middle(phi))),
         }
     }
 
     /// What a spline with such knots leaves.
-    fn look(&self, spacing: f64) -> Look {
+    fn look(&self, spacing: f64) -> Looks {
         let apart = spacing / self.every as f64;
         let spline = Spline::new(self.angle.len(), apart, &self.weight);
-        let left = spline.residual(&self.angle, &self.weight);
-        let all = left;
+        let all = spline.residual(&self.angle, &self.weight);
         let (line, left) = strongest(&all);
-        let length = (apart / 2.0).ceil() as usize;
-        let mean = |of: &[f64]| of.iter().map(|v| v * v).sum::<f64>() / of.len() as f64;
-        let power: Vec<f64> = left.chunks(length).map(mean).collect();
-        let usual = median(&power).max(f64::MIN_POSITIVE);
-        // A corner is seen a knot's distance away.
-        let near = |i: usize| i.saturating_sub(2)..(i + 3).min(power.len());
-        let corners: Vec<bool> = (0..power.len())
-            .map(|i| power[near(i)].iter().any(|p| *p > CORNER * usual))
-            .collect();
-        Look {
+        let of_line = Look::new(
             spacing,
-            line,
-            loudness: mean(&all) / mean(&left) - 1.0,
-            height: height(&all, line),
-            rms: mean(&all).sqrt(),
-            knots: apart,
-            contrast: mean(&left) / usual,
-            share: corners.iter().filter(|c| **c).count() as f64 / corners.len() as f64,
-            corners,
-            length,
+            apart,
+            &all,
+            &left,
+            Mark::Line(line),
+            height(&all, line),
+        );
+        let of_order = self.revolution.as_ref().and_then(|(per, phi)| {
+            let (order, height, left) = highest_order(*per, phi, &all)?;
+            Some(Look::new(
+                spacing,
+                apart,
+                &all,
+                &left,
+                Mark::Order(order),
+                height,
+            ))
+        });
+        Looks {
+            line: of_line,
+            order: of_order,
         }
     }
 }
 
-/// What a spline leaves.
+/// What a spline leaves, and the strongest line and order of the revolution in it.
+struct Looks {
+    line: Look,
+    order: Option<Look>,
+}
+
+/// What a spline leaves, and what stands out of it.
 struct Look {
     /// Samples between its knots.
     spacing: f64,
-    /// Frequency of the strongest line, in cycles per mean.
-    line: f64,
+    mark: Mark,
     /// Means between the knots.
     knots: f64,
     /// Rms of all that is left, radians.
     rms: f64,
-    /// Its power over that of the rest.
+    /// Power of what stands out over that of the rest.
     loudness: f64,
     /// Its power in the spectrum over what is usual near it.
     height: f64,
@@ -166,13 +225,43 @@ struct Look {
 }
 
 impl Look {
-    /// Whether there are corners, not too many, and a line beside them; or hardly anything but a line.
+    /// Of all that is left by knots `spacing` samples and `apart` means apart, and of what is left without the mark.
+    fn new(spacing: f64, apart: f64, all: &[f64], left: &[f64], mark: Mark, height: f64) -> Self {
+        let length = (apart / 2.0).ceil() as usize;
+        let mean = |of: &[f64]| of.iter().map(|v| v * v).sum::<f64>() / of.len() as f64;
+        let power: Vec<f64> = left.chunks(length).map(mean).collect();
+        let usual = median(&power).max(f64::MIN_POSITIVE);
+        // A corner is seen a knot's distance away.
+        let near = |i: usize| i.saturating_sub(2)..(i + 3).min(power.len());
+        let corners: Vec<bool> = (0..power.len())
+            .map(|i| power[near(i)].iter().any(|p| *p > CORNER * usual))
+            .collect();
+        Self {
+            spacing,
+            mark,
+            loudness: mean(all) / mean(left) - 1.0,
+            height,
+            rms: mean(all).sqrt(),
+            knots: apart,
+            contrast: mean(left) / usual,
+            share: corners.iter().filter(|c| **c).count() as f64 / corners.len() as f64,
+            corners,
+            length,
+        }
+    }
+
+    /// Whether there are corners, not too many, and a line beside them, or hardly anything but a line; or whether a line or an
+    /// order of the revolution stands high above the rest of the spectrum.
     fn tells(&self) -> bool {
-        let fast = self.line * self.knots > FAST;
-        let small = self.rms < SMALL;
-        let beside = self.contrast > CONTRAST && self.loudness > LOUD;
-        let alone = self.loudness > ALONE || self.height > HIGH;
-        (beside || alone) && self.share <= MOST && fast && small
+        let shows = match self.mark {
+            Mark::Line(line) => {
+                let beside = self.contrast > CONTRAST && self.loudness > LOUD;
+                let alone = self.loudness > ALONE || self.height > HIGH;
+                (beside || alone) && line * self.knots > FAST
+            }
+            Mark::Order(_) => self.height > HIGH_ORDER,
+        };
+        shows && self.share <= MOST && self.rms < SMALL
     }
 }
 
@@ -199,17 +288,17 @@ fn height(values: &[f64], line: f64) -> f64 {
     power[at] / median(&[below, above].concat()).max(f64::MIN_POSITIVE)
 }
 
-/// Adds the vibration that only the calm stretches show: at the frequency of the line for which they were looked at.
-pub(crate) fn beside(mut found: Diagnosis, calm: Diagnosis, hertz: f64) -> Diagnosis {
-    let known = |f: &Finding| f.cause == VIBRATION;
-    if found.findings.iter().any(known) {
+/// Adds the vibration or cogging that only the calm stretches show: what they were looked at for.
+pub(crate) fn beside(mut found: Diagnosis, calm: Diagnosis, mark: Mark) -> Diagnosis {
+    let one = |f: &Finding| Mark::of(f).is_some_and(|own| own.is(mark));
+    let kind = match mark {
+        Mark::Line(_) => VIBRATION,
+        Mark::Order(_) => COGGING,
+    };
+    if found.findings.iter().any(|f| f.cause == kind) {
         return found;
     }
-    let near = |f: &Finding| {
-        let own = f.parameter("frequency_hz");
-        known(f) && own.is_some_and(|own| (own / hertz - 1.0).abs() < SAME)
-    };
-    if let Some(mut finding) = calm.findings.into_iter().find(near) {
+    if let Some(mut finding) = calm.findings.into_iter().find(one) {
         finding.evidence +=
             ", where the motion is followed with wider knots, away from its corners";
         finding.gain = found.unchanged();

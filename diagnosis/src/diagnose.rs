@@ -140,10 +140,10 @@ pub fn diagnose(recording: &Recording) -> Result<Diagnosis, ContextError> {
         return Ok(found);
     };
     let reference = repaired.recording.reference_rad.as_deref();
-    let hertz = calm.hertz;
+    let mark = calm.mark;
     let calm = calm.without_corners(context()?, reference);
     let (calm, _) = search(calm, &checked, &repaired, true);
-    Ok(calm::beside(found, calm, hertz))
+    Ok(calm::beside(found, calm, mark))
 }
 
 /// Diagnoses all of a recording.

@@ -22,7 +22,7 @@ use crate::model::{Residual, Weighed};
 use crate::trig::{Trig, rotated};
 
 pub(crate) use line::wave as line_wave;
-pub(crate) use place::{strongest_order, without_cogging};
+pub(crate) use place::{highest_order, strongest_order, without_cogging};
 pub(crate) use speed::{varies as speed_varies, varies_much as speed_varies_much};
 
 /// Highest order of the scale period.
@@ -30,6 +30,8 @@ pub(crate) const ORDERS: usize = 8;
 
 /// Offsets with the direction of motion.
 pub(crate) const HYSTERESIS: &str = "hysteresis";
+/// Real motion that goes with the revolution.
+pub(crate) const COGGING: &str = "cogging";
 /// Real motion at a fixed frequency.
 pub(crate) const VIBRATION: &str = "vibration";
 

@@ -6,14 +6,16 @@ use std::rc::Rc;
 use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
 
+use super::COGGING;
 use super::revolution::{harmonic, turns};
 use crate::block::Block;
 use crate::cause::{Candidate, Domain, Exact, Make, Sign, each};
 use crate::context::Context;
 use crate::finding::{Chip, Parameter};
 use crate::library::{Library, Shape, Use};
+use crate::lines::median;
 use crate::model::{Residual, Weighed};
-use crate::solve::Normal;
+use crate::solve::{Normal, without};
 
 const PLACES: usize = 72;
 /// Times that a place has to be passed on average for a dip to come every time.
@@ -89,6 +91,27 @@ pub(crate) fn strongest_order(per: u32, phi: &[f64], values: &[f64]) -> Option<u
         .max_by(|a, b| power[*a].total_cmp(&power[*b]))
 }
 
+/// The order of the revolution that is strongest, how far it stands above what is usual near it, and the values without it.
+pub(crate) fn highest_order(
+    per: u32,
+    phi: &[f64],
+    values: &[f64],
+) -> Option<(usize, f64, Vec<f64>)> {
+    /// Orders up to so many times its own are near, and up to so many.
+    const NEAR: usize = 4;
+    const LEAST: usize = 32;
+    if turns(phi) < 0.9 {
+        return None;
+    }
+    let order = strongest_order(per, phi, values)?;
+    let power = orders(phi, values, (NEAR * order).max(LEAST));
+    let usual = median(&power[1..]).max(f64::MIN_POSITIVE);
+    let wave =
+        |f: fn(f64) -> f64| -> Vec<f64> { phi.iter().map(|p| f(order as f64 * p)).collect() };
+    let left = without(values, &[wave(f64::cos), wave(f64::sin)]);
+    Some((order, power[order] / usual, left))
+}
+
 /// Values without the order of the revolution that is strongest in them, judged by a part of a long recording. A prediction
 /// from the past would take it for the colour of the noise, and swallow it.
 pub(crate) fn without_cogging(context: &Context, mut values: Vec<f64>) -> Vec<f64> {
@@ -161,7 +184,7 @@ fn cogging(
                 p[1].value
             )
         }),
-        ..Candidate::new("cogging", Domain::Motion, shapes)
+        ..Candidate::new(COGGING, Domain::Motion, shapes)
     })
 }
 
