@@ -23,6 +23,9 @@ const KNOTS: [usize; 2] = [8, 6];
 const ORDERS: [f64; 3] = [1.0, 2.0, 4.0];
 /// Probability below which the highest line of a spectrum is no noise.
 const A_LINE: f64 = 1e-4;
+/// Share of what jitter explains that such a line has to explain to be the reason for it: what is left of a shaking axis
+/// has weak ones.
+const MUCH: f64 = 0.2;
 /// Equal noise of either row, unequal noise of the channels.
 const BASE: usize = 3;
 
@@ -220,7 +223,8 @@ fn refusal(
         let (power, _) = lines::spectrum(&time);
         let mean = power.iter().sum::<f64>() / power.len() as f64;
         let highest = power.iter().copied().fold(0.0, f64::max);
-        if n as f64 * (-highest / mean).exp() < A_LINE {
+        let line = highest / mean;
+        if n as f64 * (-line).exp() < A_LINE && line > MUCH * gain {
             return Some(format!(
                 "the sampling time wanders; nearest likeness: {name}, but a line stands in its spectrum"
             ));
