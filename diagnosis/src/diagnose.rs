@@ -20,6 +20,8 @@ use crate::select::select;
 use crate::selection::{Accepted, Selection, Unnamed};
 use crate::statistics;
 
+/// Noise of a kind that explains so many times as much as what looks like no cause is the reason for that.
+const FAR_LOUDER: f64 = 20.0;
 /// Most times that a recording is looked at anew.
 const ROUNDS: usize = 10;
 
@@ -265,20 +267,33 @@ fn conclude(
     } else {
         (vec![], vec![])
     };
+    // Noise that grows with the speed makes shapes of the speed explain more of it than they do by chance.
+    let mut rest = selection.left.as_slice();
+    let most = rest.iter().map(|u| u.gain).fold(0.0, f64::max);
+    if noisy.iter().any(|f| f.weight > FAR_LOUDER * most) {
+        rest = &[];
+    } else if !rest.is_empty() {
+        (noisy, strange) = (vec![], vec![]);
+    }
     // What looked like it before anything was known may have got a name.
     let flicker = match &system.flicker {
         Some(known) if !selection.accepted.is_empty() => known.again(context, &left.radial),
         known => known.clone(),
     };
     // What is left of an unknown shape can look like anything.
-    let unknown = selection.unnamed.iter().map(|u| u.gain).fold(0.0, f64::max);
+    let unknown = selection
+        .unnamed
+        .iter()
+        .chain(rest)
+        .map(|u| u.gain)
+        .fold(0.0, f64::max);
     let flicker = flicker.filter(|f| !f.is_part_of(unknown));
     match flicker.as_ref().map(Flicker::finding) {
         Some(Ok(finding)) => noisy.push(finding),
         Some(Err(unnamed)) => strange.push(unnamed),
         None => {}
     }
-    let unnamed = || selection.unnamed.iter().chain(&strange);
+    let unnamed = || selection.unnamed.iter().chain(rest).chain(&strange);
     let own = selection.base.shapes.len();
     let (held_before, held_after) = (
         halves.held_out(&selection.base, own, 0),

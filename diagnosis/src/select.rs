@@ -98,6 +98,7 @@ pub(crate) fn begin(
         base,
         accepted,
         unnamed: vec![],
+        left: vec![],
         again: vec![],
     };
     // Functions that were made for the known causes and that no shape uses.
@@ -257,8 +258,7 @@ fn search(
             // Slow noise is in all that is slow, as most of what depends on the speed is.
             closed.push(Domain::Speed);
         }
-        let left = leftover(system, catalogue, &found.fit, &closed);
-        found.unnamed.extend(left);
+        found.left = leftover(system, catalogue, &found.fit, &closed);
     }
     keep_used(system, fixed, &mut found);
     found

@@ -80,6 +80,8 @@ pub(crate) struct Selection {
     pub(crate) base: Fit,
     pub(crate) accepted: Vec<Accepted>,
     pub(crate) unnamed: Vec<Unnamed>,
+    /// What is left in the end and looks like no cause.
+    pub(crate) left: Vec<Unnamed>,
     /// Where to look anew from, the likeliest first: something is too large for the tangents of this context.
     pub(crate) again: Vec<Start>,
 }
@@ -112,6 +114,7 @@ impl Selection {
             base: self.base.clone(),
             accepted,
             unnamed: vec![],
+            left: vec![],
             again: vec![],
         }
     }
