@@ -50,6 +50,8 @@ pub(crate) struct Calm {
     spacing: f64,
     /// What stands there.
     pub(crate) mark: Mark,
+    /// It is told by how high it stands in a spectrum alone.
+    high: bool,
 }
 
 /// What stands out of a motion.
@@ -95,6 +97,7 @@ impl Calm {
         let (best, spacing) = told(&lines).or_else(|| told(&orders))?;
         let corner = |k: usize| best.corners[k / angle.every / best.length];
         Some(Self {
+            high: !best.stands_alone(),
             corners: (0..context.samples()).map(corner).collect(),
             spacing,
             mark: match best.mark {
@@ -102,6 +105,14 @@ impl Calm {
                 order => order,
             },
         })
+    }
+
+    /// Whether it is worth a look, which takes as long as the first: in a long recording, what any known cause leaves in the
+    /// angle may stand high in its spectrum.
+    pub(crate) fn is_worth_it(&self, found: &Diagnosis) -> bool {
+        /// Samples.
+        const LONG: usize = 120_000;
+        !self.high || self.corners.len() < LONG || found.findings.is_empty()
     }
 
     /// The recording with hardly anything counted of its corners, and wider knots.
@@ -125,9 +136,12 @@ impl Calm {
 }
 
 /// The look that tells most, and how far apart knots may be then. What stands out does so whatever the knots; what is left of
-/// the drive does not.
+/// the drive does not, and what it leaves at an order of the revolution is gone with the next knots.
 fn told<'a>(looks: &[&'a Look]) -> Option<(&'a Look, f64)> {
-    let same = |pair: &&[&Look]| pair[0].mark.is(pair[1].mark);
+    let same = |pair: &&[&Look]| {
+        let order = matches!(pair[0].mark, Mark::Order(_));
+        pair[0].mark.is(pair[1].mark) && (!order || pair.iter().all(|look| look.tells()))
+    };
     let pairs = looks.windows(2).filter(same);
     let each = pairs.flat_map(|pair| pair.iter().map(|look| (*look, pair[1].spacing)));
     let told = each.filter(|(look, _)| look.tells());
@@ -255,13 +269,17 @@ impl Look {
     fn tells(&self) -> bool {
         let shows = match self.mark {
             Mark::Line(line) => {
-                let beside = self.contrast > CONTRAST && self.loudness > LOUD;
-                let alone = self.loudness > ALONE || self.height > HIGH;
-                (beside || alone) && line * self.knots > FAST
+                (self.stands_alone() || self.height > HIGH) && line * self.knots > FAST
             }
             Mark::Order(_) => self.height > HIGH_ORDER,
         };
         shows && self.share <= MOST && self.rms < SMALL
+    }
+
+    /// Whether it is a line beside corners, or hardly anything but a line.
+    fn stands_alone(&self) -> bool {
+        let beside = self.contrast > CONTRAST && self.loudness > LOUD;
+        matches!(self.mark, Mark::Line(_)) && (beside || self.loudness > ALONE)
     }
 }
 

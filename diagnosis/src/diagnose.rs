@@ -138,7 +138,7 @@ pub fn diagnose(recording: &Recording) -> Result<Diagnosis, ContextError> {
     let first = context()?;
     let calm = Calm::of(&first);
     let found = whole(first, &checked, &repaired)?;
-    let Some(calm) = calm else {
+    let Some(calm) = calm.filter(|calm| calm.is_worth_it(&found)) else {
         return Ok(found);
     };
     let reference = repaired.recording.reference_rad.as_deref();

@@ -1,6 +1,6 @@
 //! Causes in the data: samples that are off, lost or doubled, and noise with the signal.
 
-use crate::harness::{Case, NOISE, PLAIN, Rows, damaged, finds, names, near, shows, shows_in};
+use crate::harness::{Case, LSB, NOISE, PLAIN, Rows, damaged, finds, names, near, shows, shows_in};
 
 /// Four times as noisy.
 const NOISY: Case = Case {
@@ -48,6 +48,44 @@ fn a_glitch_beyond_every_other_value() {
         let lowest = (10..rows.len() - 10).min_by(|a, b| rows[*a][2].total_cmp(&rows[*b][2]));
         rows[lowest.expect("samples")][2] -= 0.15;
     });
+}
+
+/// A sample that is off and a filter behind it: the next swings back by four tenths, and both together are half a step.
+#[test]
+fn a_glitch_that_rings() {
+    for sense in [1.0, -1.0] {
+        shows("glitches", |rows| {
+            for k in [2523, 8613, 14_766] {
+                rows[k][1] += sense * 0.02;
+                rows[k + 1][1] -= sense * 0.008;
+            }
+        });
+    }
+}
+
+/// Every sample on the codes of a converter with steps of so many, one bit of which never changes.
+fn on_steps(rows: &mut Rows, step: i64, stuck: Option<u32>) {
+    for v in rows.iter_mut().flat_map(|row| &mut row[1..3]) {
+        let code = (*v / LSB).round() as i64 + (1 << 13);
+        let code = code.div_euclid(step) * step;
+        let code = stuck.map_or(code, |bit| code & !(1 << bit));
+        *v = (code - (1 << 13)) as f64 * LSB;
+    }
+}
+
+/// What a converter does wrong may be two things, and a few codes that are off by themselves hide neither.
+#[test]
+fn coarse_steps_a_stuck_bit_and_stray_codes() {
+    let both = damaged(&PLAIN, |rows| on_steps(rows, 8, Some(5)));
+    let (steps, bit) = ("coarse_quantisation", "stuck_bit");
+    assert_eq!(names(&both)[..4], [steps, bit, steps, bit]);
+    let stray = damaged(&PLAIN, |rows| {
+        on_steps(rows, 16, None);
+        for k in [700, 5011, 12_345] {
+            rows[k][2] += 5.0 * LSB;
+        }
+    });
+    assert_eq!(names(&stray), [steps, steps]);
 }
 
 /// Even where the scale moves by little more than the noise from sample to sample: chance hardly brings both codes back.

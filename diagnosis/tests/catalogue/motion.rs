@@ -125,6 +125,34 @@ fn a_slow_vibration_alone() {
     near(&found, "frequency_hz", 47.0);
 }
 
+/// Knots that follow an axis that shakes follow what is slower than the shaking, too: it stands out of the spectrum, or of the
+/// orders of the revolution, where wider knots are looked at.
+#[test]
+fn slow_motion_beside_a_rumble() {
+    let found = finds(
+        "vibration",
+        &Case {
+            motion: |t, _| rumble(t) + 0.008 * (TAU * 171.0 * t).sin(),
+            ..PLAIN
+        },
+    );
+    near(&found, "frequency_hz", 171.0);
+    let found = finds(
+        "cogging",
+        &Case {
+            motion: |t, a| rumble(t) + 0.012 * (3.0 * a / PERIODS).sin(),
+            ..REVOLVING
+        },
+    );
+    near(&found, "order", 3.0);
+    let shaking = Case {
+        motion: |t, _| rumble(t),
+        ..REVOLVING
+    };
+    let found = diagnosed(&shaking, 5);
+    assert!(found.findings.is_empty(), "{:?}", found.findings);
+}
+
 /// What a drive that swings leaves at its own frequency is no vibration between corners.
 #[test]
 fn a_drive_that_swings() {
