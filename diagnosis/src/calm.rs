@@ -2,13 +2,12 @@
 //! that only close knots follow; they would hide a vibration or cogging that goes on all the time. Away from the corners, wide
 //! knots do; and without any, where hardly anything but that needs close ones.
 
-use std::f64::consts::PI;
-
 use crate::causes::{COGGING, VIBRATION, highest_order};
 use crate::context::Context;
 use crate::diagnose::Diagnosis;
+use crate::exact;
 use crate::finding::Finding;
-use crate::lines::{median, spectrum, strongest};
+use crate::lines::{median, spectrum, strongest, window};
 use crate::spline::Spline;
 
 /// A stretch with more than so many times the power of the usual one has a corner in it.
@@ -110,9 +109,7 @@ impl Calm {
     /// Whether it is worth a look, which takes as long as the first: in a long recording, what any known cause leaves in the
     /// angle may stand high in its spectrum.
     pub(crate) fn is_worth_it(&self, found: &Diagnosis) -> bool {
-        /// Samples.
-        const LONG: usize = 120_000;
-        !self.high || self.corners.len() < LONG || found.findings.is_empty()
+        !self.high || exact::every(self.corners.len()) == 1 || found.findings.is_empty()
     }
 
     /// The recording with hardly anything counted of its corners, and wider knots.
@@ -288,11 +285,9 @@ fn height(values: &[f64], line: f64) -> f64 {
     /// Lines of the spectrum on either side that are the line's own through the window, and that are near.
     const OWN: usize = 4;
     const NEAR: usize = 40;
-    let n = values.len() as f64;
+    let n = values.len();
     let windowed = values.iter().enumerate();
-    let windowed: Vec<f64> = windowed
-        .map(|(k, v)| v * (PI * (k as f64 + 0.5) / n).sin().powi(2))
-        .collect();
+    let windowed: Vec<f64> = windowed.map(|(k, v)| v * window(k, n)).collect();
     let (power, length) = spectrum(&windowed);
     let at = ((line * length as f64).round() as usize).min(power.len() - 1);
     // A spectrum of values padded to so many times their number has as many lines for one.

@@ -20,8 +20,6 @@ use crate::select::select;
 use crate::selection::{Accepted, Selection, Unnamed};
 use crate::statistics;
 
-/// Noise of a kind that explains so many times as much as what looks like no cause is the reason for that.
-const FAR_LOUDER: f64 = 20.0;
 /// Most times that a recording is looked at anew.
 const ROUNDS: usize = 10;
 
@@ -267,10 +265,8 @@ fn conclude(
     } else {
         (vec![], vec![])
     };
-    // Noise that grows with the speed makes shapes of the speed explain more of it than they do by chance.
     let mut rest = selection.left.as_slice();
-    let most = rest.iter().map(|u| u.gain).fold(0.0, f64::max);
-    if noisy.iter().any(|f| f.weight > FAR_LOUDER * most) {
+    if noise::is_the_reason(&noisy, rest) {
         rest = &[];
     } else if !rest.is_empty() {
         (noisy, strange) = (vec![], vec![]);

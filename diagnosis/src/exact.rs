@@ -234,6 +234,11 @@ fn followed(
     context
 }
 
+/// Of so many blocks of samples one is enough at first.
+pub(crate) fn every(samples: usize) -> usize {
+    (samples / ENOUGH).max(1)
+}
+
 /// The functions and sums of a context, the causes that are known among them; for a long recording, of a part of it.
 pub(crate) fn look<'a>(
     context: &'a Context,
@@ -244,7 +249,7 @@ pub(crate) fn look<'a>(
     let motion = reference.map(|r| above_motion(context, &unwrapped(r.clone())));
     let mut catalogue = Catalogue::new(context, motion.is_some());
     enter(carried, &mut catalogue);
-    let every = (context.samples() / ENOUGH).max(1);
+    let every = every(context.samples());
     let system = System::new(context, motion, &mut catalogue, carried, every);
     (system, catalogue)
 }

@@ -129,8 +129,7 @@ fn corner(lines: &[Line], bands: &[Band]) -> (f64, f64) {
 
 /// The window of a record, of unit mean square.
 fn window(k: usize, n: usize) -> f64 {
-    let x = (k as f64 + 0.5) / n as f64;
-    (std::f64::consts::PI * x).sin().powi(2) * (8.0f64 / 3.0).sqrt()
+    crate::lines::window(k, n) * (8.0f64 / 3.0).sqrt()
 }
 
 /// What noise of the two-sided spectrum 1/|f| is expected to show: itself, and its image about twice the angle.

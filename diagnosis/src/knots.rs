@@ -4,10 +4,9 @@
 //! really is, so the angle is followed through all of that; but what is taken off as motion, and with it whatever looks
 //! like it, ends where the spectrum falls no more.
 
-use std::f64::consts::PI;
 use std::ops::Range;
 
-use crate::lines::{median, spectrum, strongest};
+use crate::lines::{median, spectrum, strongest, window};
 use crate::spline::Spline;
 
 /// Finest knot spacing, in samples.
@@ -242,10 +241,10 @@ impl<'a> Stretch<'a> {
     fn spectrum(&self, spacing: f64) -> (Vec<f64>, usize, f64) {
         let spline = Spline::new(self.angle.len(), spacing, self.weight);
         let mut left = self.without_cycles(&spline);
-        let n = left.len() as f64;
-        let rms = (left.iter().map(|l| l * l).sum::<f64>() / n).sqrt();
+        let n = left.len();
+        let rms = (left.iter().map(|l| l * l).sum::<f64>() / n as f64).sqrt();
         for (k, value) in left.iter_mut().enumerate() {
-            *value *= (PI * (k as f64 + 0.5) / n).sin().powi(2);
+            *value *= window(k, n);
         }
         let (power, length) = spectrum(&left);
         (power, length, rms)
@@ -278,9 +277,7 @@ impl<'a> Stretch<'a> {
         let Some(order) = crate::causes::strongest_order(*per, phi, &left) else {
             return left;
         };
-        let wave =
-            |f: fn(f64) -> f64| -> Vec<f64> { phi.iter().map(|p| f(order as f64 * p)).collect() };
-        let waves = [wave(f64::cos), wave(f64::sin)];
+        let waves = crate::causes::order_waves(order, phi);
         let columns: Vec<&[f64]> = waves.iter().map(Vec::as_slice).collect();
         crate::solve::without(&left, &spline.residuals(&columns, self.weight))
     }

@@ -44,6 +44,13 @@ pub(crate) fn pair_spectrum(a: &[f64], b: &[f64]) -> (Vec<f64>, usize) {
     (x.iter().zip(&y).map(|(x, y)| x + y).collect(), length)
 }
 
+/// The window of a record of `n` values at the k-th: a squared sine (Hann).
+pub(crate) fn window(k: usize, n: usize) -> f64 {
+    (std::f64::consts::PI * (k as f64 + 0.5) / n as f64)
+        .sin()
+        .powi(2)
+}
+
 /// The median; of an even number, the upper of the two in the middle. 0 of nothing.
 pub(crate) fn median(values: &[f64]) -> f64 {
     let mut values = values.to_vec();

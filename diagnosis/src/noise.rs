@@ -180,6 +180,14 @@ pub(crate) fn findings(system: &System, residual: &Residual) -> (Vec<Finding>, V
     (list, unnamed)
 }
 
+/// Whether noise of a kind explains so much more than what looks like no cause that it is the reason for that: noise that
+/// grows with the speed makes shapes of the speed explain more of it than they do by chance.
+pub(crate) fn is_the_reason(noisy: &[Finding], left: &[Unnamed]) -> bool {
+    const FAR_LOUDER: f64 = 20.0;
+    let most = left.iter().map(|u| u.gain).fold(0.0, f64::max);
+    noisy.iter().any(|f| f.weight > FAR_LOUDER * most)
+}
+
 /// Why noise that depends on something is not of a kind, which explains `gain` where squares that go together make
 /// everything look so many times as sure as it is.
 fn refusal(

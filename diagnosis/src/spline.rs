@@ -144,6 +144,7 @@ impl Spline {
                     .iter_mut()
                     .zip(&rows)
                     .for_each(|(v, row)| *v = row[i]);
+                without_tails(column);
             }
         }
     }
@@ -292,6 +293,16 @@ impl Basis {
             }
         }
     }
+}
+
+/// Far from where a function is, the spline that follows it dies away to numbers whose products a processor takes long
+/// over, and which are nothing.
+fn without_tails(spline: &mut [f64]) {
+    /// Far below any rounding of what is large in it.
+    const NOTHING: f64 = 1e-30;
+    let most = spline.iter().fold(0.0, |m, v| f64::max(m, v.abs()));
+    let small = spline.iter_mut().filter(|v| v.abs() < NOTHING * most);
+    small.for_each(|v| *v = 0.0);
 }
 
 #[cfg(test)]

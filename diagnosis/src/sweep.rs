@@ -31,16 +31,6 @@ fn chosen(block: usize, every: usize) -> bool {
     block % every == (place.fract() * every as f64) as usize
 }
 
-/// Far from where a function is, the motion that follows it dies away to numbers whose products a processor takes long
-/// over, and which are nothing.
-fn without_tails(motion: &mut [f64]) {
-    /// Far below any rounding of what is large in it.
-    const NOTHING: f64 = 1e-30;
-    let most = motion.iter().fold(0.0, |m, v| f64::max(m, v.abs()));
-    let small = motion.iter_mut().filter(|v| v.abs() < NOTHING * most);
-    small.for_each(|v| *v = 0.0);
-}
-
 /// The splines of a block, made when they are asked for.
 struct Splines<'a> {
     spline: Option<&'a Spline>,
@@ -165,7 +155,6 @@ impl<'a> Samples<'a> {
         if let Some(spline) = &self.context.spline {
             let count = spline.count();
             spline.solve_all(sums.iter_mut().filter(|s| s.len() == count));
-            sums.iter_mut().for_each(|s| without_tails(s));
         }
         self.motions.extend(sums);
         self.squares.extend(squares);

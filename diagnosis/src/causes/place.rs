@@ -91,6 +91,12 @@ pub(crate) fn strongest_order(per: u32, phi: &[f64], values: &[f64]) -> Option<u
         .max_by(|a, b| power[*a].total_cmp(&power[*b]))
 }
 
+/// cos and sin of an order of the revolution.
+pub(crate) fn order_waves(order: usize, phi: &[f64]) -> [Vec<f64>; 2] {
+    let wave = |f: fn(f64) -> f64| phi.iter().map(|p| f(order as f64 * p)).collect();
+    [wave(f64::cos), wave(f64::sin)]
+}
+
 /// The order of the revolution that is strongest, how far it stands above what is usual near it, and the values without it.
 pub(crate) fn highest_order(
     per: u32,
@@ -106,9 +112,7 @@ pub(crate) fn highest_order(
     let order = strongest_order(per, phi, values)?;
     let power = orders(phi, values, (NEAR * order).max(LEAST));
     let usual = median(&power[1..]).max(f64::MIN_POSITIVE);
-    let wave =
-        |f: fn(f64) -> f64| -> Vec<f64> { phi.iter().map(|p| f(order as f64 * p)).collect() };
-    let left = without(values, &[wave(f64::cos), wave(f64::sin)]);
+    let left = without(values, &order_waves(order, phi));
     Some((order, power[order] / usual, left))
 }
 
@@ -132,8 +136,7 @@ pub(crate) fn without_cogging(context: &Context, mut values: Vec<f64>) -> Vec<f6
     let Some(order) = strongest_order(per, &at, &some) else {
         return values;
     };
-    let wave = |f: fn(f64) -> f64| -> Vec<f64> { at.iter().map(|p| f(order as f64 * p)).collect() };
-    let x = Normal::of_columns(&some, &[wave(f64::cos), wave(f64::sin)])
+    let x = Normal::of_columns(&some, &order_waves(order, &at))
         .solve()
         .x;
     for (value, p) in values.iter_mut().zip(phi) {
