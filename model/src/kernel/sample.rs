@@ -289,6 +289,7 @@ fn remember<S: Signal>(
         next.null_gradient_rate = completed.sensitivity.rate;
         next.null_gradient_error = completed.sensitivity.error;
         next.travel_samples = completed.samples;
+        next.gathered_9 = completed.gathered;
         next.moving = completed.moving;
     }
 }

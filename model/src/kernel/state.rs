@@ -101,6 +101,8 @@ bundle! {
         gathered_8,
         /// Samples since the last whole period of travel.
         travel_samples,
+        /// Gradient by θ9, gathered over the running period of travel.
+        gathered_9,
         /// Periods of travel that the start has solved.
         start_periods,
         /// θ1 less its nominal value at the last end of some quiet periods of travel.

@@ -164,9 +164,15 @@ pub fn config(spec: &Spec) -> Result<Config, ReferenceError> {
     // What a loop that follows none of it sees as phase error.
     let turn = s.amplitude_tolerance + SQRT_2 * s.offset_max + 0.75 * beta + more;
     let first = equaliser(spec, parameters) * (0.5f64.powi(k.gamma_first as i32) * gathered(spec));
-    let settled = k.phase_settles().then(|| {
+    let settled = k.gains_settle().then(|| {
         let mut steps = first;
-        steps[(4, 4)] /= 2.0;
+        let [gain_c, _, gain_s, _] = parameters.linear();
+        for gain in [gain_c, gain_s] {
+            steps.row_mut(gain).scale_mut(0.5);
+        }
+        if let Some(phase) = parameters.phase() {
+            steps.row_mut(phase).scale_mut(0.25);
+        }
         (Calibration::SETTLED, steps)
     });
     // A loop settles within some multiples of 1/ω0.

@@ -121,10 +121,11 @@ impl Calibration {
         self.gears() >= Self::SETTLED
     }
 
-    /// The step of θ5 is halved once γ has settled.
+    /// The steps of the gains are halved once γ has settled, and that of the phase twice: what bends that are not calibrated
+    /// move most goes round more slowly, and the offsets, which drift, are followed as before.
     #[must_use]
-    pub fn phase_settles(&self) -> bool {
-        self.method == CalibrationMethod::Final && self.parameters == 5 && self.settles()
+    pub fn gains_settle(&self) -> bool {
+        self.is_on() && self.is_linear_final() && self.settles()
     }
 
     /// The sum of squares moves the parameters.

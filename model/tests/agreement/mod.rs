@@ -187,7 +187,10 @@ pub(crate) fn compare(
         let first = -f64::from(spec.calibration.gamma_first as i32) - before.gamma_gear;
         let mut gamma = equaliser * first.exp2();
         if before.gamma_gear >= 4.0 {
-            gamma[(4, 4)] /= 2.0;
+            for gain in [0, 2] {
+                gamma.row_mut(gain).scale_mut(0.5);
+            }
+            gamma[(4, 4)] /= 4.0;
         }
         let y = codes.map(|code| code as f64 / half * unit);
         let fresh = fresh && spec.calibration.is_on();
