@@ -1,6 +1,7 @@
 //! Which of the causes that explain most is accepted: one that holds what any shape of its domain explains, and that no
 //! more than one other explains as well.
 
+use crate::ahead;
 use crate::beside::Beside;
 use crate::cause::{Candidate, Domain, Sign};
 use crate::causes::{self, ACCELERATION_GAIN, Catalogue, HYSTERESIS};
@@ -27,6 +28,11 @@ const AS_WELL: f64 = 0.95;
 const DRIFT: &str = "offset_drift";
 /// A drift of the gains.
 const GAIN_DRIFT: &str = "gain_drift";
+/// A drift of the offsets or of the gains: slow, as noise may be.
+pub(crate) fn is_drift(cause: &str) -> bool {
+    [DRIFT, GAIN_DRIFT].contains(&cause)
+}
+
 /// A cause that adds less than this probability says nothing new.
 const NOTHING_NEW: f64 = 1e-3;
 
@@ -89,7 +95,12 @@ pub(crate) fn contender(
             ..*best
         };
         let rest: Vec<&Scored> = scored[..i].iter().chain(&scored[i + 1..]).collect();
+        let price = price(system.context.samples() as f64);
+        let ahead = ahead::look(system.context, &beside, &own, &rest, price);
         let mut rivals = rivals(&beside, &own, &rest);
+        if rivals.is_empty() {
+            rivals.extend(ahead.rival.map(str::to_owned));
+        }
         let wider = wider(&beside, &own, &rest);
         if own.candidate.as_drift {
             rivals.retain(|name| name != DRIFT);
@@ -107,7 +118,7 @@ pub(crate) fn contender(
         let listed = |name: &str| name != ACCELERATION_GAIN;
         let locked = goes_with_angle(system.context, &own.candidate);
         let nameable = listed(own.candidate.name) && rivals.iter().all(|r| listed(r)) && !locked;
-        if nameable && slow && rivals.len() <= 1 && held.refusal.is_none() {
+        if nameable && slow && !ahead.outdone && rivals.len() <= 1 && held.refusal.is_none() {
             if rivals.is_empty() {
                 rivals.extend(wider);
             }
@@ -131,6 +142,8 @@ pub(crate) fn contender(
             "steps explain it as well".to_owned()
         } else if let Some(refusal) = held.refusal {
             refusal
+        } else if ahead.outdone {
+            "two others together explain more".to_owned()
         } else {
             format!("{} explain it as well", rivals.join(", ").replace('_', " "))
         };
@@ -150,7 +163,6 @@ pub(crate) fn contender(
         }
         system.extend();
         let shapes = both(&own.candidate.shapes, &held.beyond);
-        let price = price(system.context.samples() as f64);
         let paid = own.gain - price * own.freedom as f64;
         first = Some(Contender::Unnamed(Nameless {
             unnamed,

@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use crate::calm::{self, Calm};
 use crate::checks::{self, Checked};
+use crate::contender::is_drift;
 use crate::context::{Context, ContextError};
 use crate::doubt;
 use crate::exact;
@@ -152,17 +153,18 @@ fn whole(
     checked: &Checked,
     repaired: &Repaired,
 ) -> Result<Diagnosis, ContextError> {
-    let (found, slow) = search(context, checked, repaired, true);
-    if !slow {
+    let (found, noise) = search(context, checked, repaired, true);
+    let Some(noise) = noise else {
         return Ok(found);
-    }
+    };
     // A cause that is slow looks like flicker noise before it is known: names that explain it all are preferred.
     let context = Context::new(&repaired.recording, repaired.weight.clone())?;
     let (other, _) = search(context, checked, repaired, false);
     let known = |name: &str| found.findings.iter().any(|f| f.cause == name);
-    let more = other.findings.iter().filter(|f| !known(&f.cause));
-    let numbers: usize = more.map(|f| f.parameters.len()).sum();
-    if numbers == 0 {
+    let more: Vec<&Finding> = other.findings.iter().filter(|f| !known(&f.cause)).collect();
+    let numbers: usize = more.iter().map(|f| f.parameters.len()).sum();
+    let drifts = more.iter().all(|f| is_drift(&f.cause));
+    if numbers == 0 || drifts && noise.is_instead_of_a_change() {
         return Ok(found);
     }
     let left = flicker::find(&other.context, &other.residuals[1].0);
@@ -193,14 +195,13 @@ fn beside(mut with: Diagnosis, noise: Option<Flicker>) -> Diagnosis {
     with
 }
 
-/// Looks at a recording until nothing new is found in it, and whether there is noise like flicker noise then; `coloured`:
-/// there may be.
+/// Looks at a recording until nothing new is found in it, and what is like flicker noise then; `coloured`: there may be such.
 fn search(
     mut context: Context,
     checked: &Checked,
     repaired: &Repaired,
     coloured: bool,
-) -> (Diagnosis, bool) {
+) -> (Diagnosis, Option<Flicker>) {
     let recording = &repaired.recording;
     let mut carried: Vec<Accepted> = vec![];
     // Large causes are taken off the signals themselves, and what is left is looked at anew.
@@ -216,11 +217,11 @@ fn search(
         }
         let mut selection = select(&context, &mut system, &catalogue, carried.clone(), last);
         if selection.again.is_empty() {
-            let slow = system.flicker.is_some();
+            let noise = system.flicker.clone();
             doubt::beside_codes(&system, &mut selection, &checked.findings);
             let concluded = conclude(&system, &selection, checked, repaired);
             drop(system);
-            return (concluded(context), slow);
+            return (concluded(context), noise);
         }
         // Its samples are not needed any longer, and the next look has its own.
         drop(system);

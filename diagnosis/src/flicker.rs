@@ -33,6 +33,10 @@ const HUM: f64 = 6.0;
 const NEAR: usize = 8;
 /// Share of what any spectrum explains that 1/f has to hold.
 const HOLDS: f64 = 0.9;
+/// Log-likelihood that octaves of noise with the spectrum 1/f explain beyond it by chance.
+const BY_CHANCE: f64 = 2.0;
+/// From which gain of the spectrum in log-likelihood on the samples are asked.
+const SUSPECT: f64 = 2.0;
 /// Shapes of noise that could have been claimed.
 const TRIALS: f64 = 30.0;
 /// Global probability below which it is shown.
@@ -284,6 +288,9 @@ fn find_from(context: &Context, radial: &[f64], slowest: usize) -> Option<Flicke
     let white = beside(&bands, 0.0).1;
     let best = corner(&lines, &bands);
     let gain = best.1 - white;
+    // A spectrum holds half of what the samples tell.
+    let in_time = (gain > SUSPECT).then(|| one_over_f::gain(context, radial, best.0));
+    let gain = in_time.map_or(gain, |t| t.max(gain));
     let log_p = after_trials(log_tail(2.0 * gain, 1), TRIALS);
     if log_p > SHOWN.ln() {
         return None;
@@ -292,7 +299,7 @@ fn find_from(context: &Context, radial: &[f64], slowest: usize) -> Option<Flicke
     alike.iter_mut().for_each(|b| b.count = b.count.min(ALIKE));
     let flat = beside(&alike, 0.0).1;
     let (own, any) = (corner(&lines, &alike).1 - flat, octaves(&alike) - flat);
-    if own < HOLDS * any || any - own > MISFIT {
+    if any - own > ((1.0 - HOLDS) * any).max(BY_CHANCE) || any - own > MISFIT {
         return None;
     }
     // From the curvature in the logarithm of the corner.
@@ -316,6 +323,11 @@ impl Flicker {
     /// The same noise in what is left of the radius when more is known.
     pub(crate) fn again(&self, context: &Context, radial: &[f64]) -> Option<Self> {
         find_from(context, radial, self.slowest)
+    }
+
+    /// It was weighed against a slow change, and found to explain more.
+    pub(crate) fn is_instead_of_a_change(&self) -> bool {
+        self.slowest < SLOWEST
     }
 
     /// Whether something unknown explains so much more that this may be a part of it.

@@ -5,6 +5,7 @@
 //! spline, and asks of every cause of the catalogue how much of the rest it explains. A name is given only to a shape
 //! that holds; what cannot be named is said to be unexplained.
 
+mod ahead;
 mod beside;
 mod block;
 mod calm;
@@ -29,6 +30,7 @@ mod noise;
 mod one_over_f;
 mod pair;
 mod part;
+mod polygon;
 mod repair;
 mod report;
 mod score;

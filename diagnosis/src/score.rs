@@ -33,10 +33,15 @@ pub(crate) struct Scored {
     pub(crate) size: f64,
 }
 
-/// Whether a cause can have these amounts.
+/// Whether a cause can have the amounts of a solution.
 fn possible(candidate: &Candidate, solution: &Solution) -> bool {
-    let error = |i: usize| solution.covariance[(i, i)].sqrt();
-    let own = &solution.x;
+    can_be(candidate, &solution.x, |i| {
+        solution.covariance[(i, i)].sqrt()
+    })
+}
+
+/// Whether a cause can have these amounts, with these standard errors.
+pub(crate) fn can_be(candidate: &Candidate, own: &[f64], error: impl Fn(usize) -> f64) -> bool {
     match candidate.sign {
         Sign::Any => true,
         Sign::Positive => {

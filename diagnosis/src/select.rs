@@ -13,7 +13,7 @@ use crate::model::{Fit, Residual, System, atoms_of};
 use crate::score::{SHOWN, Scored, likely, score, worth};
 use crate::selection::{Accepted, Selection, Unnamed};
 use crate::simpler::simpler;
-use crate::statistics::{after_trials, log_tail};
+use crate::statistics::{after_trials, log_tail, price};
 
 /// Most causes of one recording.
 const MOST: usize = 8;
@@ -137,6 +137,10 @@ pub(crate) fn select(
 /// Beside flicker noise, what is slow in the channels is that noise: drift cannot be told from it, nor can these.
 const SLOW: [&str; 2] = [HYSTERESIS, AC_COUPLING];
 
+/// Log-likelihood, its numbers paid for (an SNR of 25), below which a drift may be what is seen of slow noise: a stronger one has its
+/// own shape.
+const FAINT: f64 = 300.0;
+
 /// Whether what is slow is flicker noise, which goes to the system then.
 fn slow_noise(system: &mut System, residual: &Residual, change: f64) -> bool {
     if system.only_white || system.flicker.is_some() {
@@ -225,6 +229,16 @@ fn search(
                 let shapes = both(&found.fit.shapes, &cause.candidate.shapes);
                 let halves = system.halves(&shapes);
                 let fit = system.fit(shapes);
+                if cause.candidate.domain == Domain::Time {
+                    let gain = fit.solution.gain() - found.fit.solution.gain();
+                    let numbers = cause.candidate.shapes.len() as f64;
+                    let paid = gain - price(context.samples() as f64) * numbers;
+                    if paid < FAINT && slow_noise(system, &residual, paid) {
+                        closed.push(Domain::Time);
+                        refused.extend(SLOW);
+                        continue;
+                    }
+                }
                 let own = found.base.shapes.len();
                 let held_out = halves.held_out(&fit, own, cause.candidate.given());
                 // What does not hold on data that was not fitted is no cause.

@@ -9,6 +9,7 @@ use nalgebra::{DMatrix, DVector};
 use crate::context::Context;
 use crate::generic::hat;
 use crate::pair::PairSums;
+use crate::polygon::{PIECES, Polygon};
 use crate::solve::Normal;
 use crate::statistics::price;
 
@@ -22,9 +23,9 @@ const KNOTS: [usize; 8] = [2, 3, 4, 6, 8, 12, 20, 40];
 const CHANNELS: usize = 2;
 
 /// Log-likelihood by which lines have to explain more than steps do of what is strong: a slow change does by far.
-const CLEARLY: f64 = 10.0;
-/// From which log-likelihood of lines on it is strong: an SNR of 25.
-const STRONG: f64 = 300.0;
+const CLEARLY: f64 = 15.0;
+/// From which log-likelihood of lines on it is strong: an SNR of 30.
+const STRONG: f64 = 450.0;
 
 /// What changes.
 #[derive(Clone, Copy, PartialEq)]
@@ -81,6 +82,9 @@ pub(crate) fn instead(
             .collect();
         let of_lines = KNOTS.into_iter().map(|knots| changing.lines(knots, price));
         lines = of_lines.fold(lines, f64::max);
+        let (gram, right) = changing.products(PIECES + 1);
+        let bent = Polygon::new(&gram, &right).explained(price, change.numbers());
+        lines = lines.max(bent);
         let numbers = change.numbers() as f64;
         steps = steps.max(self::steps(
             &stretches,
@@ -112,8 +116,8 @@ impl Changing<'_> {
         sums
     }
 
-    /// Log-likelihood that lines between so many knots explain, each number beyond the first of a channel at its price.
-    fn lines(&self, knots: usize, price: f64) -> f64 {
+    /// Sums of products of the values at so many knots, between which lines run.
+    fn products(&self, knots: usize) -> (DMatrix<f64>, DVector<f64>) {
         let m = CHANNELS * knots;
         let (mut gram, mut right) = (DMatrix::zeros(m, m), DVector::zeros(m));
         let last = (self.radial.len() - 1) as f64;
@@ -131,6 +135,12 @@ impl Changing<'_> {
                 }
             }
         }
+        (gram, right)
+    }
+
+    /// Log-likelihood that lines between so many knots explain, each number beyond the first of a channel at its price.
+    fn lines(&self, knots: usize, price: f64) -> f64 {
+        let (gram, right) = self.products(knots);
         // Knots while the scale stands still have no numbers.
         let lines = Normal::new(gram, right, 0.0).solve();
         lines.gain() - price * (lines.rank as f64 - self.change.numbers() as f64)
