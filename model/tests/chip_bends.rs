@@ -54,6 +54,18 @@ fn wholly(alpha: f64) -> (f64, f64) {
     )
 }
 
+/// The largest γ of the completion that is not refused converges, behind loops of half to twice the signal's frequency: what 64 sectors gather is a step of a period.
+#[test]
+fn the_largest_gamma_of_the_completion_converges() {
+    for bandwidth in [0.5, 0.7, 1.0, 1.4, 2.0] {
+        let mut spec = spec(9, true, bandwidth);
+        spec.calibration.completion_gamma = 6;
+        let [before, after, _] = calibrate(&spec, &cubic);
+        println!("loop {bandwidth} f: order 2 {before:.1} -> {after:.2} mrad");
+        assert!(after < 0.5, "{after}");
+    }
+}
+
 /// Loops of half to twice the signal's frequency, 0.1 % noise. Cubic terms: order 2 falls from 15 mrad to at most 0.15
 /// with the completion and stays above 7 without. Third harmonics: from 30 mrad by at least 25 with it; the radius alone
 /// makes it grow, with five parameters and with bends.

@@ -72,9 +72,9 @@ pub(super) fn check(spec: &Spec) -> Result<(), DesignError> {
     between(
         "calibration.completion_gamma",
         c.completion_gamma.into(),
-        1.0,
+        6.0,
         18.0,
-        "a gamma of 2^-0 does not converge, and 2^-18 takes a million samples",
+        "a period of travel gathers 64 sectors: 2^-5 swings, and 2^-18 takes ten thousand periods",
     )?;
     idle(c)
 }

@@ -1,7 +1,7 @@
 //! The completed gradient: one scalar sensitivity for θ9, the direction that no radius shows.
 //!
 //! The pair turns by 2 sin 2α per unit of θ9, so w = ½ sin 2α̂ = sin α̂ cos α̂ up to a factor that γ takes. θ9 learns at
-//! γ |S(2f)|²/2 per sample, S the loop's sensitivity at twice the signal's frequency f: what a wide loop follows, it
+//! γ |S(2f)|²/2 per sector of travel, S the loop's sensitivity at twice the signal's frequency f: what a wide loop follows, it
 //! cannot tell from motion. Hence the gate: whole periods of net travel must follow one another fast enough, and θ9 moves where
 //! one of them ends, by what its 64 sectors gathered. What a loop lags behind an axis that gathers speed or brakes is nearly the
 //! same all round the period, and w is zero on average; a period in which the axis stops is dropped, and what it shakes with

@@ -4,7 +4,8 @@
 //! w_v = n⊥ᵀ M v;  ∇_v α̂ by recursion (11), one scalar;  μ ← μ − γ_v (w_v − ∇_v α̂) e;  Θ moves along v with μ.
 //!
 //! It learns at γ_v |S(2f)|²/8 per sample, S the loop's sensitivity at twice the signal frequency f: what a wide loop
-//! follows, it cannot tell from motion. Hence its gate of its own: net travel slower than `slowest` and it rests, and so
+//! follows, it cannot tell from motion. (The chip takes the 64 sectors of a period for that, and moves where the period ends, so
+//! that what an axis does while it brakes is dropped.) Hence its gate of its own: net travel slower than `slowest` and it rests, and so
 //! it does under vibration, however fast. It cannot tell motion at two cycles per scale period from sensor error either;
 //! where a scale period is a revolution, do not use it.
 

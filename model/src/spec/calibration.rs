@@ -22,7 +22,7 @@ pub struct Calibration {
     /// Whether 8 and 9 parameters learn the direction that the radius does not show.
     #[serde(default = "yes")]
     pub completion: bool,
-    /// γ of that direction is 2^-`completion_gamma` per sample.
+    /// γ of that direction is 2^-`completion_gamma` per sector of travel.
     #[serde(default = "completion_gamma")]
     pub completion_gamma: u32,
     /// First γ is 2^-`gamma_first`.
