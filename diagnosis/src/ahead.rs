@@ -41,10 +41,9 @@ pub(crate) fn look(
     if own.candidate.domain != Domain::Speed {
         return Ahead::default();
     }
-    let name = |s: &'_ Scored| s.candidate.name;
     let another = |o: &&Scored| o.candidate.domain == Domain::Speed && name(o) != name(own);
     let others: Vec<&Scored> = rest.iter().copied().filter(another).collect();
-    let alone = own.gain - price * own.freedom as f64;
+    let alone = own.paid(price);
     let with = others.iter().filter_map(|o| pair(beside, [own, o], price));
     let with = best(with).map_or(alone, |p| p.0.max(alone));
     let without = others.iter().enumerate().flat_map(|(i, a)| {
@@ -62,6 +61,10 @@ pub(crate) fn look(
         outdone: causes::speed_varies_much(context) && without > with + CLEARLY + OFF * with,
         rival: other.filter(|_| alike).map(name),
     }
+}
+
+fn name(of: &Scored) -> &'static str {
+    of.candidate.name
 }
 
 /// Two causes, if they can be there together.

@@ -28,13 +28,13 @@ const AS_WELL: f64 = 0.95;
 const DRIFT: &str = "offset_drift";
 /// A drift of the gains.
 const GAIN_DRIFT: &str = "gain_drift";
+/// A cause that adds less than this probability says nothing new.
+const NOTHING_NEW: f64 = 1e-3;
+
 /// A drift of the offsets or of the gains: slow, as noise may be.
 pub(crate) fn is_drift(cause: &str) -> bool {
     [DRIFT, GAIN_DRIFT].contains(&cause)
 }
-
-/// A cause that adds less than this probability says nothing new.
-const NOTHING_NEW: f64 = 1e-3;
 
 /// The cause to accept and others that may turn out better where tangents are exact, or what cannot be named in its
 /// domain and what looks most like it.
@@ -163,7 +163,7 @@ pub(crate) fn contender(
         }
         system.extend();
         let shapes = both(&own.candidate.shapes, &held.beyond);
-        let paid = own.gain - price * own.freedom as f64;
+        let paid = own.paid(price);
         first = Some(Contender::Unnamed(Nameless {
             unnamed,
             domain: Some(own.candidate.domain),

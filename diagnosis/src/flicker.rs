@@ -50,6 +50,8 @@ pub(crate) struct Flicker {
     /// Where it is as large as the white noise, hertz.
     pub(crate) corner: f64,
     gain: f64,
+    /// Log-likelihood that it explains of the radius sample by sample, its number paid for.
+    paid: f64,
     log_p: f64,
     /// Slowest part of the spectrum that was looked at, cycles per recording.
     slowest: usize,
@@ -246,17 +248,13 @@ pub(crate) fn likelihood_of(context: &Context, radial: &[f64]) -> Option<f64> {
     Some(white + one_over_f::gain(context, radial, corner))
 }
 
-/// Whether two levels explain nearly as much of the radius as flicker noise of a corner frequency does, or more: of noise that
-/// is 1/f they explain half, and of levels that are not quite two, as stray light makes, more than such noise or as much.
-fn jumps(context: &Context, radial: &[f64], corner: f64) -> bool {
+/// Whether two levels explain nearly as much of the radius as flicker noise does sample by sample, its number paid for, or more:
+/// of noise that is 1/f they explain half, and of levels that are not quite two, as stray light makes, more than such noise or as
+/// much.
+fn jumps(context: &Context, radial: &[f64], paid: f64) -> bool {
     const NEARLY: f64 = 0.75;
     let two = telegraph::gain(context, radial);
-    two.is_some_and(|two| two > NEARLY * paid(context, radial, corner))
-}
-
-/// Log-likelihood that flicker noise explains of the radius sample by sample, its number paid for.
-fn paid(context: &Context, radial: &[f64], corner: f64) -> f64 {
-    one_over_f::gain(context, radial, corner) - price(radial.len() as f64)
+    two.is_some_and(|two| two > NEARLY * paid)
 }
 
 /// Flicker noise in what everything else leaves of the radius.
@@ -269,8 +267,7 @@ pub(crate) fn find(context: &Context, radial: &[f64]) -> Option<Flicker> {
 pub(crate) fn instead(context: &Context, radial: &[f64], change: f64) -> Option<Flicker> {
     const CLEARLY: f64 = 1.1;
     let found = find_from(context, radial, 1).filter(|f| !f.jumps)?;
-    let gain = paid(context, radial, found.corner);
-    (gain > CLEARLY * change).then_some(found)
+    (found.paid > CLEARLY * change).then_some(found)
 }
 
 /// Flicker noise in a spectrum from so many cycles per recording on.
@@ -288,9 +285,12 @@ fn find_from(context: &Context, radial: &[f64], slowest: usize) -> Option<Flicke
     let white = beside(&bands, 0.0).1;
     let best = corner(&lines, &bands);
     let gain = best.1 - white;
+    if gain < SUSPECT {
+        return None;
+    }
     // A spectrum holds half of what the samples tell.
-    let in_time = (gain > SUSPECT).then(|| one_over_f::gain(context, radial, best.0));
-    let gain = in_time.map_or(gain, |t| t.max(gain));
+    let in_time = one_over_f::gain(context, radial, best.0);
+    let gain = gain.max(in_time);
     let log_p = after_trials(log_tail(2.0 * gain, 1), TRIALS);
     if log_p > SHOWN.ln() {
         return None;
@@ -302,6 +302,7 @@ fn find_from(context: &Context, radial: &[f64], slowest: usize) -> Option<Flicke
     if any - own > ((1.0 - HOLDS) * any).max(BY_CHANCE) || any - own > MISFIT {
         return None;
     }
+    let paid = in_time - price(n as f64);
     // From the curvature in the logarithm of the corner.
     let step: f64 = 0.05;
     let at = |by: f64| beside(&bands, best.0 * by.exp()).1;
@@ -314,8 +315,9 @@ fn find_from(context: &Context, radial: &[f64], slowest: usize) -> Option<Flicke
         corner: best.0,
         gain,
         log_p,
+        paid,
         slowest,
-        jumps: jumps(context, radial, best.0),
+        jumps: jumps(context, radial, paid),
     })
 }
 

@@ -33,6 +33,13 @@ pub(crate) struct Scored {
     pub(crate) size: f64,
 }
 
+impl Scored {
+    /// Log-likelihood that it explains, each number at its price.
+    pub(crate) fn paid(&self, price: f64) -> f64 {
+        self.gain - price * self.freedom as f64
+    }
+}
+
 /// Whether a cause can have the amounts of a solution.
 fn possible(candidate: &Candidate, solution: &Solution) -> bool {
     can_be(candidate, &solution.x, |i| {
