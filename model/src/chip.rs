@@ -108,11 +108,11 @@ impl Chip<f64> {
     }
 }
 
-/// The accumulator whose value a register of the recall remembers.
+/// The accumulator whose value a register remembers, or has so far.
 fn remembered(name: &str) -> Option<&'static str> {
-    let of = name
-        .strip_prefix("recent_")
-        .or_else(|| name.strip_prefix("proven_"))?;
+    let (_, of) = name
+        .split_once('_')
+        .filter(|(what, _)| ["recent", "proven", "running"].contains(what))?;
     let theta = format!("theta_{of}_deviation");
     let values = State::<Bits>::VALUES.iter();
     values.copied().find(|value| *value == theta)
@@ -135,7 +135,8 @@ pub fn registers(structure: &Structure) -> (Vec<&'static str>, Vec<&'static str>
         }
         "theta_6_deviation" | "theta_7_deviation" | "theta_8_deviation" => c.has_bend(),
         "gamma_gear" | "gear_periods" | "travel_origin" | "travel_low" | "travel_high"
-        | "ahead_used" | "behind_used" | "disturbed" | "risen" | "held" => c.is_on(),
+        | "disturbed" | "risen" | "held" => c.is_on(),
+        "ahead_used" | "behind_used" => c.is_on() && !c.is_batch(),
         "loop_gear" => structure.loop_gears > 0,
         "theta_9_deviation" | "null_gradient" | "null_gradient_rate" | "travel_samples"
         | "gathered_9" | "moving" => c.completed().is_some(),
@@ -153,6 +154,7 @@ pub fn registers(structure: &Structure) -> (Vec<&'static str>, Vec<&'static str>
         _ => true,
     };
     let kept = |name: &str| match remembered(name) {
+        Some(theta) if name.starts_with("running") => c.waits() && is_used(theta),
         Some(theta) => c.recalls() && is_used(theta),
         None => is_used(name),
     };

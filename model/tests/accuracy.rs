@@ -121,6 +121,11 @@ fn measure(spec: &Spec, calibrating: bool) -> Measured {
                 chip.state.theta_3_deviation = theta.theta_3_deviation.to_f64();
                 chip.state.theta_4_deviation = theta.theta_4_deviation.to_f64();
                 chip.state.theta_5_deviation = theta.theta_5_deviation.to_f64();
+                chip.state.running_1 = theta.running_1.to_f64();
+                chip.state.running_2 = theta.running_2.to_f64();
+                chip.state.running_3 = theta.running_3.to_f64();
+                chip.state.running_4 = theta.running_4.to_f64();
+                chip.state.running_5 = theta.running_5.to_f64();
             }
         }
         let [cos, sin] = encoder.codes(at);

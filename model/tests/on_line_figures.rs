@@ -116,15 +116,15 @@ fn the_steady_state_is_below_a_hundred_thousandth() {
     );
 }
 
-/// A drift: of which channel's offset, which way, in a sensor with which signs of errors.
-type Drift = (usize, f64, u32);
+/// A drift: of which channel's offset, which way, in a sensor with which signs of errors, or one without any.
+type Drift = (usize, f64, Option<u32>);
 
 /// Largest miscalibration, periods, while one offset drifts by 10 % of the amplitude within a minute at this speed; after the
 /// first tenth.
-fn drifting(spec: &Spec, speed: f64, (channel, way, signs): Drift, seed: u64) -> f64 {
+fn drifting(spec: &Spec, speed: f64, (channel, way, signs): Drift) -> f64 {
     let rate = spec.adc.sample_rate_hz;
-    let still = sensor_for(spec, signs);
-    let mut bench = Bench::new(spec, seed);
+    let still = signs.map(|signs| sensor_for(spec, signs));
+    let mut bench = Bench::new(spec, 2);
     let mut worst = 0.0f64;
     let samples = (60.0 * rate) as u32;
     for k in 0..samples {
@@ -135,7 +135,8 @@ fn drifting(spec: &Spec, speed: f64, (channel, way, signs): Drift, seed: u64) ->
             (0.0, drift)
         };
         let signals = |alpha: f64| {
-            let (c, s) = still(alpha);
+            let ideal = (alpha.cos(), alpha.sin());
+            let (c, s) = still.as_ref().map_or(ideal, |sensor| sensor(alpha));
             (c + offset.0, s + offset.1)
         };
         bench.step(signals(TAU * speed * f64::from(k) / rate));
@@ -146,61 +147,66 @@ fn drifting(spec: &Spec, speed: f64, (channel, way, signs): Drift, seed: u64) ->
     worst
 }
 
-/// So many gears further than the shipped designs: what drifts is followed faster, and what is noise, too. Steps of some searches
-/// are half as large, and eight and nine parameters share what the noise leaves; what follows once a period, at the pace of a step
-/// of Newton's, lags as much again.
-fn faster(spec: &Spec) -> u32 {
+/// The largest of some drifts at 50 and at 500 periods a second, % of a period.
+fn drifts(spec: &Spec, all: &[Drift]) -> [f64; 2] {
+    [50.0, 500.0].map(|speed| {
+        let each = all.par_iter().map(|drift| drifting(spec, speed, *drift));
+        100.0 * each.reduce(|| 0.0, f64::max)
+    })
+}
+
+/// Either channel, either way; with these signs.
+fn every_way(signs: &[Option<u32>]) -> Vec<Drift> {
+    let each = signs.iter().flat_map(|signs| {
+        [(0, 1.0), (1, 1.0), (0, -1.0), (1, -1.0)].map(|(c, way)| (c, way, *signs))
+    });
+    each.collect()
+}
+
+/// Gears of γ less than the shipped designs: the steps of these are half as large, and eight and nine parameters share what the noise
+/// leaves. What moves once a period, at the pace of a step of Newton's, lags as much again.
+fn fewer_gears(spec: &Spec) -> u32 {
     match (spec.calibration.method, spec.calibration.parameters) {
-        (CalibrationMethod::Batch, 8 | 9) => 3,
-        (CalibrationMethod::Exact | CalibrationMethod::Batch, _) | (_, 8 | 9) => 2,
-        _ => 1,
+        (CalibrationMethod::Batch, 8 | 9) => 2,
+        (CalibrationMethod::Exact | CalibrationMethod::Batch, _) | (_, 8 | 9) => 1,
+        _ => 0,
     }
 }
 
-/// One offset, either, drifts by 10 % of the amplitude within a minute, either way, at 50 periods a second or faster, in a sensor
-/// with offsets, unequal gains and phase error: with a larger last gamma the miscalibration stays below 0.02 % of a period, with
-/// every search (other than the final form: either channel one way, one set of signs).
+/// One offset drifts by 10 % of the amplitude within a minute, at 50 periods a second or faster: with the last gamma of the shipped
+/// designs, or what is as fast, the miscalibration stays below 0.02 % of a period, with every search, in a sensor without other errors
+/// and in one with offsets, unequal gains and phase error. Final form: every way; others: either channel one way.
 #[test]
 fn a_drifting_offset_is_followed() {
     let mut base = optical();
     base.adc.sample_rate_hz = 20e3;
     base.sensor.speed_max_periods_per_s = 1e3;
     base.tracking.bandwidth_hz = 200.0;
+    let signs = [0, 3, 5, 10, 12, 15].map(Some);
     for variant in searches_of(&base) {
         let mut spec = variant.spec;
-        spec.calibration.gamma_last -= faster(&spec);
-        let all = (0..4).map(|n| (n % 2, if n < 2 { 1.0 } else { -1.0 }));
-        let drifts: Vec<Drift> = if variant.what == "final form" {
-            let signs = [0, 3, 5, 10, 12, 15];
-            all.flat_map(|(channel, way)| signs.map(|signs| (channel, way, signs)))
-                .collect()
+        spec.calibration.gamma_last -= fewer_gears(&spec);
+        let set = spec.calibration.parameters;
+        let (clean, real) = if variant.what == "final form" {
+            (every_way(&[None]), every_way(&signs))
         } else {
-            vec![(0, 1.0, 5), (1, -1.0, 10)]
+            let two = |a, b| vec![(0, 1.0, a), (1, -1.0, b)];
+            (two(None, None), two(Some(5), Some(10)))
         };
-        let worst = [50.0, 500.0].map(|speed| {
-            let each = drifts.par_iter();
-            each.map(|drift| drifting(&spec, speed, *drift, 2))
-                .reduce(|| 0.0, f64::max)
-        });
+        let left = [&clean, &real].map(|all| drifts(&spec, all));
+        let [clean, real] = left.map(|[slow, fast]| format!("{slow:.4}, {fast:.4}"));
         println!(
-            "{}, {} parameters, gamma_last {}: drift leaves {:.4} % of a period at 50 periods/s, {:.4} % at 500",
-            variant.what,
-            spec.calibration.parameters,
-            spec.calibration.gamma_last,
-            100.0 * worst[0],
-            100.0 * worst[1]
+            "{}, {set} parameters, gamma_last {}: {clean} % of a period at 50 and 500 periods/s; with other errors {real}",
+            variant.what, spec.calibration.gamma_last,
         );
-        if variant.what == "final form" && spec.calibration.parameters == 5 {
+        if (variant.what.as_str(), set) == ("final form", 5) {
             figure(
-                "an offset drifts by 10 % of the amplitude in a minute, ellipse errors of 10 %, 1.2 and 5°, a last gamma of 2^-9: largest miscalibration, % of a period, at 50 and 500 periods/s",
-                &format!("{:.4}; {:.4}", 100.0 * worst[0], 100.0 * worst[1]),
+                "an offset drifts by 10 % of the amplitude in a minute, five parameters: largest miscalibration at 50 and 500 periods/s of a sensor without other errors, of one with ellipse errors of 10 %, 1.2 and 5°, % of a period",
+                &format!("{clean}; {real}"),
                 TEST,
             );
         }
-        assert!(
-            worst.iter().all(|&w| w < 2e-4),
-            "{}: {worst:?}",
-            variant.what
-        );
+        let followed = left.iter().flatten().all(|&worst| worst < 0.02);
+        assert!(followed, "{}, {set}: {left:?}", variant.what);
     }
 }

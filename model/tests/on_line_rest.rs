@@ -15,7 +15,7 @@ use nonius_model::bits::Bits;
 use nonius_model::design::Design;
 use nonius_model::kernel::State;
 use nonius_model::kernel::step::Equaliser;
-use nonius_model::spec::Spec;
+use nonius_model::spec::{Calibration, Spec};
 use rayon::prelude::*;
 
 /// Samples per second.
@@ -37,16 +37,17 @@ fn parameters(s: &State<Bits>) -> [f64; 9] {
     .map(Bits::to_f64)
 }
 
-/// σ √(γ/2) of θ1 … θ9, γ that of the parameter: the last one times the equaliser's power of two, and what is left of it once γ has
-/// settled.
+/// σ √(γ/2) of θ1 … θ9, γ that of the parameter: the last one times the equaliser's power of two, and what is
+/// left of the phase's once γ has settled.
 fn noise(design: &Design) -> [f64; 9] {
     let (k, by) = (&design.spec.calibration, Equaliser::of(&design.structure));
-    let (gain, phase) = if k.gains_settle() {
-        (by.gain - 1, by.phase - 2)
+    let (gain, offset, bend) = (by.gain, by.offset, by.bend);
+    let less = if k.phase_settles() {
+        Calibration::PHASE_HALVINGS
     } else {
-        (by.gain, by.phase)
+        0
     };
-    let (offset, bend) = (by.offset, by.bend);
+    let phase = by.phase - less as i32;
     let powers = [gain, offset, gain, offset, phase, bend, bend, bend, 0];
     let mut gamma = powers.map(|power| 2f64.powi(power - k.gamma_last as i32));
     gamma[8] = 2f64.powi(-(k.completion_gamma as i32));

@@ -30,7 +30,9 @@ fn commensurate_speeds_calibrate() {
             worst = worst.max(rms(&bench.miscalibration(&signals)));
         }
         println!("{per_period} samples a period: {worst:.2e} rad rms left");
-        assert!(worst < 5e-4, "{worst}");
+        // What rounding leaves of the gains' and the phase's smaller steps shows at five places.
+        let limit = if per_period < 8 { 5e-4 } else { 3e-4 };
+        assert!(worst < limit, "{worst}");
         left.push(format!("{:.2}", 1e3 * worst));
     }
     figure(
@@ -54,7 +56,7 @@ fn up_to(per_period: f64, bandwidth: f64) -> Spec {
 /// A design that may run at exactly four samples a period for very long: its accumulators are those of the optical one.
 fn for_long() -> Spec {
     let mut spec = up_to(4.0, 20e3);
-    spec.formats.accumulator_fraction = Some(26);
+    spec.formats.accumulator_fraction = Some(25);
     spec
 }
 
@@ -113,12 +115,12 @@ fn four_samples_a_period_leave_the_parameters() {
         println!(
             "4 samples a period, signs {signs}, place {place}: {before:.1e} -> {after:.1e} rad rms"
         );
-        assert!(bench.chip.state.locked && after < 2e-3, "{after}");
+        assert!(bench.chip.state.locked && after < 1e-3, "{after}");
         [before, after].map(|x| 1e3 * x)
     });
     let [before, after] = worst.reduce(|| [0.0; 2], |a, b| [a[0].max(b[0]), a[1].max(b[1])]);
     figure(
-        "exactly 4 samples a period for 250 000 periods, calibrated before, accumulators of 26 bits as in the optical design, worst of all signs and four places: miscalibration before and after, mrad rms",
+        "exactly 4 samples a period for 250 000 periods, calibrated before, accumulators of 25 bits as in the optical design, worst of all signs and four places: miscalibration before and after, mrad rms",
         &format!("{before:.2}; {after:.2}"),
         TEST,
     );
@@ -199,7 +201,7 @@ fn nine_parameters_need_eight_places() {
             let signals = sensor(signs);
             let mut spec = up_to(5.0, 20e3);
             spec.calibration.parameters = 9;
-            spec.formats.accumulator_fraction = Some(26);
+            spec.formats.accumulator_fraction = Some(25);
             let mut bench = Bench::new(&spec, 3);
             let mut turns = place;
             let mut run = |bench: &mut Bench, periods: u32, per_period: f64| {

@@ -43,6 +43,7 @@ fn config(set: Parameters, search: Search, bandwidth: f64) -> Config {
             halvings: 3,
             periods: 100.0,
             settled: None,
+            waits: None,
         },
         start: Start::At {
             alpha_hat: 0.0,

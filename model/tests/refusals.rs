@@ -373,7 +373,7 @@ fn keys_of_no_calibration_are_refused() {
         ("completion", "false", "true"),
         ("completion_gamma", "9", "10"),
         ("gamma_first", "5", "4"),
-        ("gamma_last", "12", "10"),
+        ("gamma_last", "12", "9"),
         ("gear_periods", "3", "4"),
         ("restart_residual", "0.3", "0.25"),
         ("hold_residual", "0.125", "0.0625"),

@@ -92,7 +92,13 @@ const REASONS: &[(&[&str], &str, &[&str])] = &[
         &["formats.sine_phase_bits"],
     ),
     (
-        &["theta_deviation", "recent", "proven", "gathered_9"],
+        &[
+            "theta_deviation",
+            "recent",
+            "proven",
+            "running",
+            "gathered_9",
+        ],
         "parameter: bounded to what the design promises, a quarter more, up to a power of two; resolution by the budget",
         &["formats.accumulator_fraction"],
     ),
@@ -105,6 +111,11 @@ const REASONS: &[(&[&str], &str, &[&str])] = &[
         &["solved"],
         "step of a parameter: one bit more than the widest of them",
         &["formats.accumulator_fraction"],
+    ),
+    (
+        &["rho_c", "rho_s"],
+        "residual along the direction: as wide as a signal, its point as far left as its range allows",
+        &["formats.signal_fraction"],
     ),
     (
         &["rho_limited"],
@@ -273,7 +284,7 @@ fn by_parameter(name: &str) -> &'static [&'static str] {
                 "formats.bend_range_log2",
             ];
         }
-        ("theta_deviation" | "recent" | "proven", Some(n)) => (n, true),
+        ("theta_deviation" | "recent" | "proven" | "running", Some(n)) => (n, true),
         // The step of a period is as wide as what it moves.
         ("gathered", Some(9)) => (9, true),
         ("theta" | "theta_solved", Some(n)) => (n, false),

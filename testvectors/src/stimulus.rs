@@ -142,7 +142,7 @@ pub fn named(design: &Design, rows: usize) -> Vec<Stimulus> {
                 _ if 3 * k < rows => 1.0,
                 _ if fading < FADING => 1.0 - 0.12 * fading / FADING,
                 _ if !spec.calibration.recalls() => 0.88,
-                periods if periods > 6.0 => 1.06 + 0.003 * (periods - 6.0),
+                periods if periods > 6.0 => 1.06 + 0.006 * (periods - 6.0),
                 periods if periods > 0.0 && periods < 3.0 => 0.97,
                 _ => 0.88,
             };
@@ -179,6 +179,31 @@ pub fn named(design: &Design, rows: usize) -> Vec<Stimulus> {
                 let rail = |v: f64| if v < 0.0 { low } else { full };
                 (rail(alpha.cos()), rail(alpha.sin()))
             }
+        }),
+        // So slowly down that the parameters follow, until it falls.
+        motion("drift", &|k| {
+            let drifting = (k as f64 - 0.4 * n) * top;
+            let left = if 8 * k > 7 * rows { 0.88 } else { 1.0 };
+            let gain = left * (1.0 - 6e-4 * drifting.max(0.0));
+            faded(pair(top * k as f64, 1.0, 0.0), gain)
+        }),
+        // Over a period and back.
+        motion("reversals", &|k| {
+            let swing = k as f64 * top / 32.0;
+            pair(
+                0.65 * (1.0 - (swing * std::f64::consts::TAU).cos()),
+                1.0,
+                0.0,
+            )
+        }),
+        // So small a signal that both gains stay at their bounds, and smaller once parameters are proven there.
+        motion("small", &|k| {
+            let nominal = design.constants.theta_1_nominal.ideal;
+            let bound = design.constants.gain_bound.value();
+            let small = 0.96 * nominal / (nominal + bound);
+            let alpha = std::f64::consts::TAU * k as f64 * top;
+            let left = a * small * if 5 * k > 4 * rows { 0.9 } else { 1.0 };
+            (code(left * alpha.cos()), code(left * alpha.sin()))
         }),
         Stimulus {
             name: "ties".into(),

@@ -1,7 +1,7 @@
 // How to instantiate optical: an ADC with a strobe on one side, a motion controller on the other.
 //
-// optical needs 20 clocks per sample; at 1000000 samples per second that is a clock of at least
-// 20000000 Hz (see optical.sdc).
+// optical needs 19 clocks per sample; at 1000000 samples per second that is a clock of at least
+// 19000000 Hz (see optical.sdc).
 
 `default_nettype none
 `timescale 1ns / 1ps
@@ -20,9 +20,9 @@ module optical_example (
     wire signed [58:0] position;
     wire valid;
     wire signed [15:0] theta_1;
-    wire signed [24:0] theta_2;
+    wire signed [23:0] theta_2;
     wire signed [15:0] theta_3;
-    wire signed [24:0] theta_4;
+    wire signed [23:0] theta_4;
     wire signed [13:0] theta_5;
     wire signed [25:0] speed;
     wire locked;

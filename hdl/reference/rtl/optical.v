@@ -3,10 +3,10 @@
 // A digital loop follows the angle alpha of a sin/cos sensor: the corrected pair is turned back by the estimate
 // alpha_hat, what is left is the phase error e, and the loop filter turns e into the next step of the estimate. The
 // radial residual rho shows what the correction still misses and moves its parameters theta_1 to theta_5. gamma, how
-// far, is 2^-4 at first and 2^-10 after 6 gears.
+// far, is 2^-4 at first and 2^-9 after 5 gears.
 // After S. Balemi, "Automatic calibration of sinusoidal encoder signals", IFAC 2005; equation numbers are the paper's.
 //
-// Design 467251f27415: 16 products on 1 multiplier, 20 clocks per sample.
+// Design f121a1df1d66: 16 products on 1 multiplier, 19 clocks per sample.
 //
 // Formats: sW.F is a two's complement number of W bits, F of them behind the point; uW.F has no sign and is kept here
 // with a zero in front, so that every number is signed. Angles are in turns of a scale period. A signal that saturates
@@ -23,14 +23,15 @@
 // -----+--------------------------+------------------------------------------------------------------------------------
 //    0 | -                        | sine_phase upper_half odd_quadrant quarter_phase quarter_phase_mirrored sin_address
 //      |                          | sin_inside cos_address cos_inside cos_negative theta_1 theta_3 theta_5 last_gear
-//      |                          | periods_modulo_4 sector sector_relative period_ahead period_behind a_period_away
-//      |                          | reach_ahead reach_behind unseen_ahead may_add_ahead sector_ahead unseen_behind
-//      |                          | may_add_behind gamma_settled search_begun proven_stand nominal held_long
-//      |                          | rises_again restart_cause last_gamma_gear quiet gear_done hold_begins hold_ends
-//      |                          | periods_count_ends nothing_proven_yet
+//      |                          | gamma_settled periods_modulo_4 sector sector_relative period_ahead period_behind
+//      |                          | a_period_away reach_ahead reach_behind unseen_ahead used_ahead_counts may_add_ahead
+//      |                          | sector_ahead unseen_behind used_behind_counts may_add_behind search_begun
+//      |                          | proven_stand nominal held_long rises_again restart_cause last_gamma_gear quiet
+//      |                          | gear_done hold_begins hold_ends periods_count_ends gain_c_inside gain_c_rests
+//      |                          | gain_s_inside gain_s_rests gains_steady proves nothing_proven_yet
 //    1 | loop_ab * error_previous | sin_value sin_slope y_c y_s counting whole_period sector_behind travel_clear
 //      |                          | sector_added new_sector still_used_ahead used_up_ahead still_used_behind
-//      |                          | used_up_behind y_1 y_3 y_5 lost_before
+//      |                          | used_up_behind y_5 lost_before
 //    2 | theta_1 * y_c            | cos_value cos_slope drift
 //    3 | cos_slope * cos_inside   | c_exact c
 //    4 | theta_3 * y_s            | cos_magnitude cos_hat c_weak
@@ -48,15 +49,14 @@
 //      |                          | still_held first_gear_period last_gear_passed
 //   13 | loop_a * e_change        | level_moved level_full level_empty narrower loop_gear_up full_in_last_gear
 //      |                          | hold_cause hold recall fresh rho_s gradient_2 step_2 gamma_gear_up
-//      |                          | gear_periods_again holding restart_risen recall_again recall_any proved remember
-//      |                          | search_improves remember_better return_ends return_goes_on signal_changed
-//      |                          | still_known fades fade_ends lock_falls
-//   14 | y_1 * rho_c              | kick gradient_4 step_4 remember_recent
-//   15 | y_3 * rho_s              | speed backwards not_forwards gradient_1 step_1
+//      |                          | gear_periods_again holding restart_risen recall_again recall_any quiet_periods_end
+//      |                          | proved remember search_improves remember_better return_ends return_goes_on
+//      |                          | signal_changed still_known fades fade_ends period_taught lock_falls
+//   14 | y_c * rho_c              | kick gradient_4 step_4 remember_recent search_ends theta_applies
+//   15 | y_s * rho_s              | speed backwards not_forwards gradient_1 step_1
 //   16 | y_5 * rho_s              | alpha_hat_sum carry count_before gradient_3 step_3
 //   17 | -                        | gradient_5 step_5
 //   18 | -                        |
-//   19 | -                        |
 //
 // Coefficients, by name in the comments below:
 //     loop_a                 0.014132976531982422    Loop coefficient a, turns per radian.
@@ -70,13 +70,16 @@
 //     weak_signal            0.25                    Corrected signals below this are lost.
 //     restart_residual       0.25                    |ρ| above this begins the search again.
 //     hold_residual          0.0625                  |ρ| above this holds the parameters once γ has settled.
+//     steady_gain            0.001953125             A gain that moves by more between two times that it is remembered
+//                                                    is of a signal that fades.
+//     gain_bound             0.5                     Bound of a gain's deviation.
 //     direction_rate         0.0000152587890625      Rate below which the direction does not change, turns per sample.
 //     lock_down              -8                      What a bad sample adds to the lock level.
 //     lock_full              63                      The full lock level.
 //     lock_restart           31                      Lock level after a change of loop gear.
 //     loop_gear_last         3                       Last loop gear.
 //     gamma_gear_settled     4                       From this γ gear on γ has settled.
-//     gamma_gear_last        6                       Last γ gear.
+//     gamma_gear_last        5                       Last γ gear.
 //     gear_periods_last      3                       Periods of travel per γ gear, less one.
 //     held_periods_last      31                      Periods of travel that the parameters are held before the search
 //                                                    begins again, less one.
@@ -95,6 +98,8 @@
 //     minus_restart_residual -0.25                   Minus restart_residual: |ρ| above this begins the search again.
 //     minus_hold_residual    -0.0625                 Minus hold_residual: |ρ| above this holds the parameters once γ
 //                                                    has settled.
+//     minus_steady_gain      -0.001953125            Minus steady_gain: A gain that moves by more between two times
+//                                                    that it is remembered is of a signal that fades.
 
 `default_nettype none
 `timescale 1ns / 1ps
@@ -102,16 +107,16 @@
 module optical (
     input  wire clk, // every register changes at the rising edge
     input  wire rst_n, // asynchronous reset, active low
-    input  wire sample_valid, // one clock per sample, 20 clocks apart or more; the inputs below are valid
+    input  wire sample_valid, // one clock per sample, 19 clocks apart or more; the inputs below are valid
     input  wire [11:0] adc_cos, // code of the cosine channel, two's complement
     input  wire [11:0] adc_sin, // code of the sine channel, two's complement
     input  wire preset, // this sample's period becomes number 0; clears lock_lost
     input  wire calibrate, // this sample may move the parameters
     output wire signed [58:0] position, // periods, s59.27: whole periods and alpha_hat for the next sample
     output reg signed [15:0] theta_1, // θ1 as multiplied. s16.14
-    output reg signed [24:0] theta_2, // θ2. s25.26
+    output reg signed [23:0] theta_2, // θ2. s24.25
     output reg signed [15:0] theta_3, // θ3 as multiplied. s16.14
-    output reg signed [24:0] theta_4, // θ4. s25.26
+    output reg signed [23:0] theta_4, // θ4. s24.25
     output reg signed [13:0] theta_5, // θ5 as multiplied. s14.15
     output reg signed [25:0] speed, // Position increment of this sample, turns: the speed. s26.27
     output reg locked, // The loop follows.
@@ -126,11 +131,11 @@ module optical (
     reg signed [31:0] count; // Whole periods; the unit is the counter's whole range.
     reg signed [25:0] rate; // Phase increment per sample, turns.
     reg signed [17:0] error_previous; // e one sample ago, radians.
-    reg signed [25:0] theta_1_deviation; // θ1 less its nominal value.
-    reg signed [24:0] theta_2_deviation; // θ2.
-    reg signed [25:0] theta_3_deviation; // θ3 less its nominal value.
-    reg signed [24:0] theta_4_deviation; // θ4.
-    reg signed [24:0] theta_5_deviation; // θ5.
+    reg signed [24:0] theta_1_deviation; // θ1 less its nominal value.
+    reg signed [23:0] theta_2_deviation; // θ2.
+    reg signed [24:0] theta_3_deviation; // θ3 less its nominal value.
+    reg signed [23:0] theta_4_deviation; // θ4.
+    reg signed [23:0] theta_5_deviation; // θ5.
     reg signed [6:0] lock_level; // Confidence of the lock detector.
     reg signed [2:0] loop_gear; // Loop gear: 0 widest, the last is the designed bandwidth.
     reg signed [3:0] gamma_gear; // γ gear: 0 largest.
@@ -138,16 +143,21 @@ module optical (
     reg signed [7:0] travel_origin; // Position, modulo 4 periods, where the map of sectors was last cleared.
     reg signed [7:0] travel_low; // Lowest sector seen since, relative to the origin.
     reg signed [7:0] travel_high; // Highest sector seen since, relative to the origin.
-    reg signed [25:0] recent_1; // θ1 less its nominal value at the last end of some quiet periods of travel.
-    reg signed [24:0] recent_2; // θ2 less its nominal value at the last end of some quiet periods of travel.
-    reg signed [25:0] recent_3; // θ3 less its nominal value at the last end of some quiet periods of travel.
-    reg signed [24:0] recent_4; // θ4 less its nominal value at the last end of some quiet periods of travel.
-    reg signed [24:0] recent_5; // θ5 less its nominal value at the last end of some quiet periods of travel.
-    reg signed [25:0] proven_1; // θ1 less its nominal value at the end before.
-    reg signed [24:0] proven_2; // θ2 less its nominal value at the end before.
-    reg signed [25:0] proven_3; // θ3 less its nominal value at the end before.
-    reg signed [24:0] proven_4; // θ4 less its nominal value at the end before.
-    reg signed [24:0] proven_5; // θ5 less its nominal value at the end before.
+    reg signed [24:0] running_1; // θ1 less its nominal value, as the running period of travel has it so far.
+    reg signed [23:0] running_2; // θ2 less its nominal value, as the running period of travel has it so far.
+    reg signed [24:0] running_3; // θ3 less its nominal value, as the running period of travel has it so far.
+    reg signed [23:0] running_4; // θ4 less its nominal value, as the running period of travel has it so far.
+    reg signed [23:0] running_5; // θ5 less its nominal value, as the running period of travel has it so far.
+    reg signed [24:0] recent_1; // θ1 less its nominal value at the last end of some quiet periods of travel.
+    reg signed [23:0] recent_2; // θ2 less its nominal value at the last end of some quiet periods of travel.
+    reg signed [24:0] recent_3; // θ3 less its nominal value at the last end of some quiet periods of travel.
+    reg signed [23:0] recent_4; // θ4 less its nominal value at the last end of some quiet periods of travel.
+    reg signed [23:0] recent_5; // θ5 less its nominal value at the last end of some quiet periods of travel.
+    reg signed [24:0] proven_1; // θ1 less its nominal value at the end before.
+    reg signed [23:0] proven_2; // θ2 less its nominal value at the end before.
+    reg signed [24:0] proven_3; // θ3 less its nominal value at the end before.
+    reg signed [23:0] proven_4; // θ4 less its nominal value at the end before.
+    reg signed [23:0] proven_5; // θ5 less its nominal value at the end before.
     reg ahead_used; // The sectors ahead of the origin were used right before the map was cleared.
     reg behind_used; // The sectors behind the origin were used right before the map was cleared.
     reg disturbed; // The residual was large in this period of travel.
@@ -175,7 +185,7 @@ module optical (
     reg signed [17:0] sin_hat;
     reg cos_negative;
     reg signed [17:0] cos_hat;
-    reg signed [27:0] s_exact_sum;
+    reg signed [26:0] s_exact_sum;
     reg signed [17:0] c;
     reg signed [17:0] s;
     reg c_below_weak_signal;
@@ -211,6 +221,8 @@ module optical (
     reg not_forwards;
     reg direction_next;
     reg counting;
+    reg gamma_gear_below_gamma_gear_settled;
+    reg gamma_settled;
     reg signed [7:0] sector;
     reg signed [7:0] sector_relative;
     reg period_ahead;
@@ -228,7 +240,6 @@ module optical (
     reg ahead_used_next;
     reg behind_used_next;
     reg counted;
-    reg gamma_settled;
     reg rho_high;
     reg rho_large;
     reg rho_not_small;
@@ -244,15 +255,13 @@ module optical (
     reg signed [14:0] rho_limited;
     reg signed [17:0] rho_c;
     reg signed [17:0] rho_s;
-    reg signed [12:0] y_1;
-    reg signed [12:0] y_3;
     reg signed [13:0] y_5;
     reg nominal;
-    reg signed [25:0] step_5;
-    reg signed [22:0] step_1;
-    reg signed [21:0] step_2;
-    reg signed [22:0] step_3;
-    reg signed [21:0] step_4;
+    reg signed [24:0] step_5;
+    reg signed [21:0] step_1;
+    reg signed [20:0] step_2;
+    reg signed [21:0] step_3;
+    reg signed [20:0] step_4;
     reg held_long;
     reg restart_cause;
     reg disturbed_period;
@@ -274,13 +283,13 @@ module optical (
     reg risen_next;
     reg held_next;
     reg recall_any;
-    reg signed [25:0] theta_1_deviation_next;
-    reg signed [24:0] theta_2_deviation_next;
-    reg signed [25:0] theta_3_deviation_next;
-    reg signed [24:0] theta_4_deviation_next;
-    reg signed [24:0] theta_5_deviation_next;
+    reg signed [24:0] running_1_next;
+    reg signed [23:0] running_2_next;
+    reg signed [24:0] running_3_next;
+    reg signed [23:0] running_4_next;
     reg signed [3:0] gamma_gear_next;
     reg last_gear_passed;
+    reg proves;
     reg nothing_proven_yet;
     reg remember;
     reg remember_better;
@@ -289,6 +298,8 @@ module optical (
     reg fading_next;
     reg halfway_next;
     reg known_next;
+    reg period_taught;
+    reg theta_applies;
     reg lost_before;
     reg lock_falls;
     reg lock_lost_next;
@@ -298,10 +309,10 @@ module optical (
     reg signed [17:0] operand_b_0;
     reg signed [35:0] product_0;
 
-    // Step counter: a sample starts in step 0 and takes 20 steps
+    // Step counter: a sample starts in step 0 and takes 19 steps
     reg [4:0] step;
     wire start = (step == 5'd0) & sample_valid;
-    wire last = step == 5'd19;
+    wire last = step == 5'd18;
 
     always @(posedge clk or negedge rst_n)
         if (!rst_n) begin
@@ -382,12 +393,12 @@ module optical (
     // Parameters as multiplied
     //   theta = nominal + deviation, rounded to what the multiplier takes
     //   (paper section 5.3)
-    wire signed [27:0] theta_1_rounded = 28'sh5000800 + {{2{theta_1_deviation[25]}}, theta_1_deviation};
-    wire signed [15:0] theta_1_now = theta_1_rounded[27:12]; // s16.14, step 0, with theta_1_nominal
-    wire signed [27:0] theta_3_rounded = 28'sh5000800 + {{2{theta_3_deviation[25]}}, theta_3_deviation};
-    wire signed [15:0] theta_3_now = theta_3_rounded[27:12]; // s16.14, step 0, with theta_3_nominal
+    wire signed [26:0] theta_1_rounded = 27'sh2800400 + {{2{theta_1_deviation[24]}}, theta_1_deviation};
+    wire signed [15:0] theta_1_now = theta_1_rounded[26:11]; // s16.14, step 0, with theta_1_nominal
+    wire signed [26:0] theta_3_rounded = 27'sh2800400 + {{2{theta_3_deviation[24]}}, theta_3_deviation};
+    wire signed [15:0] theta_3_now = theta_3_rounded[26:11]; // s16.14, step 0, with theta_3_nominal
     wire signed [14:0] theta_5_rounded =
-        {theta_5_deviation[24], theta_5_deviation[24:11]} + {14'b0, theta_5_deviation[10]};
+        {theta_5_deviation[23], theta_5_deviation[23:10]} + {14'b0, theta_5_deviation[9]};
     wire signed [13:0] theta_5_now = // s14.15, step 0
         ((&theta_5_rounded[14:13]) | ~(|theta_5_rounded[14:13]))
             ? theta_5_rounded[13:0]
@@ -397,15 +408,14 @@ module optical (
     //   c = theta_1 y_c + theta_2, s = theta_3 y_s + theta_4 + theta_5 y_c
     //   (paper section 5.3)
     wire signed [26:0] theta_1_times_y_c = product_0[26:0]; // s27.25, step 3
-    wire signed [27:0] c_exact = // s28.26, step 3
-        {theta_1_times_y_c, 1'b0} + {{3{theta_2_deviation[24]}}, theta_2_deviation};
+    wire signed [26:0] c_exact = theta_1_times_y_c + {{3{theta_2_deviation[23]}}, theta_2_deviation}; // s27.25, step 3
     wire signed [26:0] theta_3_times_y_s = product_0[26:0]; // s27.25, step 5
-    wire signed [27:0] s_exact_sum_now = // s28.26, step 5
-        {theta_3_times_y_s, 1'b0} + {{3{theta_4_deviation[24]}}, theta_4_deviation};
+    wire signed [26:0] s_exact_sum_now = // s27.25, step 5
+        theta_3_times_y_s + {{3{theta_4_deviation[23]}}, theta_4_deviation};
     wire signed [25:0] theta_5_times_y_c = product_0[25:0]; // s26.26, step 7
     wire signed [28:0] s_exact = // s29.26, step 7
-        {s_exact_sum[27], s_exact_sum} + {{3{theta_5_times_y_c[25]}}, theta_5_times_y_c};
-    wire signed [17:0] c_rounded = c_exact[27:10] + {17'b0, c_exact[9]};
+        {s_exact_sum[26], s_exact_sum, 1'b0} + {{3{theta_5_times_y_c[25]}}, theta_5_times_y_c};
+    wire signed [17:0] c_rounded = c_exact[26:9] + {17'b0, c_exact[8]};
     wire signed [17:0] c_now = c_rounded; // s18.16, step 3
     wire signed [18:0] s_rounded = s_exact[28:10] + {18'b0, s_exact[9]};
     wire signed [17:0] s_now = // s18.16, step 7
@@ -532,6 +542,8 @@ module optical (
     //   a sector of the period is fresh until it was used once since the last whole period
     //   (paper section 5.5: static measurements may bias the estimates)
     wire counting_now = locked & calibrate_held; // step 1
+    wire gamma_gear_below_gamma_gear_settled_now = $signed(gamma_gear[3:2]) < 2'sd1; // step 0, with gamma_gear_settled
+    wire gamma_settled_now = ~gamma_gear_below_gamma_gear_settled_now; // step 0
     wire signed [1:0] periods_modulo_4_bits = count[1:0]; // s2.32, step 0
     wire signed [1:0] periods_modulo_4 = periods_modulo_4_bits; // s2.0, step 0
     wire signed [6:0] sector_bits = alpha_hat[27:21]; // u6.6, step 0
@@ -547,18 +559,20 @@ module optical (
     wire signed [8:0] reach_behind = {travel_high[7], travel_high} - 9'sh40; // s9.6, step 0
     wire unseen_ahead = // step 0
         (travel_high < sector_relative_now) & ($signed({sector_relative_now[7], sector_relative_now}) < reach_ahead);
-    wire may_add_ahead = ~(($signed(sector_relative_now[7:4]) < 4'sd1) & ahead_used); // step 0
+    wire used_ahead_counts = ahead_used & gamma_gear_below_gamma_gear_settled_now; // step 0
+    wire may_add_ahead = ~(($signed(sector_relative_now[7:4]) < 4'sd1) & used_ahead_counts); // step 0
     wire sector_ahead_now = unseen_ahead & may_add_ahead; // step 0
     wire unseen_behind_now = // step 0
         (sector_relative_now < travel_low) & (reach_behind < $signed({sector_relative_now[7], sector_relative_now}));
+    wire used_behind_counts = behind_used & gamma_gear_below_gamma_gear_settled_now; // step 0
     wire may_add_behind_now = // step 0, with minus_quarter
-        ~(($signed(~sector_relative_now[7:4]) < 4'sd1) & behind_used);
+        ~(($signed(~sector_relative_now[7:4]) < 4'sd1) & used_behind_counts);
     wire sector_behind = unseen_behind & may_add_behind; // step 1
     wire not_counting_now = ~counting_now; // step 1
     wire travel_clear_now = whole_period_now | not_counting_now; // step 1
     wire sector_added = sector_ahead | sector_behind; // step 1
     wire new_sector_now = sector_added | travel_clear_now; // step 1
-    wire signed [7:0] travel_origin_next = travel_clear ? sector : travel_origin; // s8.6, step 19
+    wire signed [7:0] travel_origin_next = travel_clear ? sector : travel_origin; // s8.6, step 18
     wire signed [7:0] travel_low_next_chosen = sector_behind ? sector_relative : travel_low; // s8.6, step 1
     wire signed [7:0] travel_low_next_now = travel_clear_now ? 8'sd0 : travel_low_next_chosen; // s8.6, step 1
     wire signed [7:0] travel_high_next_chosen = sector_ahead ? sector_relative : travel_high; // s8.6, step 1
@@ -575,8 +589,6 @@ module optical (
     // Hold
     //   from the first quiet period on a large residual, once gamma has settled one that is not small, and all until
     //   the end of a period without one, moves no parameter
-    wire gamma_gear_below_gamma_gear_settled = $signed(gamma_gear[3:2]) < 2'sd1; // step 0, with gamma_gear_settled
-    wire gamma_settled_now = ~gamma_gear_below_gamma_gear_settled; // step 0
     wire rho_high_now = ~($signed(rho_now[17:14]) < 4'sd1); // step 9, with restart_residual
     wire rho_large_now = rho_high_now | ~($signed(~rho_now[17:14]) < 4'sd1); // step 9, with minus_restart_residual
     wire rho_not_small_now = // step 9, with hold_residual, minus_hold_residual
@@ -601,79 +613,76 @@ module optical (
     wire signed [14:0] rho_limited_now = // s15.16, step 9
         ((&rho_now[17:14]) | ~(|rho_now[17:14])) ? rho_now[14:0] : {rho_now[17], {14{~rho_now[17]}}};
     wire signed [31:0] cos_hat_times_rho_limited = product_0[31:0]; // s32.32, step 12
-    wire signed [15:0] rho_c_rounded = cos_hat_times_rho_limited[31:16] + {15'b0, cos_hat_times_rho_limited[15]};
-    wire signed [17:0] rho_c_now = {{2{rho_c_rounded[15]}}, rho_c_rounded}; // s18.16, step 12
+    wire signed [17:0] rho_c_rounded = cos_hat_times_rho_limited[31:14] + {17'b0, cos_hat_times_rho_limited[13]};
+    wire signed [17:0] rho_c_now = rho_c_rounded; // s18.18, step 12
     wire signed [31:0] sin_hat_times_rho_limited = product_0[31:0]; // s32.32, step 13
-    wire signed [15:0] rho_s_rounded = sin_hat_times_rho_limited[31:16] + {15'b0, sin_hat_times_rho_limited[15]};
-    wire signed [17:0] rho_s_now = {{2{rho_s_rounded[15]}}, rho_s_rounded}; // s18.16, step 13
+    wire signed [17:0] rho_s_rounded = sin_hat_times_rho_limited[31:14] + {17'b0, sin_hat_times_rho_limited[13]};
+    wire signed [17:0] rho_s_now = rho_s_rounded; // s18.18, step 13
     wire period_tick = counted_now & whole_period; // step 12
 
     // Parameter update
-    //   theta -= gamma gradient, each component times a power of two that lets all parameters converge alike
+    //   theta -= gamma gradient, each component times a power of two that lets all parameters converge alike; once
+    //   gamma has settled (theta_5: by a quarter of it then), the sum over a period of travel where it ends
     //   (paper section 5.5.1, M of equation (7))
-    wire signed [11:0] y_1_scaled = y_c; // s12.12, step 1
-    wire signed [12:0] y_1_now = gamma_settled ? {y_1_scaled[11], y_1_scaled} : {y_c, 1'b0}; // s13.12, step 1
-    wire signed [11:0] y_3_scaled = y_s; // s12.12, step 1
-    wire signed [12:0] y_3_now = gamma_settled ? {y_3_scaled[11], y_3_scaled} : {y_s, 1'b0}; // s13.12, step 1
     wire signed [11:0] y_5_scaled = y_c; // s12.13, step 1
     wire signed [13:0] y_5_now = gamma_settled ? {{2{y_5_scaled[11]}}, y_5_scaled} : {y_c, 2'b0}; // s14.13, step 1
-    wire signed [28:0] gradient_5 = product_0[28:0]; // s29.29, step 17
-    wire signed [27:0] y_1_times_rho_c = product_0[27:0]; // s28.28, step 15
-    wire signed [27:0] y_3_times_rho_s = product_0[27:0]; // s28.28, step 16
+    wire signed [30:0] gradient_5 = product_0[30:0]; // s31.31, step 17
+    wire signed [28:0] y_c_times_rho_c = product_0[28:0]; // s29.29, step 15
+    wire signed [28:0] y_s_times_rho_s = product_0[28:0]; // s29.29, step 16
     wire nominal_now = gamma_gear_below_one_now & (signal_lost & ~locked); // step 0
-    wire signed [25:0] step_5_geared = shifted_1; // s26.26, step 17
-    wire signed [25:0] step_5_now = fresh ? step_5_geared : 26'sd0; // s26.26, step 17
-    wire signed [26:0] theta_5_deviation_next_difference = // s27.26, step 18
-        {{2{theta_5_deviation[24]}}, theta_5_deviation} - {step_5[25], step_5};
-    wire signed [24:0] theta_5_deviation_next_bits = // s25.26, step 18
-        ((&theta_5_deviation_next_difference[26:24]) | ~(|theta_5_deviation_next_difference[26:24]))
-            ? theta_5_deviation_next_difference[24:0]
-            : {theta_5_deviation_next_difference[26], {24{~theta_5_deviation_next_difference[26]}}};
-    wire signed [27:0] gradient_1 = y_1_times_rho_c; // s28.31, step 15
-    wire signed [25:0] step_1_geared = shifted_1; // s26.26, step 15
-    wire signed [22:0] step_1_now = fresh ? step_1_geared[22:0] : 23'sd0; // s23.26, step 15
-    wire signed [26:0] theta_1_deviation_next_difference = // s27.26, step 16
-        {theta_1_deviation[25], theta_1_deviation} - {{4{step_1[22]}}, step_1};
-    wire signed [25:0] theta_1_deviation_next_bits = // s26.26, step 16
-        ((&theta_1_deviation_next_difference[26:25]) | ~(|theta_1_deviation_next_difference[26:25]))
-            ? theta_1_deviation_next_difference[25:0]
-            : {theta_1_deviation_next_difference[26], {25{~theta_1_deviation_next_difference[26]}}};
-    wire signed [15:0] gradient_2 = rho_c[15:0]; // s16.20, step 13
-    wire signed [25:0] step_2_geared = shifted_1; // s26.26, step 13
-    wire signed [21:0] step_2_now = fresh_now ? step_2_geared[21:0] : 22'sd0; // s22.26, step 13
-    wire signed [25:0] theta_2_deviation_next_difference = // s26.26, step 14
-        {theta_2_deviation[24], theta_2_deviation} - {{4{step_2[21]}}, step_2};
-    wire signed [24:0] theta_2_deviation_next_bits = // s25.26, step 14
-        ((&theta_2_deviation_next_difference[25:24]) | ~(|theta_2_deviation_next_difference[25:24]))
-            ? theta_2_deviation_next_difference[24:0]
-            : {theta_2_deviation_next_difference[25], {24{~theta_2_deviation_next_difference[25]}}};
-    wire signed [27:0] gradient_3 = y_3_times_rho_s; // s28.31, step 16
-    wire signed [25:0] step_3_geared = shifted_1; // s26.26, step 16
-    wire signed [22:0] step_3_now = fresh ? step_3_geared[22:0] : 23'sd0; // s23.26, step 16
-    wire signed [26:0] theta_3_deviation_next_difference = // s27.26, step 17
-        {theta_3_deviation[25], theta_3_deviation} - {{4{step_3[22]}}, step_3};
-    wire signed [25:0] theta_3_deviation_next_bits = // s26.26, step 17
-        ((&theta_3_deviation_next_difference[26:25]) | ~(|theta_3_deviation_next_difference[26:25]))
-            ? theta_3_deviation_next_difference[25:0]
-            : {theta_3_deviation_next_difference[26], {25{~theta_3_deviation_next_difference[26]}}};
-    wire signed [15:0] gradient_4 = rho_s[15:0]; // s16.20, step 14
-    wire signed [25:0] step_4_geared = shifted_1; // s26.26, step 14
-    wire signed [21:0] step_4_now = fresh ? step_4_geared[21:0] : 22'sd0; // s22.26, step 14
-    wire signed [25:0] theta_4_deviation_next_difference = // s26.26, step 15
-        {theta_4_deviation[24], theta_4_deviation} - {{4{step_4[21]}}, step_4};
-    wire signed [24:0] theta_4_deviation_next_bits = // s25.26, step 15
-        ((&theta_4_deviation_next_difference[25:24]) | ~(|theta_4_deviation_next_difference[25:24]))
-            ? theta_4_deviation_next_difference[24:0]
-            : {theta_4_deviation_next_difference[25], {24{~theta_4_deviation_next_difference[25]}}};
+    wire signed [24:0] step_5_geared = shifted_1; // s25.25, step 17
+    wire signed [24:0] step_5_now = fresh ? step_5_geared : 25'sd0; // s25.25, step 17
+    wire signed [25:0] running_5_next_difference = // s26.25, step 18
+        {{2{running_5[23]}}, running_5} - {step_5[24], step_5};
+    wire signed [23:0] running_5_next_bits = // s24.25, step 18
+        ((&running_5_next_difference[25:23]) | ~(|running_5_next_difference[25:23]))
+            ? running_5_next_difference[23:0]
+            : {running_5_next_difference[25], {23{~running_5_next_difference[25]}}};
+    wire signed [28:0] gradient_1 = y_c_times_rho_c; // s29.32, step 15
+    wire signed [24:0] step_1_geared = shifted_1; // s25.25, step 15
+    wire signed [21:0] step_1_now = fresh ? step_1_geared[21:0] : 22'sd0; // s22.25, step 15
+    wire signed [25:0] running_1_next_difference = // s26.25, step 16
+        {running_1[24], running_1} - {{4{step_1[21]}}, step_1};
+    wire signed [24:0] running_1_next_bits = // s25.25, step 16
+        ((&running_1_next_difference[25:24]) | ~(|running_1_next_difference[25:24]))
+            ? running_1_next_difference[24:0]
+            : {running_1_next_difference[25], {24{~running_1_next_difference[25]}}};
+    wire signed [17:0] gradient_2 = rho_c; // s18.22, step 13
+    wire signed [24:0] step_2_geared = shifted_1; // s25.25, step 13
+    wire signed [20:0] step_2_now = fresh_now ? step_2_geared[20:0] : 21'sd0; // s21.25, step 13
+    wire signed [24:0] running_2_next_difference = // s25.25, step 14
+        {running_2[23], running_2} - {{4{step_2[20]}}, step_2};
+    wire signed [23:0] running_2_next_bits = // s24.25, step 14
+        ((&running_2_next_difference[24:23]) | ~(|running_2_next_difference[24:23]))
+            ? running_2_next_difference[23:0]
+            : {running_2_next_difference[24], {23{~running_2_next_difference[24]}}};
+    wire signed [28:0] gradient_3 = y_s_times_rho_s; // s29.32, step 16
+    wire signed [24:0] step_3_geared = shifted_1; // s25.25, step 16
+    wire signed [21:0] step_3_now = fresh ? step_3_geared[21:0] : 22'sd0; // s22.25, step 16
+    wire signed [25:0] running_3_next_difference = // s26.25, step 17
+        {running_3[24], running_3} - {{4{step_3[21]}}, step_3};
+    wire signed [24:0] running_3_next_bits = // s25.25, step 17
+        ((&running_3_next_difference[25:24]) | ~(|running_3_next_difference[25:24]))
+            ? running_3_next_difference[24:0]
+            : {running_3_next_difference[25], {24{~running_3_next_difference[25]}}};
+    wire signed [17:0] gradient_4 = rho_s; // s18.22, step 14
+    wire signed [24:0] step_4_geared = shifted_1; // s25.25, step 14
+    wire signed [20:0] step_4_now = fresh ? step_4_geared[20:0] : 21'sd0; // s21.25, step 14
+    wire signed [24:0] running_4_next_difference = // s25.25, step 15
+        {running_4[23], running_4} - {{4{step_4[20]}}, step_4};
+    wire signed [23:0] running_4_next_bits = // s24.25, step 15
+        ((&running_4_next_difference[24:23]) | ~(|running_4_next_difference[24:23]))
+            ? running_4_next_difference[23:0]
+            : {running_4_next_difference[24], {23{~running_4_next_difference[24]}}};
 
     // Gears of gamma
     //   gamma halves after some periods of travel, starts again when the residual stays large
     wire held_long_now = held & ~(gear_periods < 6'sh1f); // step 0, with held_periods_last
     wire rises_again = risen & fading; // step 0
-    wire restart_cause_now = (gamma_gear_below_gamma_gear_settled | held_long_now) | rises_again; // step 0
+    wire restart_cause_now = (gamma_gear_below_gamma_gear_settled_now | held_long_now) | rises_again; // step 0
     wire disturbed_period_now = period_tick & disturbed; // step 12
     wire gamma_restart_now = disturbed_period_now & restart_cause; // step 12
-    wire gamma_gear_below_gamma_gear_last_now = $signed(gamma_gear[3:1]) < 3'sd3; // step 0, with gamma_gear_last
+    wire gamma_gear_below_gamma_gear_last_now = gamma_gear < 4'sd5; // step 0, with gamma_gear_last
     wire last_gamma_gear_now = ~gamma_gear_below_gamma_gear_last_now; // step 0
     wire quiet_now = ~(disturbed | held); // step 0
     wire gear_done_now = ~(gear_periods < 6'sd3) & quiet_now; // step 0, with gear_periods_last
@@ -706,29 +715,41 @@ module optical (
 
     // Recall
     //   held where it is known, or back: theta = proven; after twice gear_periods quiet periods in the last gear:
-    //   proven' = recent, recent' = theta
+    //   recent' = theta, proven' = recent if no gain moves
     wire restart_risen = gamma_restart & risen; // step 13
     wire recall_again = ((restart_risen & fading) | nominal) & known; // step 13
     wire recall_any_now = (recall | recall_again) | nominal; // step 13
-    wire signed [25:0] theta_1_deviation_next_now = // s26.26, step 16
-        recall_any ? proven_1 : theta_1_deviation_next_bits;
-    wire signed [24:0] theta_2_deviation_next_now = // s25.26, step 14
-        recall_any ? proven_2 : theta_2_deviation_next_bits;
-    wire signed [25:0] theta_3_deviation_next_now = // s26.26, step 17
-        recall_any ? proven_3 : theta_3_deviation_next_bits;
-    wire signed [24:0] theta_4_deviation_next_now = // s25.26, step 15
-        recall_any ? proven_4 : theta_4_deviation_next_bits;
-    wire signed [24:0] theta_5_deviation_next_now = // s25.26, step 18
-        recall_any ? proven_5 : theta_5_deviation_next_bits;
+    wire signed [24:0] running_1_next_now = recall_any ? proven_1 : running_1_next_bits; // s25.25, step 16
+    wire signed [23:0] running_2_next_now = recall_any ? proven_2 : running_2_next_bits; // s24.25, step 14
+    wire signed [24:0] running_3_next_now = recall_any ? proven_3 : running_3_next_bits; // s25.25, step 17
+    wire signed [23:0] running_4_next_now = recall_any ? proven_4 : running_4_next_bits; // s24.25, step 15
+    wire signed [23:0] running_5_next = recall_any ? proven_5 : running_5_next_bits; // s24.25, step 18
     wire signed [3:0] gamma_gear_next_chosen = // s4.0, step 13, with gamma_gear_last
-        recall_again ? 4'sd6 : gamma_gear_next_bits;
+        recall_again ? 4'sd5 : gamma_gear_next_bits;
     wire signed [3:0] gamma_gear_next_now = gamma_gear_next_chosen; // u3.0, step 13
     wire last_gear_passed_now = gear_passed_now & last_gamma_gear; // step 12
-    wire proved = last_gear_passed & halfway; // step 13
+    wire quiet_periods_end = last_gear_passed & halfway; // step 13
+    wire signed [12:0] gain_c_inside_bits = {{2{theta_1_deviation[24]}}, theta_1_deviation[24:14]}; // s13.11, step 0
+    wire signed [12:0] gain_c_rests_bits = {{2{recent_1[24]}}, recent_1[24:14]}; // s13.11, step 0
+    wire signed [11:0] gain_c_inside_sum = gain_c_inside_bits[11:0] + 12'sd4; // s12.11, step 0, with steady_gain
+    wire gain_c_inside = $signed(gain_c_inside_sum[11:10]) < 2'sd1; // step 0, with gain_bound
+    wire signed [11:0] gain_c_rests_difference = gain_c_inside_bits[11:0] - gain_c_rests_bits[11:0]; // s12.11, step 0
+    wire gain_c_rests = // step 0, with steady_gain, minus_steady_gain
+        ($signed(gain_c_rests_difference[11:2]) < 10'sd1) & ($signed(~gain_c_rests_difference[11:2]) < 10'sd1);
+    wire signed [12:0] gain_s_inside_bits = {{2{theta_3_deviation[24]}}, theta_3_deviation[24:14]}; // s13.11, step 0
+    wire signed [12:0] gain_s_rests_bits = {{2{recent_3[24]}}, recent_3[24:14]}; // s13.11, step 0
+    wire signed [11:0] gain_s_inside_sum = gain_s_inside_bits[11:0] + 12'sd4; // s12.11, step 0, with steady_gain
+    wire gain_s_inside = $signed(gain_s_inside_sum[11:10]) < 2'sd1; // step 0, with gain_bound
+    wire signed [11:0] gain_s_rests_difference = gain_s_inside_bits[11:0] - gain_s_rests_bits[11:0]; // s12.11, step 0
+    wire gain_s_rests = // step 0, with steady_gain, minus_steady_gain
+        ($signed(gain_s_rests_difference[11:2]) < 10'sd1) & ($signed(~gain_s_rests_difference[11:2]) < 10'sd1);
+    wire gains_steady = (gain_c_rests & gain_c_inside) & (gain_s_rests & gain_s_inside); // step 0
+    wire proves_now = gains_steady | ~known; // step 0
+    wire proved = quiet_periods_end & proves; // step 13
     wire nothing_proven_yet_now = ~(known | last_gamma_gear_now); // step 0
     wire remember_now = proved | nothing_proven_yet; // step 13
     wire search_improves = (gear_passed | first_gear_period) & gamma_gear_below_gamma_gear_last; // step 13
-    wire remember_better_now = search_improves | proved; // step 13
+    wire remember_better_now = search_improves | quiet_periods_end; // step 13
     wire remember_recent_now = remember_better | recall_any; // step 14
     wire return_ends = gear_passed | gamma_restart; // step 13
     wire return_goes_on = recall & ~return_ends; // step 13
@@ -736,20 +757,32 @@ module optical (
     wire still_known = known & ~signal_changed; // step 13
     wire fades = (gamma_restart & held_long) | fading; // step 13
     wire fade_ends = (recall_again | proved) | signal_changed; // step 13
-    wire signed [25:0] recent_1_next = remember_recent ? theta_1_deviation_next : recent_1; // s26.26, step 19
-    wire signed [24:0] recent_2_next = remember_recent ? theta_2_deviation_next : recent_2; // s25.26, step 19
-    wire signed [25:0] recent_3_next = remember_recent ? theta_3_deviation_next : recent_3; // s26.26, step 19
-    wire signed [24:0] recent_4_next = remember_recent ? theta_4_deviation_next : recent_4; // s25.26, step 19
-    wire signed [24:0] recent_5_next = remember_recent ? theta_5_deviation_next : recent_5; // s25.26, step 19
-    wire signed [25:0] proven_1_next = remember ? recent_1 : proven_1; // s26.26, step 19
-    wire signed [24:0] proven_2_next = remember ? recent_2 : proven_2; // s25.26, step 19
-    wire signed [25:0] proven_3_next = remember ? recent_3 : proven_3; // s26.26, step 19
-    wire signed [24:0] proven_4_next = remember ? recent_4 : proven_4; // s25.26, step 19
-    wire signed [24:0] proven_5_next = remember ? recent_5 : proven_5; // s25.26, step 19
+    wire signed [24:0] recent_1_next = remember_recent ? running_1_next : recent_1; // s25.25, step 18
+    wire signed [23:0] recent_2_next = remember_recent ? running_2_next : recent_2; // s24.25, step 18
+    wire signed [24:0] recent_3_next = remember_recent ? running_3_next : recent_3; // s25.25, step 18
+    wire signed [23:0] recent_4_next = remember_recent ? running_4_next : recent_4; // s24.25, step 18
+    wire signed [23:0] recent_5_next = remember_recent ? running_5_next : recent_5; // s24.25, step 18
+    wire signed [24:0] proven_1_next = remember ? recent_1 : proven_1; // s25.25, step 18
+    wire signed [23:0] proven_2_next = remember ? recent_2 : proven_2; // s24.25, step 18
+    wire signed [24:0] proven_3_next = remember ? recent_3 : proven_3; // s25.25, step 18
+    wire signed [23:0] proven_4_next = remember ? recent_4 : proven_4; // s24.25, step 18
+    wire signed [23:0] proven_5_next = remember ? recent_5 : proven_5; // s24.25, step 18
     wire returning_next_now = return_goes_on | recall_again; // step 13
     wire fading_next_now = fades & ~fade_ends; // step 13
     wire halfway_next_now = halfway ^ last_gear_passed; // step 13
     wire known_next_now = still_known | proved; // step 13
+
+    // Parameters as they are applied
+    //   theta = what the search has found, once gamma has settled where a period of travel ends
+    //   (paper section 5.5: static measurements may bias the estimates)
+    wire period_taught_now = fresh_now & whole_period; // step 13
+    wire search_ends = gamma_gear_below_gamma_gear_settled | period_taught; // step 14
+    wire theta_applies_now = search_ends | recall_any; // step 14
+    wire signed [24:0] theta_1_deviation_next = theta_applies ? running_1_next : theta_1_deviation; // s25.25, step 18
+    wire signed [23:0] theta_2_deviation_next = theta_applies ? running_2_next : theta_2_deviation; // s24.25, step 18
+    wire signed [24:0] theta_3_deviation_next = theta_applies ? running_3_next : theta_3_deviation; // s25.25, step 18
+    wire signed [23:0] theta_4_deviation_next = theta_applies ? running_4_next : theta_4_deviation; // s24.25, step 18
+    wire signed [23:0] theta_5_deviation_next = theta_applies ? running_5_next : theta_5_deviation; // s24.25, step 18
 
     // Flags
     //   what the machine control needs to know
@@ -758,18 +791,18 @@ module optical (
     wire lock_lost_next_now = lost_before | lock_falls; // step 14
 
     // Shifter 1, shared: gamma is a power of two
-    reg signed [26:0] unshifted_1;
+    reg signed [25:0] unshifted_1;
     always @*
         case (step)
-            5'd13: unshifted_1 = {{4{gradient_2[15]}}, gradient_2, 7'b0}; // step_2_geared
-            5'd14: unshifted_1 = {{4{gradient_4[15]}}, gradient_4, 7'b0}; // step_4_geared
-            5'd15: unshifted_1 = {{3{gradient_1[27]}}, gradient_1[27:4]}; // step_1_geared
-            5'd16: unshifted_1 = {{3{gradient_3[27]}}, gradient_3[27:4]}; // step_3_geared
-            default: unshifted_1 = gradient_5[28:2];
+            5'd13: unshifted_1 = {{4{gradient_2[17]}}, gradient_2, 4'b0}; // step_2_geared
+            5'd14: unshifted_1 = {{4{gradient_4[17]}}, gradient_4, 4'b0}; // step_4_geared
+            5'd15: unshifted_1 = {{3{gradient_1[28]}}, gradient_1[28:6]}; // step_1_geared
+            5'd16: unshifted_1 = {{3{gradient_3[28]}}, gradient_3[28:6]}; // step_3_geared
+            default: unshifted_1 = gradient_5[30:5];
         endcase
-    wire signed [26:0] shift_1 = unshifted_1 >>> gamma_gear[2:0];
-    wire signed [25:0] shifted_1_rounded = shift_1[26:1] + {25'b0, shift_1[0]};
-    wire signed [25:0] shifted_1 = shifted_1_rounded;
+    wire signed [25:0] shift_1 = unshifted_1 >>> gamma_gear[2:0];
+    wire signed [24:0] shifted_1_rounded = shift_1[25:1] + {24'b0, shift_1[0]};
+    wire signed [24:0] shifted_1 = shifted_1_rounded;
 
     // Multiplier 0
     always @(posedge clk)
@@ -778,7 +811,7 @@ module optical (
     always @(posedge clk)
         case (step)
             5'd0: operand_a_0 <= error_previous;
-            5'd1, 5'd5: operand_a_0 <= {{6{y_c[11]}}, y_c};
+            5'd1, 5'd5, 5'd13: operand_a_0 <= {{6{y_c[11]}}, y_c};
             5'd2: operand_a_0 <= {{8{cos_inside[9]}}, cos_inside};
             5'd3: operand_a_0 <= {{2{theta_3[15]}}, theta_3};
             5'd4: operand_a_0 <= {{9{sin_slope[8]}}, sin_slope};
@@ -787,9 +820,7 @@ module optical (
             5'd8: operand_a_0 <= s;
             5'd10, 5'd11: operand_a_0 <= {{3{rho_limited[14]}}, rho_limited};
             5'd12: operand_a_0 <= 18'she78e; // loop_a
-            5'd13: operand_a_0 <= {{5{y_1[12]}}, y_1};
-            5'd14: operand_a_0 <= {{5{y_3[12]}}, y_3};
-            default: operand_a_0 <= {{4{y_5[13]}}, y_5};
+            default: operand_a_0 <= rho_s;
         endcase
 
     always @(posedge clk)
@@ -797,14 +828,14 @@ module optical (
             5'd0: operand_b_0 <= 18'sh9d8d; // loop_ab
             5'd1: operand_b_0 <= {{2{theta_1[15]}}, theta_1};
             5'd2: operand_b_0 <= {{9{cos_slope[8]}}, cos_slope};
-            5'd3: operand_b_0 <= {{6{y_s[11]}}, y_s};
+            5'd3, 5'd14: operand_b_0 <= {{6{y_s[11]}}, y_s};
             5'd4: operand_b_0 <= {{8{sin_inside[9]}}, sin_inside};
             5'd5: operand_b_0 <= {{4{theta_5[13]}}, theta_5};
             5'd6, 5'd8, 5'd10: operand_b_0 <= cos_hat;
             5'd7, 5'd9, 5'd11: operand_b_0 <= sin_hat;
             5'd12: operand_b_0 <= e_change;
             5'd13: operand_b_0 <= rho_c;
-            default: operand_b_0 <= rho_s;
+            default: operand_b_0 <= {{4{y_5[13]}}, y_5};
         endcase
 
     // Values that later steps or the testbench read, at the end of the step that computes them
@@ -820,6 +851,8 @@ module optical (
             theta_5 <= theta_5_now;
             loop_gear_below_loop_gear_last <= loop_gear_below_loop_gear_last_now;
             last_gear <= last_gear_now;
+            gamma_gear_below_gamma_gear_settled <= gamma_gear_below_gamma_gear_settled_now;
+            gamma_settled <= gamma_settled_now;
             sector <= sector_now;
             sector_relative <= sector_relative_now;
             period_ahead <= period_ahead_now;
@@ -828,7 +861,6 @@ module optical (
             sector_ahead <= sector_ahead_now;
             unseen_behind <= unseen_behind_now;
             may_add_behind <= may_add_behind_now;
-            gamma_settled <= gamma_settled_now;
             gamma_gear_below_one <= gamma_gear_below_one_now;
             search_begun <= search_begun_now;
             not_fading <= not_fading_now;
@@ -841,6 +873,7 @@ module optical (
             quiet <= quiet_now;
             gear_done <= gear_done_now;
             periods_count_ends <= periods_count_ends_now;
+            proves <= proves_now;
             nothing_proven_yet <= nothing_proven_yet_now;
             theta_2 <= theta_2_deviation;
             theta_4 <= theta_4_deviation;
@@ -857,8 +890,6 @@ module optical (
             travel_high_next <= travel_high_next_now;
             ahead_used_next <= ahead_used_next_now;
             behind_used_next <= behind_used_next_now;
-            y_1 <= y_1_now;
-            y_3 <= y_3_now;
             y_5 <= y_5_now;
             lost_before <= lost_before_now;
         end
@@ -949,14 +980,16 @@ module optical (
             fading_next <= fading_next_now;
             halfway_next <= halfway_next_now;
             known_next <= known_next_now;
+            period_taught <= period_taught_now;
             lock_falls <= lock_falls_now;
         end
         if (step == 5'd14) begin
             loop_gear_next <= loop_gear_next_now;
             kick <= kick_now;
             step_4 <= step_4_now;
-            theta_2_deviation_next <= theta_2_deviation_next_now;
+            running_2_next <= running_2_next_now;
             remember_recent <= remember_recent_now;
+            theta_applies <= theta_applies_now;
             lock_lost_next <= lock_lost_next_now;
         end
         if (step == 5'd15) begin
@@ -964,21 +997,18 @@ module optical (
             backwards <= backwards_now;
             not_forwards <= not_forwards_now;
             step_1 <= step_1_now;
-            theta_4_deviation_next <= theta_4_deviation_next_now;
+            running_4_next <= running_4_next_now;
         end
         if (step == 5'd16) begin
             alpha_hat_next <= alpha_hat_next_now;
             count_next <= count_next_now;
             direction_next <= direction_next_now;
             step_3 <= step_3_now;
-            theta_1_deviation_next <= theta_1_deviation_next_now;
+            running_1_next <= running_1_next_now;
         end
         if (step == 5'd17) begin
             step_5 <= step_5_now;
-            theta_3_deviation_next <= theta_3_deviation_next_now;
-        end
-        if (step == 5'd18) begin
-            theta_5_deviation_next <= theta_5_deviation_next_now;
+            running_3_next <= running_3_next_now;
         end
     end
 
@@ -1001,6 +1031,11 @@ module optical (
             travel_origin <= 0;
             travel_low <= 0;
             travel_high <= 0;
+            running_1 <= 0;
+            running_2 <= 0;
+            running_3 <= 0;
+            running_4 <= 0;
+            running_5 <= 0;
             recent_1 <= 0;
             recent_2 <= 0;
             recent_3 <= 0;
@@ -1041,6 +1076,11 @@ module optical (
             travel_origin <= travel_origin_next;
             travel_low <= travel_low_next;
             travel_high <= travel_high_next;
+            running_1 <= running_1_next;
+            running_2 <= running_2_next;
+            running_3 <= running_3_next;
+            running_4 <= running_4_next;
+            running_5 <= running_5_next;
             recent_1 <= recent_1_next;
             recent_2 <= recent_2_next;
             recent_3 <= recent_3_next;
@@ -1079,9 +1119,9 @@ module optical (
         cos_address[16],
         cos_inside_sum[10],
         cos_magnitude_sum[7:0],
-        theta_1_rounded[11:0],
-        theta_3_rounded[11:0],
-        c_exact[8:0],
+        theta_1_rounded[10:0],
+        theta_3_rounded[10:0],
+        c_exact[7:0],
         s_exact[8:0],
         rho_exact[15:0],
         rho,
@@ -1093,17 +1133,25 @@ module optical (
         carry[2],
         count_next_sum[32],
         sector_relative_difference[8],
-        cos_hat_times_rho_limited[14:0],
-        sin_hat_times_rho_limited[14:0],
-        gradient_5[1:0],
-        gradient_1[3:0],
-        step_1_geared[25:23],
-        step_2_geared[25:22],
-        gradient_3[3:0],
-        step_3_geared[25:23],
-        step_4_geared[25:22],
+        cos_hat_times_rho_limited[12:0],
+        sin_hat_times_rho_limited[12:0],
+        gradient_5[4:0],
+        gradient_1[5:0],
+        step_1_geared[24:22],
+        step_2_geared[24:21],
+        gradient_3[5:0],
+        step_3_geared[24:22],
+        step_4_geared[24:21],
         gamma_gear_next_sum[4:3],
         gear_periods_next_sum[6:5],
+        gain_c_inside_bits[12],
+        gain_c_rests_bits[12],
+        gain_c_inside_sum[9:0],
+        gain_c_rests_difference[1:0],
+        gain_s_inside_bits[12],
+        gain_s_rests_bits[12],
+        gain_s_inside_sum[9:0],
+        gain_s_rests_difference[1:0],
         product_0[35]
     };
 

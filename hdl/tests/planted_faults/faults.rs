@@ -151,14 +151,14 @@ pub(crate) fn faults() -> Vec<Fault> {
             replaced(v, &["wire", " s_now = "], &all, &kept)
         }),
         fault("saturation of theta_2: wraps", |v| {
-            let words = ["wire", " theta_2_deviation_next_bits = "];
+            let words = ["wire", " running_2_next_bits = "];
             let kept = between(v, &words, "? ", " :");
             let all = between(v, &words, "= ", ";");
             replaced(v, &words, &all, &kept)
         }),
         swap(
             "saturation of theta_4: at the other end",
-            &["wire", " theta_4_deviation_next_bits = "],
+            &["wire", " running_4_next_bits = "],
             "{~",
             "{",
         ),
@@ -234,21 +234,50 @@ pub(crate) fn faults() -> Vec<Fault> {
         ),
         swap(
             "sectors counted again by turning back behind",
-            &["wire may_add_behind_now ="],
-            " & behind_used",
-            " & 1'b0",
+            &["wire used_behind_counts ="],
+            "behind_used &",
+            "1'b0 &",
         ),
         swap(
             "sectors counted again by turning back ahead",
-            &["wire may_add_ahead ="],
-            " & ahead_used",
-            " & 1'b0",
+            &["wire used_ahead_counts ="],
+            "ahead_used &",
+            "1'b0 &",
         ),
         swap(
             "turning back that is never forgotten",
             &["wire still_used_behind ="],
             "(whole_period_now | sector_behind)",
             "whole_period_now",
+        ),
+        swap(
+            "what a part of a period has taught is applied",
+            &["wire search_ends ="],
+            " | period_taught",
+            " | fresh_now",
+        ),
+        swap(
+            "what a period has taught is never applied",
+            &["wire search_ends ="],
+            " | period_taught",
+            "",
+        ),
+        fault("proven at a bound", |v| {
+            let inside = " & gain_s_inside";
+            let v = replaced(v, &["wire gains_steady ="], " & gain_c_inside", "");
+            replaced(&v, &["wire gains_steady ="], inside, "")
+        }),
+        swap(
+            "proven while gains move",
+            &["wire proves"],
+            "gains_steady | ~known",
+            "1'b1",
+        ),
+        swap(
+            "never proven again",
+            &["wire proves"],
+            "gains_steady | ",
+            "",
         ),
         fault(
             "parameters of the next sample at the ports too early",
@@ -390,9 +419,15 @@ pub(crate) fn recall_faults() -> Vec<Fault> {
         ),
         swap(
             "remembered twice as often",
-            &["wire proved ="],
+            &["wire quiet_periods_end"],
             " & halfway",
             "",
+        ),
+        swap(
+            "what is recalled waits for the end of the period",
+            &["wire theta_applies_now ="],
+            " | recall_any",
+            " & ~recall_any",
         ),
         swap(
             "no recall where the signal is back",

@@ -131,6 +131,7 @@ impl Method {
                 halvings: 3,
                 periods: 20.0,
                 settled: None,
+                waits: None,
             };
             if let Ok(reference) = Reference::new(config) {
                 list.push((name.into(), Self::Paper(five, Box::new(reference))));
@@ -222,6 +223,7 @@ pub(crate) fn config(set: Parameters, search: Search, gate: Gate) -> Config {
             halvings: 3,
             periods: 20.0,
             settled: None,
+            waits: None,
         },
         start: Start::Arctangent { samples: 32 },
         ..Config::paper(set, tracking, 0.0)

@@ -61,18 +61,17 @@ impl Budget {
 
 /// A gradient search of step μ settles with a variance of μ/2 of what disturbs its error, here the radial residual. Step
 /// times mean square of ∂α/∂θ, over all parameters, in units of γ: offsets 1 · 1/2, gains 2 · 1/8, phase 8 · 3/8; in the final form
-/// phase 16 · 3/8 before γ has settled, then gains 1 · 1/8 and phase 4 · 3/8; with bends the phase 4 · 3/8, even bends 1 · 1/4, the
-/// cubic one 1 · 1/2. Where half of each gain's gradient is taken from the other's, their difference is worth half as much again.
+/// phase 16 · 3/8 before γ has settled, then 4 · 3/8; with bends the phase 4 · 3/8, even bends 1 · 1/4, the cubic one 1 · 1/2. Where half of each gain's gradient is
+/// taken from the other's, their difference is worth half as much again.
 fn calibration(spec: &Spec, adc_radians: f64) -> f64 {
     let c = &spec.calibration;
-    let gain = if c.gains_settle() { 1.0 } else { 2.0 };
-    let four = 2.0 * 0.5 + 2.0 * gain / 8.0;
+    let four = 2.0 * 0.5 + 2.0 * 2.0 / 8.0;
     let bends = 2.0 * 0.25 + 0.5;
     let steps = match c.parameters {
         0 => 0.0,
-        4 if c.is_linear_final() => four + gain / 8.0,
+        4 if c.is_linear_final() => four + 2.0 / 8.0,
         4 => four,
-        5 if c.gains_settle() => four + 4.0 * 3.0 / 8.0,
+        5 if c.phase_settles() => four + 4.0 * 3.0 / 8.0,
         5 if c.is_linear_final() => four + 16.0 * 3.0 / 8.0,
         5 => four + 8.0 * 3.0 / 8.0,
         8 => four + bends,

@@ -146,6 +146,14 @@ pub(super) fn structure(
         signal,
         signal_rounded: signal.rounded_before(),
         residual: quarter(follow.residual_fraction),
+        along: if spec.calibration.starts() {
+            // The start weighs it by the sectors that a sample stands for.
+            signal
+        } else {
+            // No more than a quarter of a pair, which is 2 at most: the same word, two bits finer. What is cut off moves parameters that
+            // few places of the period do not tell.
+            Quantiser::saturating(Format::signed(width, f + 2))
+        },
         alpha: Quantiser::wrapping(Format::unsigned(fp, fp)),
         phase_difference: Quantiser::wrapping(Format::signed(fp, fp)),
         // A quarter of a turn each way, and twice that where the design comes near it.
@@ -320,6 +328,12 @@ pub(super) fn constants(
         weak_signal: Constant::rounded(0.25, 2),
         restart_residual: Constant::rounded(spec.calibration.restart_residual, f.min(8)),
         hold_residual: Constant::rounded(spec.hold_residual(), f.min(8)),
+        steady_gain: Constant::rounded(exp2(spec.steady_gain().log2().ceil() as i64), f.min(10)),
+        gain_bound: {
+            let gain = structure.formats.deviation[0].format;
+            let power = i64::from(gain.width) - 1 - i64::from(gain.fraction);
+            Constant::rounded(exp2(power), (-power).max(0) as u32)
+        },
         direction_rate: Constant::rounded(exp2(-i64::from(f)), words.phase_bits),
         lock_down: whole(-8),
         lock_full: whole(full),

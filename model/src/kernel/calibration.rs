@@ -6,7 +6,7 @@
 use super::gradient::{self, Bent, Seen};
 use super::sensitivity::Sensitivity;
 use super::step::{Equaliser, Mover};
-use super::{Coefficients, State, Structure, gather, gears, start};
+use super::{Coefficients, State, Structure, gather, gears, start, waits};
 use crate::signal::{Formula, Logic, Signal, Wide};
 use crate::spec::CalibrationMethod;
 
@@ -14,6 +14,18 @@ static UPDATE: Formula = Formula {
     title: "Parameter update",
     equation: "theta -= gamma gradient, each component times a power of two that lets all parameters converge alike",
     source: "paper section 5.5.1, M of equation (7)",
+};
+
+static UPDATE_WAITS: Formula = Formula {
+    equation: "theta -= gamma gradient, each component times a power of two that lets all parameters converge alike; \
+               once gamma has settled, the sum over a period of travel where it ends",
+    ..UPDATE
+};
+
+static UPDATE_WAITS_PHASE: Formula = Formula {
+    equation: "theta -= gamma gradient, each component times a power of two that lets all parameters converge alike; \
+               once gamma has settled (theta_5: by a quarter of it then), the sum over a period of travel where it ends",
+    ..UPDATE
 };
 
 static UPDATE_SQUARES: Formula = Formula {
@@ -57,24 +69,16 @@ pub fn update<S: Signal, const PLAIN: bool>(
     k: &Coefficients<S>,
     structure: &Structure,
 ) -> Update<S> {
-    let formula = if structure.calibration.squares() {
-        &UPDATE_SQUARES
-    } else {
-        &UPDATE
+    let calibration = &structure.calibration;
+    let formula = match (calibration.squares(), calibration.waits()) {
+        (true, _) => &UPDATE_SQUARES,
+        (false, true) if calibration.phase_settles() => &UPDATE_WAITS_PHASE,
+        (false, true) => &UPDATE_WAITS,
+        (false, false) => &UPDATE,
     };
     seen.rho.begin(formula);
     let mut this = Update {
-        theta: [
-            state.theta_1_deviation,
-            state.theta_2_deviation,
-            state.theta_3_deviation,
-            state.theta_4_deviation,
-            state.theta_5_deviation,
-            state.theta_6_deviation,
-            state.theta_7_deviation,
-            state.theta_8_deviation,
-            state.theta_9_deviation,
-        ],
+        theta: waits::searched(state, structure),
         sensitivities: [Sensitivity {
             gradient: k.zero,
             rate: k.zero,
@@ -94,7 +98,7 @@ pub fn update<S: Signal, const PLAIN: bool>(
     };
     let settled = structure
         .calibration
-        .gains_settle()
+        .phase_settles()
         .then(|| gears::settled(state, k, structure));
     let mut gradient = gradient::linear(seen, settled, k, structure);
     let mut bent =

@@ -122,6 +122,10 @@ coefficients! {
     restart_residual,
     /// |ρ| above this holds the parameters once γ has settled.
     hold_residual,
+    /// A gain that moves by more between two times that it is remembered is of a signal that fades.
+    steady_gain,
+    /// Bound of a gain's deviation.
+    gain_bound,
     /// Rate below which the direction does not change, turns per sample.
     direction_rate,
     /// What a bad sample adds to the lock level.

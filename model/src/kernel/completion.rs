@@ -4,9 +4,9 @@
 //! γ |S(2f)|²/2 per sector of travel, S the loop's sensitivity at twice the signal's frequency f: what a wide loop follows, it
 //! cannot tell from motion. Hence the gate: whole periods of net travel must follow one another fast enough, and θ9 moves where
 //! one of them ends, by what its 64 sectors gathered. What a loop lags behind an axis that gathers speed or brakes is nearly the
-//! same all round the period, and w is zero on average; a period in which the axis stops is dropped, and what it shakes with
-//! there. Standstill, slow motion and vibration, however fast, rest, and a sample whose |e| is more than a sensor's error is
-//! left out: a stop or a start.
+//! same all round the period, and w is zero on average. A period in which the axis stops is dropped with what it shakes with there,
+//! and so is one with a sample whose |e| is more than a sensor's error: a stop or a start. Standstill, slow motion and vibration,
+//! however fast, rest.
 
 use super::detector::within;
 use super::sensitivity::{self, Sensitivity};
@@ -22,7 +22,7 @@ static COMPLETION: Formula = Formula {
 
 static MOVING: Formula = Formula {
     title: "Travel fast enough for the completion",
-    equation: "moving from one whole period of travel to the next, while they take few samples",
+    equation: "moving from one whole period of travel to the next, while they take few samples; one with a stop, large e or large rho teaches nothing",
     source: "",
 };
 
@@ -67,7 +67,6 @@ pub fn complete<S: Signal>(
     let follows = follows(e, rho, open, k, structure);
     let spoilt = travel.new_sector.and(follows.not()).named("period_spoilt");
     let learns = state.moving.and(spoilt.not()).named("completion_learns");
-    e.begin(&MOVING);
     let moving = fast.and(travel.whole_period.or(learns));
     let clear = travel.whole_period.or(counting.not());
     let samples = (state.travel_samples + S::select(late, k.zero, k.one))

@@ -4,6 +4,7 @@ use super::sensitivity::{self, Sensitivity};
 use super::start::Polar;
 use super::{Coefficients, State, Structure};
 use crate::signal::{Formula, Signal, Wide};
+use crate::spec::Calibration;
 
 static DIRECTION: Formula = Formula {
     title: "Gradient along the radius",
@@ -70,14 +71,13 @@ pub fn limited<S: Signal>(rho: S, structure: &Structure) -> S {
 /// n ρ, or for the sum of squares (c, s) ε.
 #[inline(always)]
 pub fn along<S: Signal>(rho: S, (cos, sin): (S, S), structure: &Structure) -> (S, S) {
-    let signal = &structure.formats.signal;
-    ((cos * rho).quantise(signal), (sin * rho).quantise(signal))
+    let to = &structure.formats.along;
+    ((cos * rho).quantise(to), (sin * rho).quantise(to))
 }
 
 /// By θ1 … θ5 in the final form: Mᵀ n ρ. The last is 0 without phase. While the start runs, by δ1 … δ5 of a pair of
-/// amplitude 1. Where the gains are moved by half and the phase by a quarter once γ has `settled`, by so much of it then: a
-/// part of the step would have to be rounded once more, and what rounding loses moves parameters where samples lie at few places
-/// of the period.
+/// amplitude 1. Where the phase is moved by less once γ has `settled`, by so much of it then: a part of the step would have to be
+/// rounded once more, and what rounding loses moves parameters where samples lie at few places of the period.
 #[inline(always)]
 pub fn linear<S: Signal>(
     seen: &Seen<S>,
@@ -91,24 +91,18 @@ pub fn linear<S: Signal>(
         y_c = S::select(start.running, cos, y_c).named("m_c");
         y_s = S::select(start.running, sin, y_s).named("m_s");
     }
-    // What moves the gains, and the phase.
-    let (mut gain_c, mut gain_s, mut phase) = (y_c, y_s, y_c);
-    if let Some(settled) = settled {
-        let by = |y: S, power: i32, name| S::select(settled, y.scale(power), y).named(name);
-        (gain_c, gain_s) = (by(y_c, -1, "y_1"), by(y_s, -1, "y_3"));
-        if structure.calibration.has_phase() {
-            phase = by(y_c, -2, "y_5");
+    let fifth = match settled {
+        Some(settled) => {
+            let less = y_c.scale(-(Calibration::PHASE_HALVINGS as i32));
+            S::select(settled, less, y_c).named("y_5") * rho_s
         }
-    }
-    let fifth = if structure.calibration.has_phase() {
-        phase * rho_s
-    } else {
-        k.zero.widen()
+        None if structure.calibration.has_phase() => y_c * rho_s,
+        None => k.zero.widen(),
     };
     [
-        gain_c * rho_c,
+        y_c * rho_c,
         rho_c.widen(),
-        gain_s * rho_s,
+        y_s * rho_s,
         rho_s.widen(),
         fifth,
     ]

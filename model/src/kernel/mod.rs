@@ -26,6 +26,7 @@ pub mod state;
 pub mod step;
 pub mod sum_of_squares;
 pub mod travel;
+pub mod waits;
 
 pub use coefficients::{Coefficients, Constant};
 pub use sample::{advance, sample};
@@ -94,6 +95,8 @@ pub struct Formats {
     pub signal_rounded: Quantiser,
     /// ρ as it moves the parameters.
     pub residual: Quantiser,
+    /// n ρ.
+    pub along: Quantiser,
     /// Phase, modulo one turn.
     pub alpha: Quantiser,
     /// Difference of two phases, modulo one turn.

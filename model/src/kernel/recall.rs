@@ -5,22 +5,28 @@
 //! they begin to be held it goes back to the older of the two. Only in the last gear: before it they still improve. A signal that
 //! comes back over some periods is nearly whole before it is whole: they stay held until as many quiet periods have passed.
 //!
-//! A slower fade outlasts the hold, and the search begins again and follows it. What is proven stays as it was until the search has
-//! come to its last gear again. Where the radius is far too large before that, the signal is back: what is proven comes back, with
-//! the last gear. So it does where the signal is lost in the first gear, with which nothing else is known; before anything is proven
-//! that is what the last gear ended with, in the first one the last quiet period, and the search goes on from there.
+//! A slower fade outlasts the hold, and the search begins again and follows it; one slower still is followed without. So nothing is
+//! proven while a gain moves: what is stays as it was until the search has come to its last gear again and the gains rest. Where the
+//! radius is far too large before that, the signal is back: what is proven comes back, with the last gear. So it does where the signal
+//! is lost in the first gear, with which nothing else is known; before anything is proven that is what the last gear ended with, in the
+//! first one the last quiet period, and the search goes on from there.
 
 use super::calibration::Update;
+use super::detector::within;
 use super::gears::{Gears, last_gear, nominal};
 use super::{Coefficients, State, Structure};
+use crate::format::{Format, Quantiser};
 use crate::signal::{Formula, Logic, Signal};
 use crate::spec::CalibrationMethod;
 
 static RECALL: Formula = Formula {
     title: "Recall",
-    equation: "held where it is known, or back: theta = proven; after twice gear_periods quiet periods in the last gear: proven' = recent, recent' = theta",
+    equation: "held where it is known, or back: theta = proven; after twice gear_periods quiet periods in the last gear: recent' = theta, proven' = recent if no gain moves",
     source: "",
 };
+
+/// A gain as it is looked at, of ±2.
+const GAIN: Format = Format::signed(13, 11);
 
 /// What is remembered of θ1 … θ9.
 pub struct Memory<S: Signal> {
@@ -34,6 +40,8 @@ pub struct Memory<S: Signal> {
     pub fading: S::Bool,
     /// There are proven ones.
     pub known: S::Bool,
+    /// Something was recalled with this sample.
+    pub recalled: S::Bool,
     /// The last gear has passed once since it was remembered what they are.
     pub halfway: S::Bool,
 }
@@ -72,7 +80,10 @@ pub fn recall<S: Signal>(
     gears.gear =
         S::select(again, k.gamma_gear_last, gears.gear).quantise(&structure.formats.gamma_gear);
     let quiet = passed.and(last).named("last_gear_passed");
-    let proved = quiet.and(state.halfway).named("proved");
+    let ends = quiet.and(state.halfway).named("quiet_periods_end");
+    // The first time something is better than nothing.
+    let better = steady(state, k).or(state.known.not()).named("proves");
+    let proved = ends.and(better).named("proved");
     // Until something is proven, the end of the last gear is the best that is known.
     let yet = state.known.or(last).not().named("nothing_proven_yet");
     let older = proved.or(yet).named("remember");
@@ -81,7 +92,7 @@ pub fn recall<S: Signal>(
         .or(gears.first)
         .and(last.not())
         .named("search_improves")
-        .or(proved)
+        .or(ends)
         .named("remember_better")
         .or(all)
         .named("remember_recent");
@@ -108,7 +119,25 @@ pub fn recall<S: Signal>(
         fading: fades.and(ends.not()),
         halfway: state.halfway.xor(quiet),
         known: known.or(proved),
+        recalled: all,
     }
+}
+
+/// No gain has moved much since it was last remembered, nor is one near its bound: a signal that fades slowly takes them along, up to
+/// there.
+fn steady<S: Signal>(state: &State<S>, k: &Coefficients<S>) -> S::Bool {
+    let of = |now: S, before: S, name: [&'static str; 2]| {
+        // Few bits are enough.
+        let [now, before] = [now, before].map(|gain| gain.quantise(&Quantiser::grid(GAIN)));
+        let inside = (now + k.steady_gain).less_than(k.gain_bound).named(name[0]);
+        within(now - before, k.steady_gain)
+            .named(name[1])
+            .and(inside)
+    };
+    let (c, s) = (state.theta_1_deviation, state.theta_3_deviation);
+    let c = of(c, state.recent_1, ["gain_c_inside", "gain_c_rests"]);
+    let s = of(s, state.recent_3, ["gain_s_inside", "gain_s_rests"]);
+    c.and(s).named("gains_steady")
 }
 
 fn recent<S: Signal>(state: &State<S>) -> [S; 9] {

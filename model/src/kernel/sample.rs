@@ -3,7 +3,7 @@
 use super::{Coefficients, Input, Method, Probes, State, Structure};
 use super::{
     bend, calibration, completion, correction, detector, gears, gradient, harmonics, lock,
-    loop_filter, position, recall, sine, skew, start, step, sum_of_squares, travel,
+    loop_filter, position, recall, sine, skew, start, step, sum_of_squares, travel, waits,
 };
 use crate::signal::{Formula, Logic, Signal};
 
@@ -102,7 +102,8 @@ fn advance_of<S: Signal, const PLAIN: bool>(
     let counting = travel::counting(input, state);
     let starting = (!PLAIN && structure.calibration.starts()).then(|| start::running(state, k));
     let measure = starting.map(|running| start::measure(e, running, k));
-    let travel = travel::travel(counting, measure, state, k, structure);
+    let waits = waits::Waits::of(state, k, structure);
+    let travel = travel::travel(counting, (measure, waits), state, k, structure);
     let counts = counting.and(in_window).named("sample_counts");
     let counted = counts.and(travel.new_sector).named("counted");
     let hold = gears::hold(rho, counts, lock.full, state, k, structure);
@@ -159,6 +160,8 @@ fn advance_of<S: Signal, const PLAIN: bool>(
     let memory = hold
         .recall
         .map(|recall| recall::recall(&mut updated, recall, &mut gears, state, k, structure));
+    let recalled = memory.as_ref().map(|memory| memory.recalled);
+    let applied = waits::apply(updated.theta, waits, gate, recalled, state);
 
     rate.begin(&FLAGS);
     let lost_before = state.lock_lost.and(input.preset.not()).named("lost_before");
@@ -183,11 +186,6 @@ fn advance_of<S: Signal, const PLAIN: bool>(
     registers.alpha_hat_previous = next_alpha_hat_previous;
     registers.rate = next_rate;
     registers.error_previous = e;
-    registers.theta_1_deviation = updated.theta[0];
-    registers.theta_2_deviation = updated.theta[1];
-    registers.theta_3_deviation = updated.theta[2];
-    registers.theta_4_deviation = updated.theta[3];
-    registers.theta_5_deviation = updated.theta[4];
     registers.lock_level = lock.level;
     registers.loop_gear = lock.gear;
     registers.gamma_gear = gears.gear;
@@ -204,6 +202,7 @@ fn advance_of<S: Signal, const PLAIN: bool>(
     registers.disturbed = gears.disturbed;
     registers.risen = gears.risen;
     registers.held = gears.held;
+    applied.keep(registers);
     if !PLAIN {
         remember(registers, &updated, completed.as_ref());
         registers.start_periods = updated.start_periods;
@@ -247,12 +246,6 @@ fn remember<S: Signal>(
     updated: &calibration::Update<S>,
     completed: Option<&completion::Completion<S>>,
 ) {
-    [
-        next.theta_6_deviation,
-        next.theta_7_deviation,
-        next.theta_8_deviation,
-        next.theta_9_deviation,
-    ] = [5, 6, 7, 8].map(|i| updated.theta[i]);
     [
         next.alpha_gradient_1,
         next.alpha_gradient_2,

@@ -101,6 +101,22 @@ bundle! {
         gathered_8,
         /// Samples since the last whole period of travel.
         travel_samples,
+        /// θ1 less its nominal value, as the running period of travel has it so far.
+        running_1,
+        /// θ2 less its nominal value, as the running period of travel has it so far.
+        running_2,
+        /// θ3 less its nominal value, as the running period of travel has it so far.
+        running_3,
+        /// θ4 less its nominal value, as the running period of travel has it so far.
+        running_4,
+        /// θ5 less its nominal value, as the running period of travel has it so far.
+        running_5,
+        /// θ6 less its nominal value, as the running period of travel has it so far.
+        running_6,
+        /// θ7 less its nominal value, as the running period of travel has it so far.
+        running_7,
+        /// θ8 less its nominal value, as the running period of travel has it so far.
+        running_8,
         /// Gradient by θ9, gathered over the running period of travel.
         gathered_9,
         /// Periods of travel that the start has solved.

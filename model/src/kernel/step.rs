@@ -11,8 +11,8 @@ use crate::spec::CalibrationMethod;
 /// two, which leaves a factor q. These powers make them 1/2, q and q/2, and 2q in the final form.
 ///
 /// The gains' difference is what is slowest. A phase twice as fast, 2q, brings it along: with q from 0.5 to 1.2 five periods are
-/// enough. Of all parameters the phase is what bends that are not calibrated move most, so once γ has settled its step is
-/// halved. Without phase the difference needs its own help: from each gain's gradient half the other's is taken, which makes
+/// enough. Of all parameters the phase is then the noisiest, so once γ has settled its step is a quarter: q/2. Without phase the
+/// difference needs its own help: from each gain's gradient half the other's is taken, which makes
 /// sum and difference q/2 and 3q/4.
 pub struct Equaliser {
     /// Of θ2 and θ4.

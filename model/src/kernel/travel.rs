@@ -6,8 +6,9 @@
 //! arc adds nothing, standstill adds nothing, and a whole period of travel adds every sector exactly once, so the
 //! parameters are pulled equally from all sides. What was used right before the map was cleared is not used again by
 //! turning back there: a quarter of the period must be behind the turn first. So a vibration adds sectors on one side of
-//! its place at most.
+//! its place at most. Where all of a period moves the parameters at its end, a vibration moves nothing, and every sector counts.
 
+use super::waits::Waits;
 use super::{Coefficients, Input, State, Structure};
 use crate::format::{Format, Quantiser};
 use crate::signal::{Formula, Logic, Signal};
@@ -62,11 +63,12 @@ pub struct Travel<S: Signal> {
 }
 
 /// Whether this sample's sector is fresh, and the map after it. Not counting (`counting` false) clears the map. `measure`: where
-/// travel is measured otherwise than in whole periods of α̂.
+/// travel is measured otherwise than in whole periods of α̂; `waits`: where what it teaches waits for the end of the period, which
+/// must be whole then.
 #[inline(always)]
 pub fn travel<S: Signal>(
     counting: S::Bool,
-    measure: Option<Measure<S>>,
+    (measure, waits): (Option<Measure<S>>, Waits<S>),
     state: &State<S>,
     k: &Coefficients<S>,
     structure: &Structure,
@@ -94,23 +96,38 @@ pub fn travel<S: Signal>(
     let period_behind = (-period).less_than(relative).not().named("period_behind");
     let a_period_away = period_ahead.or(period_behind).named("a_period_away");
     let whole_period = a_period_away.and(counting);
-    let near_ahead = relative.less_than(k.quarter).and(state.ahead_used);
-    let near_behind = relative.less_than(-k.quarter).not().and(state.behind_used);
+    // Not used again.
+    let other = |unseen: S::Bool, near: S::Bool, used: S::Bool, name: [&'static str; 3]| {
+        let again = match waits {
+            Waits::Never => near.and(used),
+            Waits::Settled(settled) => near.and(used.and(settled.not()).named(name[0])),
+            Waits::Always => return unseen,
+        };
+        unseen.and(again.not().named(name[1])).named(name[2])
+    };
     let reach_ahead = (state.travel_low + k.one).named("reach_ahead");
     let reach_behind = (state.travel_high - k.one).named("reach_behind");
     let ahead = state
         .travel_high
         .less_than(relative)
         .and(relative.less_than(reach_ahead))
-        .named("unseen_ahead")
-        .and(near_ahead.not().named("may_add_ahead"))
-        .named("sector_ahead");
+        .named("unseen_ahead");
+    let ahead = other(
+        ahead,
+        relative.less_than(k.quarter),
+        state.ahead_used,
+        ["used_ahead_counts", "may_add_ahead", "sector_ahead"],
+    );
     let behind = relative
         .less_than(state.travel_low)
         .and(reach_behind.less_than(relative))
-        .named("unseen_behind")
-        .and(near_behind.not().named("may_add_behind"))
-        .named("sector_behind");
+        .named("unseen_behind");
+    let behind = other(
+        behind,
+        relative.less_than(-k.quarter).not(),
+        state.behind_used,
+        ["used_behind_counts", "may_add_behind", "sector_behind"],
+    );
     let clear = whole_period.or(counting.not()).named("travel_clear");
     // A side was used where a period on it ends, until a sector there is used or another period ends.
     let used = |ends: S::Bool, before: S::Bool, again: S::Bool, name: [&'static str; 2]| {

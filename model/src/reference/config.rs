@@ -41,8 +41,10 @@ pub struct Gamma {
     pub halvings: u32,
     /// After so many periods of net travel in one direction, each time.
     pub periods: f64,
-    /// From so many halvings on these take the place of the first.
+    /// From so many halvings on these take the place of the first; never in the paper.
     pub settled: Option<(u32, Steps)>,
+    /// From so many halvings on Θ moves where a period of travel ends, by all that it taught; never in the paper.
+    pub waits: Option<u32>,
 }
 
 impl Gamma {
@@ -54,6 +56,7 @@ impl Gamma {
             halvings: 0,
             periods: f64::INFINITY,
             settled: None,
+            waits: None,
         }
     }
 }

@@ -164,15 +164,10 @@ pub fn config(spec: &Spec) -> Result<Config, ReferenceError> {
     // What a loop that follows none of it sees as phase error.
     let turn = s.amplitude_tolerance + SQRT_2 * s.offset_max + 0.75 * beta + more;
     let first = equaliser(spec, parameters) * (0.5f64.powi(k.gamma_first as i32) * gathered(spec));
-    let settled = k.gains_settle().then(|| {
+    let settled = parameters.phase().filter(|_| k.phase_settles()).map(|at| {
         let mut steps = first;
-        let [gain_c, _, gain_s, _] = parameters.linear();
-        for gain in [gain_c, gain_s] {
-            steps.row_mut(gain).scale_mut(0.5);
-        }
-        if let Some(phase) = parameters.phase() {
-            steps.row_mut(phase).scale_mut(0.25);
-        }
+        let less = 0.5f64.powi(Calibration::PHASE_HALVINGS as i32);
+        steps.row_mut(at).scale_mut(less);
         (Calibration::SETTLED, steps)
     });
     // A loop settles within some multiples of 1/ω0.
@@ -195,6 +190,7 @@ pub fn config(spec: &Spec) -> Result<Config, ReferenceError> {
             halvings: k.gears(),
             periods: k.gear_periods().into(),
             settled,
+            waits: k.waits().then_some(Calibration::SETTLED),
         },
         gate: if k.is_on() {
             Gate::Travelled(window)
@@ -207,6 +203,7 @@ pub fn config(spec: &Spec) -> Result<Config, ReferenceError> {
             restart: k.restart_residual,
             settled: Calibration::SETTLED,
             periods: 32.0,
+            steady: spec.steady_gain(),
             recall: k.recalls().then_some(k.gear_periods().into()),
         }),
         bound: Theta::repeat(1.0),

@@ -43,6 +43,8 @@ pub struct GateState {
     used: u64,
     /// Side of the origin that the travel before it came from: sectors there were used.
     before: i64,
+    /// The map was cleared with the last sample.
+    cleared: bool,
 }
 
 impl GateState {
@@ -55,7 +57,14 @@ impl GateState {
             origin: None,
             used: 0,
             before: 0,
+            cleared: true,
         }
+    }
+
+    /// The map of sectors was cleared with the last sample: a period of travel ended there, or nothing counted.
+    #[must_use]
+    pub fn cleared(&self) -> bool {
+        self.cleared
     }
 
     /// In lock, by the window of the gate; gates without a window are always locked.
@@ -67,8 +76,9 @@ impl GateState {
         }
     }
 
-    /// Takes e, ρ and α̂ (radians, unwrapped) of a sample; true if it may move the parameters.
-    pub fn step(&mut self, e: f64, rho: f64, alpha_hat: f64) -> bool {
+    /// Takes e, ρ and α̂ (radians, unwrapped) of a sample; true if it may move the parameters. `whole`: they move where a period of
+    /// travel ends, and all of it counts.
+    pub fn step(&mut self, e: f64, rho: f64, alpha_hat: f64, whole: bool) -> bool {
         match self.gate {
             Gate::Closed => false,
             Gate::EverySample => true,
@@ -77,9 +87,10 @@ impl GateState {
                 let open = self.within(window, e, rho);
                 if !open {
                     self.origin = None;
+                    self.cleared = true;
                     return false;
                 }
-                self.fresh(alpha_hat)
+                self.fresh(alpha_hat, whole)
             }
         }
     }
@@ -91,17 +102,18 @@ impl GateState {
         self.good >= window.samples
     }
 
-    fn fresh(&mut self, alpha_hat: f64) -> bool {
+    fn fresh(&mut self, alpha_hat: f64, whole: bool) -> bool {
         let sector = (alpha_hat / TAU * SECTORS as f64).floor() as i64;
         let relative = sector - self.origin.unwrap_or(sector);
         let cleared = relative.abs() >= SECTORS;
-        if cleared || self.origin.is_none() {
+        self.cleared = cleared || self.origin.is_none();
+        if self.cleared {
             self.origin = Some(sector);
             self.used = 0;
             self.before = if cleared { -relative.signum() } else { 0 };
         }
         let fresh = self.used & bit(sector) == 0;
-        if fresh && relative * self.before > 0 {
+        if fresh && !whole && relative * self.before > 0 {
             // Turned back, where sectors were used right before the map was cleared.
             if (-SECTORS / 4..SECTORS / 4).contains(&relative) {
                 return false;

@@ -21,6 +21,8 @@ pub struct HoldConfig {
     pub periods: f64,
     /// Periods of travel after which Θ is remembered, and which a hold outlasts; `None`: never, and not.
     pub recall: Option<f64>,
+    /// A gain that moves by more between two times that Θ is remembered is of a signal that fades.
+    pub steady: f64,
 }
 
 /// What a sample means for the search.
@@ -80,7 +82,8 @@ impl Hold {
 /// Θ of better days: where it begins to be held, a fade has already taken it along for some periods.
 ///
 /// Where the residual stays, γ begins again, and Θ follows a signal that fades more slowly than that; where the radius is then far
-/// too large, the signal has come back, and where lock is lost, it is gone: Θ of before is taken again.
+/// too large, the signal has come back, and where lock is lost, it is gone: Θ of before is taken again. A fade that is slower still
+/// takes Θ along: none is proven while a gain moves.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recall {
     recent: Theta,
@@ -106,6 +109,8 @@ pub struct Seen {
     pub locked: bool,
     /// γ is the last one.
     pub last: bool,
+    /// The gains in Θ, and by how much they may have moved.
+    pub gains: ([usize; 2], f64),
 }
 
 /// What Θ is to be.
@@ -143,7 +148,9 @@ impl Recall {
         if seen.verdict == Verdict::Free {
             let apart = if seen.last { 2.0 * periods } else { periods };
             if (alpha_hat - self.since).abs() >= apart * TAU {
-                if seen.last {
+                let (gains, limit) = seen.gains;
+                let steady = gains.map(|i| (theta[i] - self.recent[i]).abs() < limit);
+                if seen.last && (steady == [true; 2] || !self.known) {
                     self.proven = self.recent;
                     (self.known, self.fading) = (true, false);
                 }

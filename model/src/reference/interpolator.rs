@@ -63,6 +63,8 @@ enum Searching {
 pub struct Reference {
     config: Config,
     theta: Theta,
+    /// Steps of the search in the running period of travel, which wait for its end.
+    pending: Theta,
     tracking: Loop,
     searching: Searching,
     gate: GateState,
@@ -109,6 +111,7 @@ impl Reference {
         Ok(Self {
             config,
             theta: config.theta,
+            pending: Theta::zeros(),
             tracking,
             searching,
             gate: GateState::new(config.gate),
@@ -137,9 +140,13 @@ impl Reference {
             };
         }
         let seen = self.observe([y_c, y_s]);
-        let open = self.gate.step(seen.e, seen.rho, self.tracking.alpha_hat());
+        let waits = self.config.gamma.waits;
+        let waits = waits.is_some_and(|from| self.geared.0 >= from);
+        let alpha_hat = self.tracking.alpha_hat();
+        let open = self.gate.step(seen.e, seen.rho, alpha_hat, waits);
         let locked = self.gate.locked();
         let open = open && self.free(seen.rho, locked);
+        let due = !waits || open && self.gate.cleared();
         let gamma = self.gamma();
         let starting = self.solved.running();
         let solved = if starting {
@@ -148,22 +155,21 @@ impl Reference {
             Theta::zeros()
         };
         let gamma = (open && !starting).then_some(&gamma);
-        let estimate = self.go_on(&seen, gamma, locked, solved);
+        let estimate = self.go_on(&seen, (gamma, due), locked, solved);
         self.watch(&seen);
         Estimate { locked, ..estimate }
     }
 
-    /// One sample with the decisions made outside: Θ moves by this γ, or not at all; the completion, where there is one,
+    /// One sample with the decisions made outside: the search steps by this γ, or not at all, and Θ is what it has found, or stays; the completion, where there is one,
     /// may `complete` (and still has its own gate).
     pub fn step_with(
         &mut self,
-        y_c: f64,
-        y_s: f64,
-        gamma: Option<&Steps>,
+        y: [f64; 2],
+        steps: (Option<&Steps>, bool),
         complete: bool,
     ) -> Estimate {
-        let seen = self.observe([y_c, y_s]);
-        self.go_on(&seen, gamma, complete, Theta::zeros())
+        let seen = self.observe(y);
+        self.go_on(&seen, steps, complete, Theta::zeros())
     }
 
     /// What is known of the next sample before it comes: e and ρ are not, and are 0.
@@ -235,7 +241,7 @@ impl Reference {
     fn go_on(
         &mut self,
         seen: &Observation,
-        gamma: Option<&Steps>,
+        (gamma, due): (Option<&Steps>, bool),
         complete: bool,
         solved: Theta,
     ) -> Estimate {
@@ -248,7 +254,8 @@ impl Reference {
         };
         let along = |gradient: Theta| gamma.map_or(Theta::zeros(), |g| -g * gradient);
         let parameters = self.config.parameters;
-        let change = match &mut self.searching {
+        let mut missing = Theta::zeros();
+        let step = match &mut self.searching {
             Searching::None => Theta::zeros(),
             Searching::Residual(gradient) => along(gradient.step(seen)),
             // A closed gate takes no sample into the sum.
@@ -256,8 +263,8 @@ impl Reference {
             Searching::SumOfSquares(sum) => along(sum.step_of(&seen.m, seen.corrected)),
             Searching::Completed(completion) => {
                 let alpha_hat = estimate.alpha_hat;
-                let missing = completion.step(parameters, &theta, seen, alpha_hat, complete);
-                along(seen.final_form()) + missing
+                missing = completion.step(parameters, &theta, seen, alpha_hat, complete);
+                along(seen.final_form())
             }
             Searching::Started(_) if gamma.is_none() => Theta::zeros(),
             Searching::Started(start) => start
@@ -269,8 +276,14 @@ impl Reference {
             theta: start,
             ..
         } = &self.config;
+        self.pending += step;
+        let mut change = missing + solved;
+        if due {
+            change += self.pending;
+            self.pending = Theta::zeros();
+        }
         self.theta = Theta::from_fn(|i, _| {
-            let moved = theta[i] + change[i] + solved[i];
+            let moved = theta[i] + change[i];
             start[i] + (moved - start[i]).clamp(-bound[i], bound[i])
         });
         self.tracking.advance(seen.e);
@@ -286,16 +299,19 @@ impl Reference {
         let halvings = locked.then_some(self.geared.0);
         let verdict = self.hold.step(config, rho, alpha_hat, halvings);
         if let Some(periods) = config.recall {
+            let [gain_c, _, gain_s, _] = self.config.parameters.linear();
             let seen = hold::Seen {
                 verdict,
                 risen: rho >= config.restart,
                 settled: self.geared.0 >= config.settled,
                 locked,
                 last: self.geared.0 >= self.config.gamma.halvings,
+                gains: ([gain_c, gain_s], config.steady),
             };
             let recalled = self.recall.step(periods, &self.theta, alpha_hat, seen);
             if let Recalled::Held(theta) | Recalled::Again(theta) = recalled {
                 self.theta = theta;
+                self.pending = Theta::zeros();
                 // A mean of the way down would be the first to act on it.
                 if let Searching::SumOfSquares(sum) = &mut self.searching {
                     sum.clear();
@@ -321,6 +337,7 @@ impl Reference {
             halvings,
             periods,
             settled,
+            ..
         } = self.config.gamma;
         let alpha_hat = self.tracking.alpha_hat();
         let (done, since) = self.geared;

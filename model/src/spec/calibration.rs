@@ -62,7 +62,7 @@ fn gamma_first() -> u32 {
     4
 }
 fn gamma_last() -> u32 {
-    10
+    9
 }
 fn restart() -> f64 {
     0.25
@@ -85,11 +85,20 @@ impl Spec {
         let left = 6.0 * self.sensor.noise_rms + phase;
         self.calibration.hold_residual.max(left)
     }
+
+    /// A gain that moves by more within twice [`gear_periods`](Calibration::gear_periods) is of a signal that fades: a part of the
+    /// amplitude, or six times a gain's noise.
+    #[must_use]
+    pub fn steady_gain(&self) -> f64 {
+        (0.4 * self.sensor.noise_rms).max(0.5f64.powi(9))
+    }
 }
 
 impl Calibration {
-    /// Halvings of γ after which it has settled: parameters may then be held, and the phase moves more slowly.
+    /// Halvings of γ after which it has settled: parameters may then be held, and they move where a period of travel ends.
     pub const SETTLED: u32 = 4;
+    /// Halvings of the phase's step then, in the final form of five parameters.
+    pub const PHASE_HALVINGS: u32 = 2;
 
     /// Any parameters are calibrated.
     #[must_use]
@@ -121,11 +130,28 @@ impl Calibration {
         self.gears() >= Self::SETTLED
     }
 
-    /// The steps of the gains are halved once γ has settled, and that of the phase twice: what bends that are not calibrated
-    /// move most goes round more slowly, and the offsets, which drift, are followed as before.
+    /// Once γ has settled the parameters move where a period of travel ends, by all that it taught: what lasts less than a period,
+    /// such as a vibration, moves nothing.
     #[must_use]
-    pub fn gains_settle(&self) -> bool {
-        self.is_on() && self.is_linear_final() && self.settles()
+    pub fn waits(&self) -> bool {
+        let by_samples = matches!(
+            self.method,
+            CalibrationMethod::Final | CalibrationMethod::Exact
+        );
+        self.is_on() && by_samples && self.settles()
+    }
+
+    /// The step of the phase becomes smaller once γ has settled ([`Self::PHASE_HALVINGS`]): until then it is twice as fast as what it
+    /// brings along, and noisier.
+    #[must_use]
+    pub fn phase_settles(&self) -> bool {
+        self.is_linear_final() && self.has_phase() && self.settles()
+    }
+
+    /// The sum over a period of travel moves the parameters, from the first on.
+    #[must_use]
+    pub fn is_batch(&self) -> bool {
+        self.is_on() && self.method == CalibrationMethod::Batch
     }
 
     /// The sum of squares moves the parameters.

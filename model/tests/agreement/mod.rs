@@ -18,17 +18,30 @@ use nonius_model::spec::Coding;
 
 use crate::support::{Encoder, wrapped};
 
+/// What a sample shows: it teaches, a period of travel ends, e and ρ.
+pub(crate) struct Shown {
+    fresh: bool,
+    whole_period: bool,
+    e: f64,
+    rho: f64,
+}
+
 /// What both readings of the chip show of their registers and decisions.
 pub(crate) trait Reading {
-    fn step(&mut self, codes: [i64; 2], middle: i64, bits: u32) -> (bool, [f64; 2]);
+    fn step(&mut self, codes: [i64; 2], middle: i64, bits: u32) -> Shown;
     fn position(&self) -> f64;
     fn registers(&self) -> State<f64>;
 }
 
 impl Reading for Chip<Bits> {
-    fn step(&mut self, [cos, sin]: [i64; 2], middle: i64, _: u32) -> (bool, [f64; 2]) {
+    fn step(&mut self, [cos, sin]: [i64; 2], middle: i64, _: u32) -> Shown {
         let p = self.step_codes(cos + middle, sin + middle, false, true);
-        (p.fresh, [p.e.to_f64(), p.rho.to_f64()])
+        Shown {
+            fresh: p.fresh,
+            whole_period: p.whole_period,
+            e: p.e.to_f64(),
+            rho: p.rho.to_f64(),
+        }
     }
     fn position(&self) -> f64 {
         Self::position(self)
@@ -43,7 +56,7 @@ impl Reading for Chip<Bits> {
 }
 
 impl Reading for Chip<f64> {
-    fn step(&mut self, codes: [i64; 2], middle: i64, bits: u32) -> (bool, [f64; 2]) {
+    fn step(&mut self, codes: [i64; 2], middle: i64, bits: u32) -> Shown {
         let [adc_cos, adc_sin] = codes.map(|code| (code + middle) as f64 / 2f64.powi(bits as i32));
         let p = Self::step(
             self,
@@ -54,7 +67,12 @@ impl Reading for Chip<f64> {
                 calibrate: true,
             },
         );
-        (p.fresh, [p.e, p.rho])
+        Shown {
+            fresh: p.fresh,
+            whole_period: p.whole_period,
+            e: p.e,
+            rho: p.rho,
+        }
     }
     fn position(&self) -> f64 {
         Self::position(self)
@@ -125,7 +143,7 @@ pub(crate) struct Difference {
 pub(crate) const SAMPLES: u32 = 60_000;
 
 /// What the chip equalises the modes with: gains by 2, offsets by 1, phase by 16, gains and phase by a power of two near the inverse
-/// square of the amplitude; without phase, half of each gain's gradient off the other's; the phase by 8 from the fifth gear on.
+/// square of the amplitude; without phase, half of each gain's gradient off the other's; the phase by 4 from the fifth gear on.
 pub(crate) fn equaliser(spec: &nonius_model::spec::Spec) -> Steps {
     let mut amplitude: f64 = spec.sensor.amplitude / spec.adc.full_scale;
     while amplitude < 0.5 {
@@ -174,7 +192,12 @@ pub(crate) fn compare(
         let k = f64::from(k);
         let codes = encoder.codes_of([motion(k), motion(k + late)]);
         let before = chip.registers();
-        let (fresh, [e, rho]) = chip.step(codes, middle, spec.adc.bits);
+        let Shown {
+            fresh,
+            whole_period,
+            e,
+            rho,
+        } = chip.step(codes, middle, spec.adc.bits);
         let after = chip.registers();
         let Some(paper) = &mut paper else {
             if after.locked && after.loop_gear == last_gear {
@@ -187,14 +210,13 @@ pub(crate) fn compare(
         let first = -f64::from(spec.calibration.gamma_first as i32) - before.gamma_gear;
         let mut gamma = equaliser * first.exp2();
         if before.gamma_gear >= 4.0 {
-            for gain in [0, 2] {
-                gamma.row_mut(gain).scale_mut(0.5);
-            }
             gamma[(4, 4)] /= 4.0;
         }
+        // From the fifth gear on, where a period of travel ends.
+        let due = before.gamma_gear < 4.0 || whole_period && fresh;
         let y = codes.map(|code| code as f64 / half * unit);
         let fresh = fresh && spec.calibration.is_on();
-        let seen = paper.step_with(y[0], y[1], fresh.then_some(&gamma), false);
+        let seen = paper.step_with(y, (fresh.then_some(&gamma), due), false);
 
         let angle = wrapped(chip.position() - paper.tracking().alpha_hat() / TAU);
         let ts = paper.tracking().config.ts;
