@@ -94,6 +94,33 @@ fn the_signal_goes_and_comes_back() {
     nonius_kept::near(Path::new(file), &page, |x| 0.1 * x.abs() + 0.02, HOW);
 }
 
+/// What fades and comes back over a hundred periods is followed like a change of the sensor: what lags goes away.
+#[test]
+fn a_slow_return_is_followed() {
+    let kept = searches().into_iter().filter(|v| {
+        let set = v.spec.calibration.parameters;
+        (v.what.as_str(), set) == ("final form", 5) || (v.what.as_str(), set) == ("completed", 9)
+    });
+    let kept: Vec<Variant> = kept.collect();
+    let left = kept.par_iter().map(|variant| {
+        let all = each_settled(&variant.spec);
+        let seen = middle(&all, [100 * PERIOD; 2], true);
+        assert!(seen.end < 0.05 * seen.after + seen.before, "{seen:?}");
+        let set = variant.spec.calibration.parameters;
+        format!(
+            "{set} parameters {:.0}, {:.1}",
+            1e3 * seen.after,
+            1e3 * seen.end
+        )
+    });
+    let left: Vec<String> = left.collect();
+    nonius_kept::figure(
+        "loss of signal, faded and back over 100 periods each: left at the return, and 120 periods later, mrad",
+        &left.join("; "),
+        "model/tests/on_line_loss.rs",
+    );
+}
+
 /// A search's row of the page, and whether it holds.
 fn row(variant: &Variant) -> String {
     let parameters = variant.spec.calibration.parameters;
