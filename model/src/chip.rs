@@ -141,7 +141,7 @@ pub fn registers(structure: &Structure) -> (Vec<&'static str>, Vec<&'static str>
         "theta_9_deviation" | "null_gradient" | "null_gradient_rate" | "travel_samples"
         | "gathered_9" | "moving" => c.completed().is_some(),
         "start_periods" => c.starts(),
-        "returning" | "fading" | "known" | "halfway" => c.recalls(),
+        "returning" | "fading" | "known" | "halfway" | "apart" => c.recalls(),
         "null_gradient_error" => c.completed().is_some() && two_products,
         name if name.starts_with("alpha_gradient") => {
             let phase = name.ends_with('5');

@@ -301,6 +301,7 @@ pub fn gtkw(name: &str, design: &Design, columns: &[Column], clocks: usize) -> S
                 "fading",
                 "known",
                 "halfway",
+                "apart",
             ]
             .contains(&n)
     };

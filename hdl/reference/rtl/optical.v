@@ -31,7 +31,7 @@
 //      |                          | gain_s_inside gain_s_rests gains_steady proves nothing_proven_yet
 //    1 | loop_ab * error_previous | sin_value sin_slope y_c y_s counting whole_period sector_behind travel_clear
 //      |                          | sector_added new_sector still_used_ahead used_up_ahead still_used_behind
-//      |                          | used_up_behind y_5 lost_before
+//      |                          | used_up_behind y_5 period_breaks_off lost_before
 //    2 | theta_1 * y_c            | cos_value cos_slope drift
 //    3 | cos_slope * cos_inside   | c_exact c
 //    4 | theta_3 * y_s            | cos_magnitude cos_hat c_weak
@@ -40,7 +40,7 @@
 //    7 | c * cos_hat              | s_exact s
 //    8 | s * sin_hat              | s_weak signal_present may_flip
 //    9 | s * cos_hat              | rho_exact rho rho_in_window flip half_turn rho_high rho_large rho_not_small
-//      |                          | rho_limited
+//      |                          | rho_rises proven_better may_recall rho_limited
 //   10 | c * sin_hat              | alpha_hat_turned rho_too_large
 //   11 | cos_hat * rho_limited    | e_exact e_seen e
 //   12 | sin_hat * rho_limited    | e_in_window in_window level_step e_change sample_counts counted residual_large
@@ -50,9 +50,10 @@
 //   13 | loop_a * e_change        | level_moved level_full level_empty narrower loop_gear_up full_in_last_gear
 //      |                          | hold_cause hold recall fresh rho_s gradient_2 step_2 gamma_gear_up
 //      |                          | gear_periods_again holding restart_risen recall_again recall_any quiet_periods_end
-//      |                          | proved remember search_improves remember_better return_ends return_goes_on
-//      |                          | signal_changed still_known fades fade_ends period_taught lock_falls
-//   14 | y_c * rho_c              | kick gradient_4 step_4 remember_recent search_ends theta_applies
+//      |                          | proved gain_moved remember search_improves remember_better return_ends
+//      |                          | return_goes_on signal_changed still_known fades fade_ends period_taught lock_falls
+//   14 | y_c * rho_c              | kick gradient_4 step_4 remember_recent together_again travel_ends search_ends
+//      |                          | theta_applies
 //   15 | y_s * rho_s              | speed backwards not_forwards gradient_1 step_1
 //   16 | y_5 * rho_s              | alpha_hat_sum carry count_before gradient_3 step_3
 //   17 | -                        | gradient_5 step_5
@@ -167,6 +168,7 @@ module optical (
     reg fading; // The search began again where the residual had stayed: the signal may have faded (recall).
     reg known; // Parameters have been remembered in the last gear (recall).
     reg halfway; // Half of the way to where they are remembered next (recall).
+    reg apart; // A gain has moved away from what is proven.
 
     // The sample's inputs, held
     reg signed [11:0] adc_cos_held; // ADC code of the cosine channel, as a fraction of the ADC's range.
@@ -250,6 +252,8 @@ module optical (
     reg search_begun;
     reg not_fading;
     reg proven_stand;
+    reg not_apart;
+    reg may_recall;
     reg radius_large;
     reg fresh;
     reg signed [14:0] rho_limited;
@@ -290,6 +294,8 @@ module optical (
     reg signed [3:0] gamma_gear_next;
     reg last_gear_passed;
     reg proves;
+    reg proved;
+    reg not_gains_steady;
     reg nothing_proven_yet;
     reg remember;
     reg remember_better;
@@ -298,7 +304,10 @@ module optical (
     reg fading_next;
     reg halfway_next;
     reg known_next;
+    reg gain_moved_or_apart;
+    reg apart_next;
     reg period_taught;
+    reg period_breaks_off;
     reg theta_applies;
     reg lost_before;
     reg lock_falls;
@@ -591,8 +600,9 @@ module optical (
     //   the end of a period without one, moves no parameter
     wire rho_high_now = ~($signed(rho_now[17:14]) < 4'sd1); // step 9, with restart_residual
     wire rho_large_now = rho_high_now | ~($signed(~rho_now[17:14]) < 4'sd1); // step 9, with minus_restart_residual
-    wire rho_not_small_now = // step 9, with hold_residual, minus_hold_residual
-        ~(($signed(rho_now[17:12]) < 6'sd1) & ($signed(~rho_now[17:12]) < 6'sd1));
+    wire rho_below_hold_residual = $signed(rho_now[17:12]) < 6'sd1; // step 9, with hold_residual
+    wire rho_not_small_now = // step 9, with minus_hold_residual
+        ~(rho_below_hold_residual & ($signed(~rho_now[17:12]) < 6'sd1));
     wire rho_too_large_now = rho_large | (gamma_settled & rho_not_small); // step 10
     wire residual_large_now = rho_too_large & sample_counts; // step 12
     wire disturbed_lately = residual_large_now | disturbed; // step 12
@@ -603,7 +613,11 @@ module optical (
     wire hold = hold_cause & search_begun; // step 13
     wire not_fading_now = ~fading; // step 0
     wire proven_stand_now = known & not_fading_now; // step 0
-    wire recall = hold & proven_stand; // step 13
+    wire rho_rises = ~rho_below_hold_residual; // step 9
+    wire not_apart_now = ~apart; // step 0
+    wire proven_better = not_apart | rho_rises; // step 9
+    wire may_recall_now = proven_stand & proven_better; // step 9
+    wire recall = hold & may_recall; // step 13
     wire radius_large_now = rho_high & sample_counts; // step 12
     wire fresh_now = counted & ~hold; // step 13
 
@@ -745,9 +759,11 @@ module optical (
         ($signed(gain_s_rests_difference[11:2]) < 10'sd1) & ($signed(~gain_s_rests_difference[11:2]) < 10'sd1);
     wire gains_steady = (gain_c_rests & gain_c_inside) & (gain_s_rests & gain_s_inside); // step 0
     wire proves_now = gains_steady | ~known; // step 0
-    wire proved = quiet_periods_end & proves; // step 13
+    wire proved_now = quiet_periods_end & proves; // step 13
+    wire not_gains_steady_now = ~gains_steady; // step 0
+    wire gain_moved = quiet_periods_end & not_gains_steady; // step 13
     wire nothing_proven_yet_now = ~(known | last_gamma_gear_now); // step 0
-    wire remember_now = proved | nothing_proven_yet; // step 13
+    wire remember_now = proved_now | nothing_proven_yet; // step 13
     wire search_improves = (gear_passed | first_gear_period) & gamma_gear_below_gamma_gear_last; // step 13
     wire remember_better_now = search_improves | quiet_periods_end; // step 13
     wire remember_recent_now = remember_better | recall_any; // step 14
@@ -756,7 +772,8 @@ module optical (
     wire signal_changed = restart_risen & not_fading; // step 13
     wire still_known = known & ~signal_changed; // step 13
     wire fades = (gamma_restart & held_long) | fading; // step 13
-    wire fade_ends = (recall_again | proved) | signal_changed; // step 13
+    wire fade_ends = (recall_again | proved_now) | signal_changed; // step 13
+    wire together_again = proved | recall_any; // step 14
     wire signed [24:0] recent_1_next = remember_recent ? running_1_next : recent_1; // s25.25, step 18
     wire signed [23:0] recent_2_next = remember_recent ? running_2_next : recent_2; // s24.25, step 18
     wire signed [24:0] recent_3_next = remember_recent ? running_3_next : recent_3; // s25.25, step 18
@@ -770,13 +787,17 @@ module optical (
     wire returning_next_now = return_goes_on | recall_again; // step 13
     wire fading_next_now = fades & ~fade_ends; // step 13
     wire halfway_next_now = halfway ^ last_gear_passed; // step 13
-    wire known_next_now = still_known | proved; // step 13
+    wire known_next_now = still_known | proved_now; // step 13
+    wire gain_moved_or_apart_now = gain_moved | apart; // step 13
+    wire apart_next_now = gain_moved_or_apart & ~together_again; // step 14
 
     // Parameters as they are applied
     //   theta = what the search has found, once gamma has settled where a period of travel ends
     //   (paper section 5.5: static measurements may bias the estimates)
     wire period_taught_now = fresh_now & whole_period; // step 13
-    wire search_ends = gamma_gear_below_gamma_gear_settled | period_taught; // step 14
+    wire period_breaks_off_now = travel_clear_now & ~whole_period_now; // step 1
+    wire travel_ends = period_taught | period_breaks_off; // step 14
+    wire search_ends = gamma_gear_below_gamma_gear_settled | travel_ends; // step 14
     wire theta_applies_now = search_ends | recall_any; // step 14
     wire signed [24:0] theta_1_deviation_next = theta_applies ? running_1_next : theta_1_deviation; // s25.25, step 18
     wire signed [23:0] theta_2_deviation_next = theta_applies ? running_2_next : theta_2_deviation; // s24.25, step 18
@@ -865,6 +886,7 @@ module optical (
             search_begun <= search_begun_now;
             not_fading <= not_fading_now;
             proven_stand <= proven_stand_now;
+            not_apart <= not_apart_now;
             nominal <= nominal_now;
             held_long <= held_long_now;
             restart_cause <= restart_cause_now;
@@ -874,6 +896,7 @@ module optical (
             gear_done <= gear_done_now;
             periods_count_ends <= periods_count_ends_now;
             proves <= proves_now;
+            not_gains_steady <= not_gains_steady_now;
             nothing_proven_yet <= nothing_proven_yet_now;
             theta_2 <= theta_2_deviation;
             theta_4 <= theta_4_deviation;
@@ -891,6 +914,7 @@ module optical (
             ahead_used_next <= ahead_used_next_now;
             behind_used_next <= behind_used_next_now;
             y_5 <= y_5_now;
+            period_breaks_off <= period_breaks_off_now;
             lost_before <= lost_before_now;
         end
         if (step == 5'd2) begin
@@ -931,6 +955,7 @@ module optical (
             rho_high <= rho_high_now;
             rho_large <= rho_large_now;
             rho_not_small <= rho_not_small_now;
+            may_recall <= may_recall_now;
             rho_limited <= rho_limited_now;
         end
         if (step == 5'd10) begin
@@ -974,12 +999,14 @@ module optical (
             held_next <= held_next_now;
             recall_any <= recall_any_now;
             gamma_gear_next <= gamma_gear_next_now;
+            proved <= proved_now;
             remember <= remember_now;
             remember_better <= remember_better_now;
             returning_next <= returning_next_now;
             fading_next <= fading_next_now;
             halfway_next <= halfway_next_now;
             known_next <= known_next_now;
+            gain_moved_or_apart <= gain_moved_or_apart_now;
             period_taught <= period_taught_now;
             lock_falls <= lock_falls_now;
         end
@@ -989,6 +1016,7 @@ module optical (
             step_4 <= step_4_now;
             running_2_next <= running_2_next_now;
             remember_recent <= remember_recent_now;
+            apart_next <= apart_next_now;
             theta_applies <= theta_applies_now;
             lock_lost_next <= lock_lost_next_now;
         end
@@ -1059,6 +1087,7 @@ module optical (
             fading <= 0;
             known <= 0;
             halfway <= 0;
+            apart <= 0;
         end else if (last) begin
             alpha_hat <= alpha_hat_next;
             count <= count_next;
@@ -1104,6 +1133,7 @@ module optical (
             fading <= fading_next;
             known <= known_next;
             halfway <= halfway_next;
+            apart <= apart_next;
         end
 
     assign position = {count, alpha_hat[26:0]};

@@ -116,6 +116,7 @@ module chip_tb;
     reg expect_fading;
     reg expect_known;
     reg expect_halfway;
+    reg expect_apart;
     reg [58:0] expect_position;
 
     integer file;
@@ -196,9 +197,11 @@ module chip_tb;
                     expect_risen, expect_held, expect_returning);
                 got = got + $fscanf(file, "%h %h %h",
                     expect_fading, expect_known, expect_halfway);
+                got = got + $fscanf(file, "%h",
+                    expect_apart);
                 // No wire: Verilator does not notice what $fscanf changes.
                 expect_position = {expect_count, expect_alpha_hat[26:0]};
-                if (got != 68) begin
+                if (got != 69) begin
                     bad = 1'b1;
                     $display("row %0d of %0s cannot be read", played, name);
                 end else if (sample != played) begin
@@ -395,6 +398,9 @@ module chip_tb;
                     if (chip.known !== expect_known)
                         check_failed("known",
                             {127'd0, expect_known}, {127'd0, chip.known});
+                    if (chip.apart !== expect_apart)
+                        check_failed("apart",
+                            {127'd0, expect_apart}, {127'd0, chip.apart});
                     if (chip.theta_1_deviation !== expect_theta_1_deviation)
                         check_failed("theta_1_deviation",
                             {103'd0, expect_theta_1_deviation}, {103'd0, chip.theta_1_deviation});

@@ -252,15 +252,15 @@ pub(crate) fn faults() -> Vec<Fault> {
         ),
         swap(
             "what a part of a period has taught is applied",
-            &["wire search_ends ="],
-            " | period_taught",
-            " | fresh_now",
+            &["wire travel_ends"],
+            "period_taught |",
+            "fresh_now |",
         ),
         swap(
             "what a period has taught is never applied",
-            &["wire search_ends ="],
-            " | period_taught",
-            "",
+            &["wire travel_ends"],
+            "period_taught |",
+            "1'b0 |",
         ),
         fault("proven at a bound", |v| {
             let inside = " & gain_s_inside";
@@ -272,6 +272,18 @@ pub(crate) fn faults() -> Vec<Fault> {
             &["wire proves"],
             "gains_steady | ~known",
             "1'b1",
+        ),
+        swap(
+            "what is broken off waits on",
+            &["wire travel_ends"],
+            " | period_breaks_off",
+            "",
+        ),
+        swap(
+            "recall where a gain has moved on",
+            &["wire proven_better"],
+            "not_apart | ",
+            "1'b1 | ",
         ),
         swap(
             "never proven again",

@@ -102,6 +102,10 @@ pub fn hold<S: Signal>(
     // γ is in its last gear then: where it leaves it nothing is known, or the signal may be fading.
     let recall = structure.calibration.recalls().then(|| {
         let proven = state.known.and(state.fading.not()).named("proven_stand");
+        // What has moved on since is recalled only where the signal rises.
+        let rises = rho.less_than(k.hold_residual).not().named("rho_rises");
+        let better = state.apart.not().or(rises).named("proven_better");
+        let proven = proven.and(better).named("may_recall");
         held.and(proven).named("recall")
     });
     Hold {

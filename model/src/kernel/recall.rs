@@ -6,7 +6,9 @@
 //! comes back over some periods is nearly whole before it is whole: they stay held until as many quiet periods have passed.
 //!
 //! A slower fade outlasts the hold, and the search begins again and follows it; one slower still is followed without. So nothing is
-//! proven while a gain moves: what is stays as it was until the search has come to its last gear again and the gains rest. Where the
+//! proven while a gain moves: what is stays as it was until the search has come to its last gear again and the gains rest. A sensor whose
+//! gains move on is not what it was, either: then only a radius that is too large, as where a fade is over, brings back what is proven,
+//! and what falls out for some samples does not. Where the
 //! radius is far too large before that, the signal is back: what is proven comes back, with the last gear. So it does where the signal
 //! is lost in the first gear, with which nothing else is known; before anything is proven that is what the last gear ended with, in the
 //! first one the last quiet period, and the search goes on from there.
@@ -40,6 +42,8 @@ pub struct Memory<S: Signal> {
     pub fading: S::Bool,
     /// There are proven ones.
     pub known: S::Bool,
+    /// A gain has moved away from what is proven.
+    pub apart: S::Bool,
     /// Something was recalled with this sample.
     pub recalled: S::Bool,
     /// The last gear has passed once since it was remembered what they are.
@@ -82,8 +86,10 @@ pub fn recall<S: Signal>(
     let quiet = passed.and(last).named("last_gear_passed");
     let ends = quiet.and(state.halfway).named("quiet_periods_end");
     // The first time something is better than nothing.
-    let better = steady(state, k).or(state.known.not()).named("proves");
+    let steady = steady(state, k);
+    let better = steady.or(state.known.not()).named("proves");
     let proved = ends.and(better).named("proved");
+    let moves = ends.and(steady.not()).named("gain_moved");
     // Until something is proven, the end of the last gear is the best that is known.
     let yet = state.known.or(last).not().named("nothing_proven_yet");
     let older = proved.or(yet).named("remember");
@@ -112,6 +118,7 @@ pub fn recall<S: Signal>(
     let known = state.known.and(another.not()).named("still_known");
     let fades = gears.stayed.or(state.fading).named("fades");
     let ends = again.or(proved).or(another).named("fade_ends");
+    let together = proved.or(all).named("together_again");
     Memory {
         recent: (!newer.is_known_false()).then(recent),
         proven: (!older.is_known_false()).then(proven),
@@ -119,6 +126,7 @@ pub fn recall<S: Signal>(
         fading: fades.and(ends.not()),
         halfway: state.halfway.xor(quiet),
         known: known.or(proved),
+        apart: moves.or(state.apart).and(together.not()),
         recalled: all,
     }
 }
@@ -201,5 +209,6 @@ impl<S: Signal> Memory<S> {
         next.fading = self.fading;
         next.known = self.known;
         next.halfway = self.halfway;
+        next.apart = self.apart;
     }
 }

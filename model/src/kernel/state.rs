@@ -186,6 +186,8 @@ bundle! {
         known,
         /// Half of the way to where they are remembered next (recall).
         halfway,
+        /// A gain has moved away from what is proven.
+        apart,
     }
 }
 

@@ -3,7 +3,8 @@
 //! Once γ has settled, what a part of a period teaches is no help: distortion that is not calibrated makes the parameters go round
 //! with the angle, and an axis that rests or shakes would leave them at one place of that round. All 64 sectors together pull from all
 //! sides. So the search goes on from sector to sector, and the pair is corrected with what it had found where the last period of
-//! travel ended: a period that is never ended moves nothing.
+//! travel ended: a period that is never ended moves nothing. Where the map of sectors is cleared because nothing counts any more (the pin
+//! `calibrate`, or lock), what was found so far is applied too: the same arc would be taught again, and the search must see its work.
 
 use super::calibration::Gate;
 use super::{Coefficients, State, Structure, gears};
@@ -96,7 +97,13 @@ pub fn apply<S: Signal>(
     };
     found[0].begin(&APPLY);
     let ends = gate.fresh.and(gate.whole_period).named("period_taught");
-    let now = settled.not().or(ends).named("search_ends");
+    // Where nothing counts the map is cleared: what was taught would be taught again.
+    let stops = gate
+        .clear
+        .and(gate.whole_period.not())
+        .named("period_breaks_off");
+    let now = settled.not().or(ends.or(stops).named("travel_ends"));
+    let now = now.named("search_ends");
     let now = recalled.map_or(now, |recalled| now.or(recalled).named("theta_applies"));
     let before = [
         state.theta_1_deviation,

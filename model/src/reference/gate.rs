@@ -106,8 +106,8 @@ impl GateState {
         let sector = (alpha_hat / TAU * SECTORS as f64).floor() as i64;
         let relative = sector - self.origin.unwrap_or(sector);
         let cleared = relative.abs() >= SECTORS;
-        self.cleared = cleared || self.origin.is_none();
-        if self.cleared {
+        self.cleared = cleared;
+        if cleared || self.origin.is_none() {
             self.origin = Some(sector);
             self.used = 0;
             self.before = if cleared { -relative.signum() } else { 0 };

@@ -94,6 +94,8 @@ pub struct Recall {
     known: bool,
     /// γ began again where the residual had stayed.
     fading: bool,
+    /// A gain has moved away from what is proven.
+    apart: bool,
 }
 
 /// What a sample means for what is remembered.
@@ -103,6 +105,8 @@ pub struct Seen {
     pub verdict: Verdict,
     /// ρ is far too large.
     pub risen: bool,
+    /// ρ is larger than small.
+    pub rises: bool,
     /// γ has settled.
     pub settled: bool,
     /// The loop follows.
@@ -134,6 +138,7 @@ impl Recall {
             since: alpha_hat,
             known: false,
             fading: false,
+            apart: false,
         }
     }
 
@@ -141,7 +146,7 @@ impl Recall {
     pub fn step(&mut self, periods: f64, theta: &Theta, alpha_hat: f64, seen: Seen) -> Recalled {
         let back = seen.risen || !(seen.locked || seen.settled);
         if self.fading && self.known && back {
-            self.fading = false;
+            (self.fading, self.apart) = (false, false);
             self.since = alpha_hat;
             return Recalled::Again(self.proven);
         }
@@ -150,7 +155,9 @@ impl Recall {
             if (alpha_hat - self.since).abs() >= apart * TAU {
                 let (gains, limit) = seen.gains;
                 let steady = gains.map(|i| (theta[i] - self.recent[i]).abs() < limit);
+                self.apart |= seen.last && steady != [true; 2];
                 if seen.last && (steady == [true; 2] || !self.known) {
+                    self.apart = false;
                     self.proven = self.recent;
                     (self.known, self.fading) = (true, false);
                 }
@@ -160,7 +167,7 @@ impl Recall {
             return Recalled::Nothing;
         }
         self.since = alpha_hat;
-        let proven = self.known && !self.fading;
+        let proven = self.known && !self.fading && (!self.apart || seen.rises);
         if seen.verdict == Verdict::Changed {
             self.known &= self.fading || !seen.risen;
             self.fading |= !seen.risen;
@@ -168,7 +175,7 @@ impl Recall {
         if !proven {
             return Recalled::Nothing;
         }
-        self.recent = self.proven;
+        (self.recent, self.apart) = (self.proven, false);
         Recalled::Held(self.proven)
     }
 }

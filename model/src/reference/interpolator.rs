@@ -146,7 +146,7 @@ impl Reference {
         let open = self.gate.step(seen.e, seen.rho, alpha_hat, waits);
         let locked = self.gate.locked();
         let open = open && self.free(seen.rho, locked);
-        let due = !waits || open && self.gate.cleared();
+        let due = !waits || self.gate.cleared() && (open || !locked);
         let gamma = self.gamma();
         let starting = self.solved.running();
         let solved = if starting {
@@ -303,6 +303,7 @@ impl Reference {
             let seen = hold::Seen {
                 verdict,
                 risen: rho >= config.restart,
+                rises: rho >= config.residual,
                 settled: self.geared.0 >= config.settled,
                 locked,
                 last: self.geared.0 >= self.config.gamma.halvings,

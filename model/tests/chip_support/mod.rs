@@ -62,13 +62,18 @@ impl Bench {
 
     /// One sample of a pair in units of the nominal amplitude, with noise as the design promises it.
     pub(crate) fn step(&mut self, y: (f64, f64)) {
+        self.step_if(y, true);
+    }
+
+    /// The same with the pin `calibrate`.
+    pub(crate) fn step_if(&mut self, y: (f64, f64), calibrate: bool) {
         let Spec { sensor, adc, .. } = &self.design.spec;
         let mut code = |y: f64| {
             let y = y + sensor.noise_rms * self.noise.next();
             self.converter.code(adc.middle + sensor.amplitude * y)
         };
         let (cos, sin) = (code(y.0), code(y.1));
-        self.chip.step_codes(cos, sin, false, true);
+        self.chip.step_codes(cos, sin, false, calibrate);
     }
 
     /// The corrected pair, of signals in units of the nominal amplitude.
