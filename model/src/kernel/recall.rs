@@ -8,10 +8,9 @@
 //! A slower fade outlasts the hold, and the search begins again and follows it; one slower still is followed without. So nothing is
 //! proven while a gain moves: what is stays as it was until the search has come to its last gear again and the gains rest. A sensor whose
 //! gains move on is not what it was, either: then only a radius that is too large, as where a fade is over, brings back what is proven,
-//! and what falls out for some samples does not. Where the
-//! radius is far too large before that, the signal is back: what is proven comes back, with the last gear. So it does where the signal
-//! is lost in the first gear, with which nothing else is known; before anything is proven that is what the last gear ended with, in the
-//! first one the last quiet period, and the search goes on from there.
+//! and what falls out for some samples does not. Where the radius is far too large before that, the signal is back: what is proven comes
+//! back, with the last gear. So it does where the signal is lost in the first gear, with which nothing else is known; before anything is
+//! proven that is what the last gear ended with, in the first one the last quiet period, and the search goes on from there.
 
 use super::calibration::Update;
 use super::detector::within;

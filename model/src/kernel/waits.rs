@@ -42,10 +42,10 @@ impl<S: Signal> Waits<S> {
     }
 }
 
-/// θ1 … θ9 less their nominal values, as the search has them.
+/// θ1 … θ9 less their nominal values, as the pair is corrected with.
 #[inline(always)]
-pub fn searched<S: Signal>(state: &State<S>, structure: &Structure) -> [S; 9] {
-    let applied = [
+fn applied<S: Signal>(state: &State<S>) -> [S; 9] {
+    [
         state.theta_1_deviation,
         state.theta_2_deviation,
         state.theta_3_deviation,
@@ -55,9 +55,14 @@ pub fn searched<S: Signal>(state: &State<S>, structure: &Structure) -> [S; 9] {
         state.theta_7_deviation,
         state.theta_8_deviation,
         state.theta_9_deviation,
-    ];
+    ]
+}
+
+/// The same as the search has them.
+#[inline(always)]
+pub fn searched<S: Signal>(state: &State<S>, structure: &Structure) -> [S; 9] {
     if !structure.calibration.waits() {
-        return applied;
+        return applied(state);
     }
     [
         state.running_1,
@@ -105,18 +110,9 @@ pub fn apply<S: Signal>(
     let now = settled.not().or(ends.or(stops).named("travel_ends"));
     let now = now.named("search_ends");
     let now = recalled.map_or(now, |recalled| now.or(recalled).named("theta_applies"));
-    let before = [
-        state.theta_1_deviation,
-        state.theta_2_deviation,
-        state.theta_3_deviation,
-        state.theta_4_deviation,
-        state.theta_5_deviation,
-        state.theta_6_deviation,
-        state.theta_7_deviation,
-        state.theta_8_deviation,
-    ];
     let mut theta = found;
-    for (theta, before) in theta.iter_mut().zip(before) {
+    // θ9 has its own end of a period.
+    for (theta, before) in theta.iter_mut().zip(applied(state)).take(8) {
         *theta = S::select(now, *theta, before);
     }
     Applied {
