@@ -261,13 +261,14 @@ pub(crate) fn forgetful() -> Vec<Variant> {
     [5, 9].map(of).into()
 }
 
-/// Few periods between the gears, so that the last one, where there is recall, is soon reached; with each parameter set.
+/// Few periods between the gears and held, so that the last one, where there is recall, is soon reached, and again; with each parameter set.
 pub(crate) fn recalls() -> Vec<Variant> {
     let one = Multipliers::Count(1);
     let of = |(parameters, method, multipliers): (u32, CalibrationMethod, Multipliers)| {
         Variant::of("recall", |spec| {
             spec.calibration.parameters = parameters;
             spec.calibration.gear_periods = Some(1);
+            spec.calibration.hold_periods = Some(32);
             spec.calibration.method = method;
             spec.chip.multipliers = multipliers;
         })

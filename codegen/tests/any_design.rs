@@ -21,6 +21,7 @@ proptest! {
         gamma_first in 3..=12u32,
         gears in prop_oneof![Just(0u32), Just(1), 0..=15u32],
         gear_periods in prop_oneof![Just(1u32), Just(255), 1..=255u32],
+        hold_periods in prop_oneof![Just(None), Just(Some(1u32)), (1..=4096u32).prop_map(Some)],
         residuals in (0.01..1.5f64, 0.01..1.5f64),
         count_bits in 32..=44u32,
         multipliers in 1..=9u32,
@@ -38,6 +39,7 @@ proptest! {
             c.gear_periods = Some(gear_periods);
             (c.restart_residual, c.hold_residual) = residuals;
             c.recall = c.recall.filter(|recall| !recall || c.settles());
+            c.hold_periods = hold_periods.filter(|_| c.recalls());
         }
         spec.chip.count_bits = count_bits;
         spec.chip.multipliers = Multipliers::Count(multipliers);

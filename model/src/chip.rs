@@ -134,8 +134,8 @@ pub fn registers(structure: &Structure) -> (Vec<&'static str>, Vec<&'static str>
             c.is_on()
         }
         "theta_6_deviation" | "theta_7_deviation" | "theta_8_deviation" => c.has_bend(),
-        "gamma_gear" | "gear_periods" | "travel_origin" | "travel_low" | "travel_high"
-        | "disturbed" | "risen" | "held" => c.is_on(),
+        "gamma_gear" | "gear_periods" | "held_periods" | "travel_origin" | "travel_low"
+        | "travel_high" | "disturbed" | "risen" | "held" => c.is_on(),
         "ahead_used" | "behind_used" => c.is_on() && !c.is_batch(),
         "loop_gear" => structure.loop_gears > 0,
         "theta_9_deviation" | "null_gradient" | "null_gradient_rate" | "travel_samples"
@@ -261,7 +261,15 @@ pub fn record(
 #[must_use]
 pub fn register_format(name: &str, structure: &Structure) -> crate::format::Format {
     let f = &structure.formats;
-    match remembered(name).unwrap_or(name) {
+    let of = remembered(name).unwrap_or(name);
+    if name.starts_with("recent_") || name.starts_with("proven_") {
+        let deviations = State::<Bits>::VALUES.iter();
+        let mut deviations = deviations.filter(|value| value.ends_with("_deviation"));
+        if let Some(i) = deviations.position(|value| *value == of) {
+            return f.remembered[i].format;
+        }
+    }
+    match of {
         "alpha_hat" | "alpha_hat_previous" => f.alpha.format,
         "count" => f.count.format,
         "rate" => f.rate.format,
@@ -278,6 +286,7 @@ pub fn register_format(name: &str, structure: &Structure) -> crate::format::Form
         "loop_gear" => f.loop_gear.format,
         "gamma_gear" => f.gamma_gear.format,
         "gear_periods" => f.gear_periods.format,
+        "held_periods" => f.held_periods.format,
         "travel_samples" => f.travel_samples.format,
         "gathered_9" => f.deviation[8].format,
         "start_periods" => f.start_periods.format,

@@ -18,8 +18,10 @@ const RAIL: f64 = 10.0;
 const AT_RAIL: [u32; 3] = [1, 30, 1000];
 /// Periods of travel that a signal fades over, and comes back over.
 const FADES: [u32; 3] = [3, 10, 33];
+/// The same, so slowly that the parameters follow for some of the way.
+const SLOW: [u32; 3] = [100, 300, 500];
 /// Those that it fades over before it is back at once.
-const SLOW: [u32; 3] = [100, 300, 1000];
+const ABRUPT: [u32; 3] = [100, 300, 1000];
 
 /// The worst of several.
 fn worst_of(seen: impl Iterator<Item = Seen>) -> Seen {
@@ -72,18 +74,18 @@ const HEAD: &str = "\
 Written by `model/tests/on_line_loss.rs`; do not edit. Largest miscalibration, mrad, from the first sample of the loss to 120 periods
 of travel after the return, whatever is lost (both channels, the cosine, the sine), for the optical design with every search: lost
 at once, in motion and at standstill; faded over parts of a period and over periods of travel, and back in the same time. *Before* is the
-largest in the hundred periods before. *Left*: of the fades over periods, of those of 100, 300 and 1000 periods and an abrupt return, and
+largest in the hundred periods before. *Left*: of the fades over periods, of those of 100, 300 and 1000 periods and an *abrupt* return, and
 of either rail of the ADC for so many periods, from when the signal is back as it was; *without recall*: the same of the chip with `calibration.recall = false`. *Back*: without recall the signal is
 followed in the fade of 100 periods as if the sensor had changed; the periods of travel until the miscalibration stays below twice what it was.
 
-| search | parameters | before | at once | standing | 1/3 period | 3 | 10 | 33 | left: 3 | 10 | 33 | 100 | 300 | 1000 | rail: 1 | 30 | 1000 | without recall: 3 | 10 | 33 | back, periods |
-|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|
+| search | parameters | before | at once | standing | 1/3 period | 3 | 10 | 33 | 100 | 300 | 500 | left: 3 | 10 | 33 | 100 | 300 | 500 | abrupt: 100 | 300 | 1000 | rail: 1 | 30 | 1000 | without recall: 3 | 10 | 33 | back, periods |
+|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|
 ";
 
 const HOW: &str = "NONIUS_BLESS=1 cargo test -p nonius-model --test on_line_loss";
 
 /// A loss within a third of a period, or at standstill, leaves the parameters where they were, but for their own noise. Fades of
-/// three to 33 periods, which for some of the way are small changes of amplitude like any, and of a hundred to a thousand before the
+/// three to five hundred periods, which for some of the way are small changes of amplitude like any, and of up to a thousand before the
 /// signal is back at once leave nothing either then, nor does a channel at a rail. Without recall they leave less than a tenth of a per cent of a period, and it goes away; after one of a hundred
 /// lock comes back and the calibration too.
 #[test]
@@ -94,7 +96,7 @@ fn the_signal_goes_and_comes_back() {
     nonius_kept::near(Path::new(file), &page, |x| 0.1 * x.abs() + 0.02, HOW);
 }
 
-/// What fades and comes back over a hundred periods is followed like a change of the sensor: what lags goes away.
+/// What fades and comes back over a thousand periods outlasts the hold, and is followed like a change of the sensor: what lags goes away.
 #[test]
 fn a_slow_return_is_followed() {
     let kept = searches().into_iter().filter(|v| {
@@ -104,8 +106,8 @@ fn a_slow_return_is_followed() {
     let kept: Vec<Variant> = kept.collect();
     let left = kept.par_iter().map(|variant| {
         let all = each_settled(&variant.spec);
-        let seen = middle(&all, [100 * PERIOD; 2], true);
-        assert!(seen.end < 0.05 * seen.after + seen.before, "{seen:?}");
+        let seen = middle(&all, [1000 * PERIOD; 2], true);
+        assert!(seen.end < 0.1 * seen.after + 2.0 * seen.before, "{seen:?}");
         let set = variant.spec.calibration.parameters;
         format!(
             "{set} parameters {:.0}, {:.1}",
@@ -115,7 +117,7 @@ fn a_slow_return_is_followed() {
     });
     let left: Vec<String> = left.collect();
     nonius_kept::figure(
-        "loss of signal, faded and back over 100 periods each: left at the return, and 120 periods later, mrad",
+        "loss of signal, faded and back over 1000 periods each: left at the return, and 120 periods later, mrad",
         &left.join("; "),
         "model/tests/on_line_loss.rs",
     );
@@ -130,17 +132,23 @@ fn row(variant: &Variant) -> String {
     let standing = middle(&all, [0, 0], false);
     let third = middle(&all, [PERIOD / 3; 2], true);
     let longer = FADES.map(|n| middle(&all, [n * PERIOD; 2], true));
-    let slowly = SLOW.map(|n| middle(&all, [n * PERIOD, 0], true));
+    let slowly = SLOW.map(|n| middle(&all, [n * PERIOD; 2], true));
+    let abruptly = ABRUPT.map(|n| middle(&all, [n * PERIOD, 0], true));
     let rails = AT_RAIL.map(|n| rail(&all, n));
-    println!("{name}: {at_once:?} {standing:?} {third:?} {longer:?} {slowly:?} {rails:?}");
+    println!(
+        "{name}: {at_once:?} {standing:?} {third:?} {longer:?} {slowly:?} {abruptly:?} {rails:?}"
+    );
     for seen in [at_once, standing, third] {
         assert!(seen.worst < 1.5 * seen.before + 2e-4, "{name}: {seen:?}");
     }
     for seen in longer.iter().chain(&rails) {
         assert!(seen.after < 1.5 * seen.before + 3e-5, "{name}: {seen:?}");
     }
-    // What begins so slowly takes the parameters along a little before it shows.
     for seen in &slowly {
+        assert!(seen.after < 1.5 * seen.before + 2e-4, "{name}: {seen:?}");
+    }
+    // What begins so slowly takes the parameters along a little before it shows.
+    for seen in &abruptly {
         assert!(seen.after < 1.5 * seen.before + 5e-4, "{name}: {seen:?}");
     }
     let mut forgetful = variant.clone();
@@ -160,10 +168,15 @@ fn row(variant: &Variant) -> String {
         variant.what,
         1e3 * at_once.before
     );
-    for seen in [at_once, standing, third].iter().chain(&longer) {
+    for seen in [at_once, standing, third]
+        .iter()
+        .chain(&longer)
+        .chain(&slowly)
+    {
         _ = write!(row, " {:.2} |", 1e3 * seen.worst);
     }
-    for seen in longer.iter().chain(&slowly).chain(&rails).chain(&followed) {
+    let left = [&longer, &slowly, &abruptly, &rails, &followed];
+    for seen in left.into_iter().flatten() {
         _ = write!(row, " {:.2} |", 1e3 * seen.after);
     }
     _ = writeln!(row, " {} |", slow.back);

@@ -57,11 +57,15 @@ fn a_stuck_channel_leaves_nothing() {
     });
 }
 
-/// A third larger, or a quarter smaller: held for 32 periods, then searched for anew.
+/// A third larger, or a quarter smaller: held for `hold_periods`, then searched for anew.
 #[test]
 fn another_amplitude_is_learned() {
-    for (before, after) in [(0.85, 1.15), (1.15, 0.85)] {
-        let mut bench = Bench::new(&optical(), 3);
+    let times = [None, Some(32)].into_iter();
+    let cases = times.flat_map(|hold| [(0.85, 1.15, hold), (1.15, 0.85, hold)]);
+    for (before, after, hold) in cases {
+        let mut spec = optical();
+        spec.calibration.hold_periods = hold;
+        let mut bench = Bench::new(&spec, 3);
         let signals = |scale: f64| {
             move |alpha: f64| {
                 (
@@ -84,7 +88,8 @@ fn another_amplitude_is_learned() {
             )
         };
         let (settled, radius) = run(&mut bench, before, 300);
-        let (_, held) = run(&mut bench, after, 25);
+        let hold = hold.unwrap_or(256);
+        let (_, held) = run(&mut bench, after, hold - 7);
         let (learned, again) = run(&mut bench, after, 175);
         println!(
             "{before} -> {after}: {settled:.1e} rad, radius {radius:.3}, {held:.3}; {learned:.1e} rad, {again:.3}"

@@ -377,6 +377,7 @@ fn keys_of_no_calibration_are_refused() {
         ("gear_periods", "3", "4"),
         ("restart_residual", "0.3", "0.25"),
         ("hold_residual", "0.125", "0.0625"),
+        ("hold_periods", "16", "256"),
         ("recall", "false", "true"),
     ] {
         assert!(with(&format!("{key} = {same}")).0.is_ok(), "{key}");

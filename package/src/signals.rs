@@ -92,13 +92,12 @@ const REASONS: &[(&[&str], &str, &[&str])] = &[
         &["formats.sine_phase_bits"],
     ),
     (
-        &[
-            "theta_deviation",
-            "recent",
-            "proven",
-            "running",
-            "gathered_9",
-        ],
+        &["recent", "proven"],
+        "parameter as it is remembered: two bits finer than the pair that it corrects",
+        &["formats.signal_fraction", "formats.accumulator_fraction"],
+    ),
+    (
+        &["theta_deviation", "running", "gathered_9"],
         "parameter: bounded to what the design promises, a quarter more, up to a power of two; resolution by the budget",
         &["formats.accumulator_fraction"],
     ),
@@ -155,8 +154,13 @@ const REASONS: &[(&[&str], &str, &[&str])] = &[
     ),
     (
         &["gear_periods"],
-        "counts the periods of travel in a gear of gamma, or held",
-        &["calibration.gear_periods"],
+        "counts the quiet periods of travel in a gear of gamma, or after a recall",
+        &["calibration.gear_periods", "calibration.hold_periods"],
+    ),
+    (
+        &["held_periods"],
+        "counts the periods of travel that the parameters are held",
+        &["calibration.hold_periods"],
     ),
     (
         &["start_periods"],

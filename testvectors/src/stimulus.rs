@@ -1,7 +1,6 @@
 //! Named stimuli: what the testbench plays.
 
 use nonius_model::design::Design;
-use nonius_model::kernel::gears::HELD;
 use rand::{Rng, SeedableRng, rngs::StdRng};
 
 use crate::ties::Ties;
@@ -43,9 +42,6 @@ fn sweep(t: f64) -> f64 {
 /// Periods of travel in which the signal fades.
 const FADING: f64 = 12.0;
 
-/// Periods of travel from a fade until the search has begun again and gamma, in gears of a period, has settled.
-const FOLLOWED: f64 = 12.0 + HELD as f64;
-
 /// All named stimuli, `rows` samples each, from one seed.
 #[must_use]
 pub fn named(design: &Design, rows: usize) -> Vec<Stimulus> {
@@ -68,6 +64,8 @@ pub fn named(design: &Design, rows: usize) -> Vec<Stimulus> {
         let sin = a * (1.0 - m) * (alpha - beta).sin() - o;
         (code(cos), code(sin))
     };
+    // Periods of travel from a fade until the search has begun again and gamma, in gears of a period, has settled.
+    let followed = 12.0 + f64::from(spec.calibration.hold_periods());
     let n = rows as f64;
     let motion = |name: &str, f: &dyn Fn(usize) -> (i64, i64)| {
         let samples = (0..rows).map(|k| {
@@ -138,7 +136,7 @@ pub fn named(design: &Design, rows: usize) -> Vec<Stimulus> {
         // changes for some periods once gamma has settled on it, is then back, and grows until the radius is far too large.
         motion("fade", &|k| {
             let fading = (k as f64 - n / 3.0) * top;
-            let gain = match fading - FADING / 2.0 - FOLLOWED {
+            let gain = match fading - FADING / 2.0 - followed {
                 _ if 3 * k < rows => 1.0,
                 _ if fading < FADING => 1.0 - 0.12 * fading / FADING,
                 _ if !spec.calibration.recalls() => 0.88,
@@ -198,8 +196,9 @@ pub fn named(design: &Design, rows: usize) -> Vec<Stimulus> {
         }),
         // So small a signal that both gains stay at their bounds, and smaller once parameters are proven there.
         motion("small", &|k| {
-            let nominal = design.constants.theta_1_nominal.ideal;
-            let bound = design.constants.gain_bound.value();
+            let constants = &design.constants;
+            let bound = constants.gain_near_bound.value() + constants.steady_gain.value();
+            let nominal = constants.theta_1_nominal.ideal;
             let small = 0.96 * nominal / (nominal + bound);
             let alpha = std::f64::consts::TAU * k as f64 * top;
             let left = a * small * if 5 * k > 4 * rows { 0.9 } else { 1.0 };

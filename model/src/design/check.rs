@@ -182,6 +182,13 @@ pub(super) fn check(spec: &Spec) -> Result<(), DesignError> {
         1.5,
         "residual as a fraction of the radius",
     )?;
+    between(
+        "calibration.hold_periods",
+        spec.calibration.hold_periods().into(),
+        1.0,
+        4096.0,
+        "periods held",
+    )?;
     if let Multipliers::Count(0) = spec.chip.multipliers {
         return refuse(
             "chip.multipliers",

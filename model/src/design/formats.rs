@@ -5,7 +5,6 @@ use std::f64::consts::{SQRT_2, TAU};
 use super::ranges::{multiplied_top, ranges};
 use super::{Acquisition, DesignError, Followers, Loop, Words, harmonics, normalisation, skew};
 use crate::format::{CONTAINER_INTEGER, Format, Quantiser, exp2};
-use crate::kernel::gears::HELD;
 use crate::kernel::skew::Order;
 use crate::kernel::start::PERIODS as START_PERIODS;
 use crate::kernel::{Coefficients, Constant, Formats, Method, Structure};
@@ -47,6 +46,29 @@ pub(super) fn slowest_completed_hz(spec: &Spec) -> f64 {
 
 /// Most of them: a counter and one more stay in the container, whose sign is not theirs.
 pub(super) const TRAVEL_SAMPLES_MAX: u32 = (1 << (CONTAINER_INTEGER - 3)) - 1;
+
+/// An accumulator as it is remembered: two bits finer than the pair that it corrects.
+fn remembered(accumulator: Format, signal_fraction: u32) -> Quantiser {
+    let less = accumulator.fraction.saturating_sub(signal_fraction + 2);
+    Quantiser::grid(Format::signed(
+        accumulator.width - less,
+        accumulator.fraction - less,
+    ))
+}
+
+/// The least that a gain moves where it is of a signal that fades: a power of two makes a short comparator.
+fn steady_gain(spec: &Spec, f: u32) -> Constant {
+    Constant::rounded(exp2(spec.steady_gain().log2().ceil() as i64), f.min(10))
+}
+
+/// The most quiet periods of travel that are counted.
+fn periods(c: &Calibration) -> u32 {
+    if c.recalls() {
+        c.gear_periods().max(c.returning_periods() + 1)
+    } else {
+        c.gear_periods()
+    }
+}
 
 /// A counter from 0 to `last`.
 fn counting_to(last: u32) -> Quantiser {
@@ -174,6 +196,9 @@ pub(super) fn structure(
         theta_bend: multiplied.bend,
         theta_cubic: multiplied.cubic,
         deviation: r.deviation.map(accumulator),
+        remembered: r
+            .deviation
+            .map(|power| remembered(accumulator(power).format, f)),
         alpha_gradient: {
             let g = follow.sensitivity_fraction;
             Quantiser::saturating(Format::signed(g + 2, g))
@@ -189,7 +214,8 @@ pub(super) fn structure(
         // Two bits even where one would do.
         loop_gear: counting_to(acquisition.gears.max(3)),
         gamma_gear: counting_to(spec.calibration.gears()),
-        gear_periods: counting_to(spec.calibration.gear_periods().saturating_sub(1).max(HELD)),
+        gear_periods: counting_to(periods(&spec.calibration).saturating_sub(1)),
+        held_periods: counting_to(spec.calibration.hold_periods().max(Calibration::HELD) - 1),
     };
     Ok(Structure {
         method: match spec.tracking.method {
@@ -328,11 +354,11 @@ pub(super) fn constants(
         weak_signal: Constant::rounded(0.25, 2),
         restart_residual: Constant::rounded(spec.calibration.restart_residual, f.min(8)),
         hold_residual: Constant::rounded(spec.hold_residual(), f.min(8)),
-        steady_gain: Constant::rounded(exp2(spec.steady_gain().log2().ceil() as i64), f.min(10)),
-        gain_bound: {
+        steady_gain: steady_gain(spec, f),
+        gain_near_bound: {
             let gain = structure.formats.deviation[0].format;
-            let power = i64::from(gain.width) - 1 - i64::from(gain.fraction);
-            Constant::rounded(exp2(power), (-power).max(0) as u32)
+            let bound = exp2(i64::from(gain.width) - 1 - i64::from(gain.fraction));
+            Constant::rounded(bound - steady_gain(spec, f).value(), f.min(10))
         },
         direction_rate: Constant::rounded(exp2(-i64::from(f)), words.phase_bits),
         lock_down: whole(-8),
@@ -349,7 +375,9 @@ pub(super) fn constants(
         gamma_gear_settled: whole(Calibration::SETTLED.into()),
         gamma_gear_last: whole(structure.calibration.gears().into()),
         gear_periods_last: whole(i64::from(spec.calibration.gear_periods()) - 1),
-        held_periods_last: whole(HELD.into()),
+        held_periods_last: whole(i64::from(Calibration::HELD) - 1),
+        returning_periods: whole(spec.calibration.returning_periods().into()),
+        hold_periods_last: whole(i64::from(spec.calibration.hold_periods()) - 1),
         start_periods_last: whole(START_PERIODS.into()),
         start_period: Constant::rounded(62.0 / 64.0, 6),
         unit_radius: corrected(1.0, exp2(-i64::from(f) - 1), f + 1),

@@ -90,6 +90,14 @@ fn idle(c: &Calibration) -> Result<(), DesignError> {
             "no other search forgets: this key has no effect",
         );
     }
+    if let (false, Some(hold_periods)) = (c.recalls(), c.hold_periods) {
+        return refuse(
+            "calibration.hold_periods",
+            hold_periods,
+            "leave it out",
+            "nothing is recalled: this key has no effect",
+        );
+    }
     if c.completed().is_none() && c.completion_gamma != default.completion_gamma {
         return refuse(
             "calibration.completion_gamma",
@@ -107,6 +115,7 @@ fn without(c: &Calibration) -> Result<(), DesignError> {
         let worked_out = Calibration {
             parameters: 0,
             gear_periods: Some(c.gear_periods()),
+            hold_periods: Some(c.hold_periods()),
             recall: Some(c.recall.unwrap_or(true)),
             ..c.clone()
         };

@@ -124,8 +124,8 @@ coefficients! {
     hold_residual,
     /// A gain that moves by more between two times that it is remembered is of a signal that fades.
     steady_gain,
-    /// Bound of a gain's deviation.
-    gain_bound,
+    /// A gain's deviation from which it is near its bound.
+    gain_near_bound,
     /// Rate below which the direction does not change, turns per sample.
     direction_rate,
     /// What a bad sample adds to the lock level.
@@ -150,6 +150,10 @@ coefficients! {
     gear_periods_last,
     /// Periods of travel that the parameters are held before the search begins again, less one.
     held_periods_last,
+    /// The same where better ones are known.
+    hold_periods_last,
+    /// Quiet periods of travel after a recall that move nothing.
+    returning_periods,
     /// Periods of travel that the start solves.
     start_periods_last,
     /// Travel that the start takes for a period.

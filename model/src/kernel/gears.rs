@@ -4,7 +4,7 @@
 //! A residual that was small and is no longer may be a signal that fades. So where γ has settled
 //! ([`Calibration::SETTLED`](crate::spec::Calibration::SETTLED) gears) it moves no parameter: they are held to the end of the first
 //! period without it. From the first period on that was quiet a large one does the same, and after a sample out of the lock window
-//! they are held until the lock level is full again. Where it has been large for [`HELD`] periods and lock was not lost, the signal
+//! they are held until the lock level is full again. Where it has been large for [`hold_periods`](crate::spec::Calibration::hold_periods) and lock was not lost, the signal
 //! has changed, and the search begins again; at once where it has followed a signal that faded, and the radius is far too large
 //! now: the signal is back. A signal that is lost in the first gear leaves parameters of which nothing is known: they begin again
 //! from their nominal values, or with recall from the best that is known.
@@ -13,9 +13,6 @@ use super::calibration::Gate;
 use super::detector::within;
 use super::{Coefficients, State, Structure};
 use crate::signal::{Formula, Logic, Signal};
-
-/// Periods of travel that parameters are held before the search begins again, less one.
-pub const HELD: u32 = 31;
 
 static HOLD: Formula = Formula {
     title: "Hold",
@@ -33,8 +30,10 @@ static GEARS: Formula = Formula {
 pub struct Gears<S: Signal> {
     /// γ gear.
     pub gear: S,
-    /// Periods of travel in this gear, or held.
+    /// Quiet periods of travel in this gear.
     pub periods: S,
+    /// Periods of travel held.
+    pub held_periods: S,
     /// The periods of this gear have passed without a large residual.
     pub passed: S::Bool,
     /// A period of the first gear has passed without a large residual.
@@ -101,10 +100,11 @@ pub fn hold<S: Signal>(
     let held = suspect.named("hold_cause").and(later).named("hold");
     // γ is in its last gear then: where it leaves it nothing is known, or the signal may be fading.
     let recall = structure.calibration.recalls().then(|| {
-        let proven = state.known.and(state.fading.not()).named("proven_stand");
-        // What has moved on since is recalled only where the signal rises.
+        let proven = proven(state);
+        // What has moved on since is recalled only where the signal rises, or was fading before it was lost.
         let rises = rho.less_than(k.hold_residual).not().named("rho_rises");
-        let better = state.apart.not().or(rises).named("proven_better");
+        let faded = state.held.and(state.locked.not()).named("held_and_lost");
+        let better = state.apart.not().or(rises).or(faded).named("proven_better");
         let proven = proven.and(better).named("may_recall");
         held.and(proven).named("recall")
     });
@@ -114,6 +114,12 @@ pub fn hold<S: Signal>(
         held,
         recall,
     }
+}
+
+/// Something is proven, and the search has not begun again since because it no longer held.
+#[inline(always)]
+fn proven<S: Signal>(state: &State<S>) -> S::Bool {
+    state.known.and(state.fading.not()).named("proven_stand")
 }
 
 /// γ is as small as it becomes.
@@ -152,11 +158,44 @@ fn disturbed_period<S: Signal>(gate: Gate<S>, state: &State<S>) -> S::Bool {
     gate.tick.and(state.disturbed).named("disturbed_period")
 }
 
-/// The parameters have been held for as long as a signal that changes no more is waited for.
+/// As many periods have been counted as a signal that changes no more is waited for: what is recalled stands for longer.
 #[inline(always)]
-fn long<S: Signal>(state: &State<S>, k: &Coefficients<S>) -> S::Bool {
-    let long = state.gear_periods.less_than(k.held_periods_last).not();
-    state.held.and(long).named("held_long")
+fn long<S: Signal>(state: &State<S>, k: &Coefficients<S>, structure: &Structure) -> S::Bool {
+    let some = state.held_periods.less_than(k.held_periods_last).not();
+    let some = some.named("held_some_periods");
+    if !structure.calibration.recalls() {
+        return some;
+    }
+    let many = state.held_periods.less_than(k.hold_periods_last).not();
+    let unknown = some.and(proven(state).not()).named("held_unknown");
+    many.or(unknown).named("held_long")
+}
+
+/// Periods held: one after the other; where better parameters are known, as many more as were quiet.
+#[inline(always)]
+fn held_periods<S: Signal>(
+    (gate, quiet): (Gate<S>, S::Bool),
+    restart: S::Bool,
+    counting: S::Bool,
+    state: &State<S>,
+    k: &Coefficients<S>,
+    structure: &Structure,
+) -> S {
+    let up = S::select(disturbed_period(gate, state), k.one, k.zero).named("held_periods_up");
+    let (step, stays) = if structure.calibration.recalls() {
+        let free = quiet.and(state.returning.not()).named("parameters_follow");
+        let any = state.held_periods.less_than(k.one).not();
+        let down = gate.tick.and(free).and(any.named("held_before"));
+        let step = S::select(down.named("free_period"), -k.one, up).named("held_periods_step");
+        // Without lock nothing is travelled.
+        let known = state.known.and(counting).named("known_in_lock");
+        (step, state.held.or(known).named("held_or_known"))
+    } else {
+        (up, state.held)
+    };
+    let stays = stays.and(restart.not()).named("held_periods_stay");
+    let counted = (state.held_periods + step).quantise(&structure.formats.held_periods);
+    S::select(stays, counted, k.zero).quantise(&structure.formats.held_periods)
 }
 
 /// The search begins again: the residual was large before γ had settled, or for so long that the signal must have changed, or the
@@ -169,7 +208,7 @@ pub fn restart<S: Signal>(
     structure: &Structure,
 ) -> S::Bool {
     let early = settled(state, k, structure).not();
-    let cause = early.or(long(state, k));
+    let cause = early.or(long(state, k, structure));
     let cause = if structure.calibration.recalls() {
         cause.or(state.risen.and(state.fading).named("rises_again"))
     } else {
@@ -196,6 +235,14 @@ pub fn gears<S: Signal>(
     let restart = restart(gate, state, k, structure);
     let last = last_gear(state, k);
     let done = state.gear_periods.less_than(k.gear_periods_last).not();
+    let done = if structure.calibration.recalls() {
+        // What comes back slowly is small again before it is whole, for about the tenth part of the way.
+        let early = state.gear_periods.less_than(k.returning_periods);
+        let early = state.returning.and(early).named("returned_lately");
+        done.and(early.not()).named("gear_periods_done")
+    } else {
+        done
+    };
     let done = starting.map_or(done, |starting| done.or(starting));
     let quiet = state.disturbed.or(state.held).not().named("quiet");
     let done = done.and(quiet).named("gear_done");
@@ -205,16 +252,14 @@ pub fn gears<S: Signal>(
     let gear = (state.gamma_gear + up).quantise(&structure.formats.gamma_gear);
     let one_more = S::select(tick, k.one, k.zero).named("gear_periods_up");
     let counted = (state.gear_periods + one_more).quantise(&structure.formats.gear_periods);
-    // Periods held are counted from the first, and those of a gear from the first after them.
-    let begins = state.disturbed.and(state.held.not()).named("hold_begins");
-    let ends = state.held.and(state.disturbed.not()).named("hold_ends");
-    let count_ends = done.or(begins).or(ends).named("periods_count_ends");
+    let count_ends = done.or(quiet.not()).named("periods_count_ends");
     let again = tick.and(count_ends).named("periods_end").or(restart);
     // Periods before a loss of lock were not quiet.
     let again = hold
         .recall
         .map_or(again, |_| again.or(counting.not()))
         .named("gear_periods_again");
+    let held_periods = held_periods((gate, quiet), restart, counting, state, k, structure);
     let within = tick.not().and(counting).named("within_period");
     let still_held = state.held.and(tick.not()).named("still_held");
     let held = disturbed_period(gate, state)
@@ -224,13 +269,14 @@ pub fn gears<S: Signal>(
     Gears {
         gear: S::select(restart, k.zero, gear).quantise(&structure.formats.gamma_gear),
         periods: S::select(again, k.zero, counted).quantise(&structure.formats.gear_periods),
+        held_periods,
         passed,
         first: tick
             .and(quiet)
             .and(first_gear(state, k))
             .named("first_gear_period"),
         restart,
-        stayed: restart.and(long(state, k)),
+        stayed: restart.and(long(state, k, structure)),
         // Where nothing counts, a new period begins without suspicion.
         disturbed: hold.large.or(state.disturbed.and(within)),
         risen: hold.risen.or(state.risen.and(within)),

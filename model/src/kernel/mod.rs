@@ -127,6 +127,8 @@ pub struct Formats {
     pub theta_cubic: Quantiser,
     /// Accumulators of the nine parameters: deviation from the nominal value.
     pub deviation: [Quantiser; 9],
+    /// What is remembered of them.
+    pub remembered: [Quantiser; 9],
     /// ∇α̂ of recursion (11) and its increment, radians.
     pub alpha_gradient: Quantiser,
     /// Gathered gradient of the sum of squares, or of the start.
@@ -145,4 +147,6 @@ pub struct Formats {
     pub gamma_gear: Quantiser,
     /// Periods travelled in this γ gear.
     pub gear_periods: Quantiser,
+    /// Periods of travel held.
+    pub held_periods: Quantiser,
 }

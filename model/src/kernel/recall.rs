@@ -26,8 +26,8 @@ static RECALL: Formula = Formula {
     source: "",
 };
 
-/// A gain as it is looked at, of ±2.
-const GAIN: Format = Format::signed(13, 11);
+/// Bits of fraction of a gain as it is looked at: a few are enough.
+const GAIN_FRACTION: u32 = 10;
 
 /// What is remembered of θ1 … θ9.
 pub struct Memory<S: Signal> {
@@ -83,9 +83,11 @@ pub fn recall<S: Signal>(
     gears.gear =
         S::select(again, k.gamma_gear_last, gears.gear).quantise(&structure.formats.gamma_gear);
     let quiet = passed.and(last).named("last_gear_passed");
+    // What has just been recalled says nothing new.
+    let quiet = quiet.and(state.returning.not()).named("quiet_periods_pass");
     let ends = quiet.and(state.halfway).named("quiet_periods_end");
     // The first time something is better than nothing.
-    let steady = steady(state, k);
+    let steady = steady(state, k, structure);
     let better = steady.or(state.known.not()).named("proves");
     let proved = ends.and(better).named("proved");
     let moves = ends.and(steady.not()).named("gain_moved");
@@ -103,7 +105,10 @@ pub fn recall<S: Signal>(
         .named("remember_recent");
     let recent = || {
         let before = self::recent(state);
-        std::array::from_fn(|i| S::select(newer, updated.theta[i], before[i]))
+        std::array::from_fn(|i| {
+            let theta = updated.theta[i].quantise(&structure.formats.remembered[i]);
+            S::select(newer, theta, before[i])
+        })
     };
     let proven = || {
         let (recent, before) = (self::recent(state), self::proven(state));
@@ -123,7 +128,7 @@ pub fn recall<S: Signal>(
         proven: (!older.is_known_false()).then(proven),
         returning: returning.or(again),
         fading: fades.and(ends.not()),
-        halfway: state.halfway.xor(quiet),
+        halfway: state.halfway.xor(quiet).and(all.not()),
         known: known.or(proved),
         apart: moves.or(state.apart).and(together.not()),
         recalled: all,
@@ -132,11 +137,13 @@ pub fn recall<S: Signal>(
 
 /// No gain has moved much since it was last remembered, nor is one near its bound: a signal that fades slowly takes them along, up to
 /// there.
-fn steady<S: Signal>(state: &State<S>, k: &Coefficients<S>) -> S::Bool {
+fn steady<S: Signal>(state: &State<S>, k: &Coefficients<S>, structure: &Structure) -> S::Bool {
+    let whole = structure.formats.deviation[0].format;
+    let less = whole.fraction.saturating_sub(GAIN_FRACTION);
+    let gain = Quantiser::grid(Format::signed(whole.width - less, whole.fraction - less));
     let of = |now: S, before: S, name: [&'static str; 2]| {
-        // Few bits are enough.
-        let [now, before] = [now, before].map(|gain| gain.quantise(&Quantiser::grid(GAIN)));
-        let inside = (now + k.steady_gain).less_than(k.gain_bound).named(name[0]);
+        let [now, before] = [now, before].map(|theta| theta.quantise(&gain));
+        let inside = now.less_than(k.gain_near_bound).named(name[0]);
         within(now - before, k.steady_gain)
             .named(name[1])
             .and(inside)

@@ -190,6 +190,7 @@ fn advance_of<S: Signal, const PLAIN: bool>(
     registers.loop_gear = lock.gear;
     registers.gamma_gear = gears.gear;
     registers.gear_periods = gears.periods;
+    registers.held_periods = gears.held_periods;
     registers.travel_origin = travel.origin;
     registers.travel_low = travel.low;
     registers.travel_high = travel.high;

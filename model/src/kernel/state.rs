@@ -41,6 +41,8 @@ bundle! {
         gamma_gear,
         /// Whole periods travelled in this γ gear.
         gear_periods,
+        /// Periods of travel for which the parameters are held.
+        held_periods,
         /// Position, modulo 4 periods, where the map of sectors was last cleared.
         travel_origin,
         /// Lowest sector seen since, relative to the origin.

@@ -202,7 +202,7 @@ pub fn config(spec: &Spec) -> Result<Config, ReferenceError> {
             residual: spec.hold_residual(),
             restart: k.restart_residual,
             settled: Calibration::SETTLED,
-            periods: 32.0,
+            periods: [Calibration::HELD, k.hold_periods()].map(f64::from),
             steady: spec.steady_gain(),
             recall: k.recalls().then_some(k.gear_periods().into()),
         }),

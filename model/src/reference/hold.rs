@@ -1,12 +1,13 @@
 //! A residual that was small and is no longer may be a signal that fades: then the parameters are held.
 //!
-//! They are held until a whole period has been travelled without such a residual. Where it stays for many periods and lock is not
-//! lost, the signal has changed, and γ begins again. The paper has nothing of the kind: there the gains follow a signal down to
-//! nothing.
+//! They are held until a whole period has been travelled without such a residual, or many where an earlier Θ was recalled. Where it
+//! stays for many periods and lock is not lost, the signal has changed, and γ begins again. The paper has nothing of the kind: there
+//! the gains follow a signal down to nothing.
 
 use std::f64::consts::TAU;
 
 use super::Theta;
+use crate::spec::Calibration;
 
 /// When to hold.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,9 +18,9 @@ pub struct HoldConfig {
     pub restart: f64,
     /// After so many halvings of γ.
     pub settled: u32,
-    /// Periods of travel until γ begins again.
-    pub periods: f64,
-    /// Periods of travel after which Θ is remembered, and which a hold outlasts; `None`: never, and not.
+    /// Periods of travel until γ begins again, and where an earlier Θ was recalled.
+    pub periods: [f64; 2],
+    /// Periods of travel after which Θ is remembered, and the least quiet ones that a Θ which was recalled is held for; `None`: never.
     pub recall: Option<f64>,
     /// A gain that moves by more between two times that Θ is remembered is of a signal that fades.
     pub steady: f64,
@@ -36,47 +37,72 @@ pub enum Verdict {
     Changed,
 }
 
-/// Where the parameters began to be held, and where the residual was last large: α̂, radians.
+/// Whether the parameters are held.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Hold(Option<(f64, f64)>);
+pub struct Hold {
+    /// Where they began to be, and where the residual was last large: α̂, radians.
+    since: Option<(f64, f64)>,
+    /// An earlier Θ was recalled.
+    returning: bool,
+}
 
 impl Hold {
-    /// Held from here on, α̂ in radians.
-    #[must_use]
-    pub fn held_from(alpha_hat: f64) -> Self {
-        Self(Some((alpha_hat, alpha_hat)))
+    /// An earlier Θ was recalled, and is held from here on, α̂ in radians.
+    pub fn recalled(&mut self, alpha_hat: f64) {
+        self.since.get_or_insert((alpha_hat, alpha_hat));
+        self.returning = true;
     }
 
-    /// Takes ρ and α̂ (radians, unwrapped) of a sample; `halvings` of γ so far, `None` without lock.
+    /// They have been held for a period of travel or more.
+    #[must_use]
+    pub fn lasts(&self, alpha_hat: f64) -> bool {
+        let apart = |(began, _): (f64, f64)| (alpha_hat - began).abs() >= TAU;
+        self.since.is_some_and(apart)
+    }
+
+    /// Takes ρ and α̂ (radians, unwrapped) of a sample; `halvings` of γ so far; without lock (`locked`) nothing is travelled.
     pub fn step(
         &mut self,
         config: &HoldConfig,
         rho: f64,
         alpha_hat: f64,
-        halvings: Option<u32>,
+        (halvings, locked): (u32, bool),
     ) -> Verdict {
-        if halvings.is_none_or(|done| done < config.settled) {
-            self.0 = None;
+        if halvings < config.settled {
+            *self = Self::default();
             return Verdict::Free;
         }
+        if !locked {
+            self.since = self.returning.then_some((alpha_hat, alpha_hat));
+            return Verdict::Held;
+        }
         if rho.abs() >= config.residual {
-            let began = self.0.map_or(alpha_hat, |(began, _)| began);
-            self.0 = Some((began, alpha_hat));
-            let long = (alpha_hat - began).abs() >= config.periods * TAU;
-            if long {
-                self.0 = None;
+            let began = self.since.map_or(alpha_hat, |(began, _)| began);
+            self.since = Some((began, alpha_hat));
+            let most = config.periods[usize::from(self.returning)];
+            if (alpha_hat - began).abs() >= most * TAU {
+                *self = Self::default();
                 return Verdict::Changed;
             }
         }
-        let quiet = (1.0 + config.recall.unwrap_or(0.0)) * TAU;
-        match self.0 {
-            Some((_, last)) if (alpha_hat - last).abs() < quiet => Verdict::Held,
+        let returning = config.recall.filter(|_| self.returning);
+        match self.since {
+            Some((began, last)) if (alpha_hat - last).abs() < quiet(began, last, returning) => {
+                Verdict::Held
+            }
             _ => {
-                self.0 = None;
+                *self = Self::default();
                 Verdict::Free
             }
         }
     }
+}
+
+/// Travel without a large residual after which Θ moves again, radians: a period, and where an earlier one was `returning` so many more,
+/// or a part of what it was held for.
+fn quiet(began: f64, last: f64, returning: Option<f64>) -> f64 {
+    let held = (last - began).abs() / f64::from(Calibration::RETURNING);
+    TAU + returning.map_or(0.0, |periods| held.max(periods * TAU))
 }
 
 /// Θ of better days: where it begins to be held, a fade has already taken it along for some periods.
@@ -105,8 +131,8 @@ pub struct Seen {
     pub verdict: Verdict,
     /// ρ is far too large.
     pub risen: bool,
-    /// ρ is larger than small.
-    pub rises: bool,
+    /// ρ is larger than small, or the signal is lost that had faded for a period or more.
+    pub faded: bool,
     /// γ has settled.
     pub settled: bool,
     /// The loop follows.
@@ -167,7 +193,7 @@ impl Recall {
             return Recalled::Nothing;
         }
         self.since = alpha_hat;
-        let proven = self.known && !self.fading && (!self.apart || seen.rises);
+        let proven = self.known && !self.fading && (!self.apart || seen.faded);
         if seen.verdict == Verdict::Changed {
             self.known &= self.fading || !seen.risen;
             self.fading |= !seen.risen;

@@ -296,14 +296,15 @@ impl Reference {
             return true;
         };
         let alpha_hat = self.tracking.alpha_hat();
-        let halvings = locked.then_some(self.geared.0);
-        let verdict = self.hold.step(config, rho, alpha_hat, halvings);
+        let lost = !locked && self.hold.lasts(alpha_hat);
+        let halvings = self.geared.0;
+        let verdict = self.hold.step(config, rho, alpha_hat, (halvings, locked));
         if let Some(periods) = config.recall {
             let [gain_c, _, gain_s, _] = self.config.parameters.linear();
             let seen = hold::Seen {
                 verdict,
                 risen: rho >= config.restart,
-                rises: rho >= config.residual,
+                faded: rho >= config.residual || lost,
                 settled: self.geared.0 >= config.settled,
                 locked,
                 last: self.geared.0 >= self.config.gamma.halvings,
@@ -313,6 +314,7 @@ impl Reference {
             if let Recalled::Held(theta) | Recalled::Again(theta) = recalled {
                 self.theta = theta;
                 self.pending = Theta::zeros();
+                self.hold.recalled(alpha_hat);
                 // A mean of the way down would be the first to act on it.
                 if let Searching::SumOfSquares(sum) = &mut self.searching {
                     sum.clear();
@@ -320,7 +322,6 @@ impl Reference {
             }
             if let Recalled::Again(_) = recalled {
                 self.geared = (self.config.gamma.halvings, alpha_hat);
-                self.hold = Hold::held_from(alpha_hat);
                 return false;
             }
         }

@@ -40,6 +40,10 @@ pub struct Calibration {
     /// |ρ| above this holds the parameters once γ has settled: the signal may be fading. See [`Spec::hold_residual`].
     #[serde(default = "hold")]
     pub hold_residual: f64,
+    /// Periods of travel that what was recalled is held before the sensor is taken for changed, and the search begins again. Default:
+    /// see [`hold_periods`](Self::hold_periods).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub hold_periods: Option<u32>,
     /// Where they begin to be held, the parameters go back to what they were some periods before: a fade of the signal takes
     /// nothing along. Two registers for each parameter. Default: wherever parameters are held, see [`recalls`](Self::recalls).
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -97,6 +101,10 @@ impl Spec {
 impl Calibration {
     /// Halvings of γ after which it has settled: parameters may then be held, and they move where a period of travel ends.
     pub const SETTLED: u32 = 4;
+    /// Periods of travel that parameters are held of which nothing better is known, before the search begins again.
+    pub const HELD: u32 = 32;
+    /// What comes back slowly is small again before it is whole: so many periods held, and one quiet one before it moves.
+    pub const RETURNING: u32 = 8;
     /// Halvings of the phase's step then, in the final form of five parameters.
     pub const PHASE_HALVINGS: u32 = 2;
 
@@ -188,6 +196,20 @@ impl Calibration {
         self.is_on() && self.recall.unwrap_or(self.settles())
     }
 
+    /// Periods of travel that recalled parameters are held before the search begins again: as the design says, or as a signal takes
+    /// that fades or comes back over some hundred periods. What is not known to be right is held for [`Self::HELD`].
+    #[must_use]
+    pub fn hold_periods(&self) -> u32 {
+        let known = if self.recalls() { 256 } else { Self::HELD };
+        self.hold_periods.unwrap_or(known)
+    }
+
+    /// The most quiet periods of travel after which what was recalled moves again: [`Self::RETURNING`] of those that it was held.
+    #[must_use]
+    pub fn returning_periods(&self) -> u32 {
+        self.hold_periods().div_ceil(Self::RETURNING)
+    }
+
     /// γ = 2^-that of the direction that no radius shows; `None`: it is not learnt.
     #[must_use]
     pub fn completed(&self) -> Option<u32> {
@@ -261,6 +283,7 @@ impl Default for Calibration {
             gear_periods: None,
             restart_residual: restart(),
             hold_residual: hold(),
+            hold_periods: None,
             recall: None,
         }
     }

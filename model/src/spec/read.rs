@@ -83,6 +83,7 @@ const KEYS: &[(&str, &[&str])] = &[
             "gear_periods",
             "restart_residual",
             "hold_residual",
+            "hold_periods",
             "recall",
         ],
     ),
