@@ -4,9 +4,10 @@
 //! A residual that was small and is no longer may be a signal that fades. So where γ has settled
 //! ([`Calibration::SETTLED`](crate::spec::Calibration::SETTLED) gears) it moves no parameter: they are held to the end of the first
 //! period without it. From the first period on that was quiet a large one does the same, and after a sample out of the lock window
-//! they are held until the lock level is full again. Where it has been large for [`hold_periods`](crate::spec::Calibration::hold_periods) and lock was not lost, the signal
-//! has changed, and the search begins again; at once where it has followed a signal that faded, and the radius is far too large
-//! now: the signal is back. A signal that is lost in the first gear leaves parameters of which nothing is known: they begin again
+//! they are held until the lock level is full again. Where it has been large for [`HELD`](crate::spec::Calibration::HELD) periods, or
+//! where better parameters are known for [`hold_periods`](crate::spec::Calibration::hold_periods) more than not, and lock was not lost,
+//! the signal has changed, and the search begins again; at once where it has followed a signal that faded, and the radius is far too
+//! large now: the signal is back. A signal that is lost in the first gear leaves parameters of which nothing is known: they begin again
 //! from their nominal values, or with recall from the best that is known.
 
 use super::calibration::Gate;
@@ -158,7 +159,7 @@ fn disturbed_period<S: Signal>(gate: Gate<S>, state: &State<S>) -> S::Bool {
     gate.tick.and(state.disturbed).named("disturbed_period")
 }
 
-/// As many periods have been counted as a signal that changes no more is waited for: what is recalled stands for longer.
+/// As many periods have been counted as a signal is waited for that may come back: where better parameters are known, for longer.
 #[inline(always)]
 fn long<S: Signal>(state: &State<S>, k: &Coefficients<S>, structure: &Structure) -> S::Bool {
     let some = state.held_periods.less_than(k.held_periods_last).not();

@@ -3,12 +3,13 @@
 //! A fade over some periods is a small change of the amplitude before it is a large one, and the parameters follow it until
 //! they are held. So the chip remembers them as they were at the last two ends of twice `gear_periods` quiet periods of travel, and where
 //! they begin to be held it goes back to the older of the two. Only in the last gear: before it they still improve. A signal that
-//! comes back over some periods is nearly whole before it is whole: they stay held until as many quiet periods have passed.
+//! comes back slowly is nearly whole before it is whole: they stay held until a part of `hold_periods` has passed quietly.
 //!
 //! A slower fade outlasts the hold, and the search begins again and follows it; one slower still is followed without. So nothing is
 //! proven while a gain moves: what is stays as it was until the search has come to its last gear again and the gains rest. A sensor whose
-//! gains move on is not what it was, either: then only a radius that is too large, as where a fade is over, brings back what is proven,
-//! and what falls out for some samples does not. Where the radius is far too large before that, the signal is back: what is proven comes
+//! gains move on is not what it was, either: then only a radius that is too large, as where a fade is over, or a loss of lock after a
+//! period and more with one that is too small, as where it ends, brings back what is proven, and what falls out for some samples does
+//! not. Where the radius is far too large before that, the signal is back: what is proven comes
 //! back, with the last gear. So it does where the signal is lost in the first gear, with which nothing else is known; before anything is
 //! proven that is what the last gear ended with, in the first one the last quiet period, and the search goes on from there.
 

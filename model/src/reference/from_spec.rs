@@ -6,7 +6,7 @@ use super::completed::CompletedConfig;
 use super::gate::{Gate, Window};
 use super::gradient::Form;
 use super::harmonics::Harmonics;
-use super::hold::HoldConfig;
+use super::hold::{HoldConfig, RecallConfig};
 use super::interpolator::{Gamma, Search};
 use super::loops::LoopConfig;
 use super::poles::Poles;
@@ -202,9 +202,12 @@ pub fn config(spec: &Spec) -> Result<Config, ReferenceError> {
             residual: spec.hold_residual(),
             restart: k.restart_residual,
             settled: Calibration::SETTLED,
-            periods: [Calibration::HELD, k.hold_periods()].map(f64::from),
+            periods: [Calibration::HELD, k.hold_periods()],
             steady: spec.steady_gain(),
-            recall: k.recalls().then_some(k.gear_periods().into()),
+            recall: k.recalls().then_some(RecallConfig {
+                periods: k.gear_periods().into(),
+                returning: k.returning_periods().max(k.gear_periods()),
+            }),
         }),
         bound: Theta::repeat(1.0),
         start: Start::Arctangent {

@@ -7,7 +7,6 @@
 use std::f64::consts::TAU;
 
 use super::Theta;
-use crate::spec::Calibration;
 
 /// When to hold.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,12 +17,21 @@ pub struct HoldConfig {
     pub restart: f64,
     /// After so many halvings of γ.
     pub settled: u32,
-    /// Periods of travel until γ begins again, and where an earlier Θ was recalled.
-    pub periods: [f64; 2],
-    /// Periods of travel after which Θ is remembered, and the least quiet ones that a Θ which was recalled is held for; `None`: never.
-    pub recall: Option<f64>,
+    /// Periods of travel until γ begins again: where nothing better is known, and where something is proven.
+    pub periods: [u32; 2],
+    /// When Θ is remembered; `None`: never.
+    pub recall: Option<RecallConfig>,
     /// A gain that moves by more between two times that Θ is remembered is of a signal that fades.
     pub steady: f64,
+}
+
+/// When Θ is remembered, and how long one that was recalled rests.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RecallConfig {
+    /// Periods of travel.
+    pub periods: f64,
+    /// Quiet ones.
+    pub returning: u32,
 }
 
 /// What a sample means for the search.
@@ -40,69 +48,88 @@ pub enum Verdict {
 /// Whether the parameters are held.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Hold {
-    /// Where they began to be, and where the residual was last large: α̂, radians.
-    since: Option<(f64, f64)>,
+    /// α̂ where the running period of travel began, radians; `None`: nothing is travelled yet.
+    began: Option<f64>,
+    /// The residual was large in the running period.
+    disturbed: bool,
+    /// And in the last one.
+    held: bool,
     /// An earlier Θ was recalled.
     returning: bool,
+    /// Quiet periods since.
+    quiet: u32,
+    /// Periods held; where something is proven less those in which Θ was free.
+    periods: u32,
 }
 
 impl Hold {
-    /// An earlier Θ was recalled, and is held from here on, α̂ in radians.
-    pub fn recalled(&mut self, alpha_hat: f64) {
-        self.since.get_or_insert((alpha_hat, alpha_hat));
-        self.returning = true;
+    /// An earlier Θ was recalled, and is held from here on.
+    pub fn recalled(&mut self) {
+        (self.returning, self.quiet) = (true, 0);
     }
 
-    /// They have been held for a period of travel or more.
+    /// Θ has been held for a period of travel or more.
     #[must_use]
-    pub fn lasts(&self, alpha_hat: f64) -> bool {
-        let apart = |(began, _): (f64, f64)| (alpha_hat - began).abs() >= TAU;
-        self.since.is_some_and(apart)
+    pub fn lasts(&self) -> bool {
+        self.held
     }
 
-    /// Takes ρ and α̂ (radians, unwrapped) of a sample; `halvings` of γ so far; without lock (`locked`) nothing is travelled.
+    /// Takes ρ and α̂ (radians, unwrapped) of a sample; `halvings` of γ so far; without lock (`locked`) nothing is travelled; Θ may be
+    /// `proven`.
     pub fn step(
         &mut self,
         config: &HoldConfig,
-        rho: f64,
-        alpha_hat: f64,
-        (halvings, locked): (u32, bool),
+        (rho, alpha_hat): (f64, f64),
+        halvings: u32,
+        (locked, proven): (bool, bool),
     ) -> Verdict {
         if halvings < config.settled {
             *self = Self::default();
             return Verdict::Free;
         }
         if !locked {
-            self.since = self.returning.then_some((alpha_hat, alpha_hat));
+            let returning = self.returning;
+            *self = Self {
+                began: Some(alpha_hat),
+                returning,
+                ..Self::default()
+            };
             return Verdict::Held;
         }
-        if rho.abs() >= config.residual {
-            let began = self.since.map_or(alpha_hat, |(began, _)| began);
-            self.since = Some((began, alpha_hat));
-            let most = config.periods[usize::from(self.returning)];
-            if (alpha_hat - began).abs() >= most * TAU {
+        self.disturbed |= rho.abs() >= config.residual;
+        let began = *self.began.get_or_insert(alpha_hat);
+        if (alpha_hat - began).abs() >= TAU {
+            self.began = Some(alpha_hat);
+            if self.disturbed && self.periods + 1 >= config.periods[usize::from(proven)] {
                 *self = Self::default();
                 return Verdict::Changed;
             }
+            self.period_ends(config.recall, proven);
         }
-        let returning = config.recall.filter(|_| self.returning);
-        match self.since {
-            Some((began, last)) if (alpha_hat - last).abs() < quiet(began, last, returning) => {
-                Verdict::Held
-            }
-            _ => {
-                *self = Self::default();
-                Verdict::Free
-            }
+        if self.disturbed || self.held || self.returning {
+            Verdict::Held
+        } else {
+            Verdict::Free
         }
     }
-}
 
-/// Travel without a large residual after which Θ moves again, radians: a period, and where an earlier one was `returning` so many more,
-/// or a part of what it was held for.
-fn quiet(began: f64, last: f64, returning: Option<f64>) -> f64 {
-    let held = (last - began).abs() / f64::from(Calibration::RETURNING);
-    TAU + returning.map_or(0.0, |periods| held.max(periods * TAU))
+    fn period_ends(&mut self, recall: Option<RecallConfig>, proven: bool) {
+        if self.disturbed {
+            self.periods += 1;
+            self.quiet = 0;
+        } else if !self.held {
+            self.quiet += 1;
+            if !self.returning {
+                self.periods = self.periods.saturating_sub(1);
+            }
+            self.returning &= recall.is_some_and(|recall| self.quiet < recall.returning);
+        }
+        self.held = self.disturbed;
+        self.disturbed = false;
+        if !(self.held || proven) {
+            self.periods = 0;
+        }
+    }
 }
 
 /// Θ of better days: where it begins to be held, a fade has already taken it along for some periods.
@@ -168,6 +195,12 @@ impl Recall {
         }
     }
 
+    /// Something is proven, and γ has not begun again since because it no longer held.
+    #[must_use]
+    pub fn proven(&self) -> bool {
+        self.known && !self.fading
+    }
+
     /// Takes Θ of a sample, to be remembered after `periods` of travel, with the last γ after twice as many.
     pub fn step(&mut self, periods: f64, theta: &Theta, alpha_hat: f64, seen: Seen) -> Recalled {
         let back = seen.risen || !(seen.locked || seen.settled);
@@ -193,7 +226,7 @@ impl Recall {
             return Recalled::Nothing;
         }
         self.since = alpha_hat;
-        let proven = self.known && !self.fading && (!self.apart || seen.faded);
+        let proven = self.proven() && (!self.apart || seen.faded);
         if seen.verdict == Verdict::Changed {
             self.known &= self.fading || !seen.risen;
             self.fading |= !seen.risen;

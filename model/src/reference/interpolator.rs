@@ -296,10 +296,13 @@ impl Reference {
             return true;
         };
         let alpha_hat = self.tracking.alpha_hat();
-        let lost = !locked && self.hold.lasts(alpha_hat);
-        let halvings = self.geared.0;
-        let verdict = self.hold.step(config, rho, alpha_hat, (halvings, locked));
-        if let Some(periods) = config.recall {
+        let lost = !locked && self.hold.lasts();
+        let proven = self.recall.proven();
+        let seen = (rho, alpha_hat);
+        let verdict = self
+            .hold
+            .step(config, seen, self.geared.0, (locked, proven));
+        if let Some(hold::RecallConfig { periods, .. }) = config.recall {
             let [gain_c, _, gain_s, _] = self.config.parameters.linear();
             let seen = hold::Seen {
                 verdict,
@@ -314,7 +317,7 @@ impl Reference {
             if let Recalled::Held(theta) | Recalled::Again(theta) = recalled {
                 self.theta = theta;
                 self.pending = Theta::zeros();
-                self.hold.recalled(alpha_hat);
+                self.hold.recalled();
                 // A mean of the way down would be the first to act on it.
                 if let Searching::SumOfSquares(sum) = &mut self.searching {
                     sum.clear();

@@ -103,8 +103,6 @@ impl Calibration {
     pub const SETTLED: u32 = 4;
     /// Periods of travel that parameters are held of which nothing better is known, before the search begins again.
     pub const HELD: u32 = 32;
-    /// What comes back slowly is small again before it is whole: so many periods held, and one quiet one before it moves.
-    pub const RETURNING: u32 = 8;
     /// Halvings of the phase's step then, in the final form of five parameters.
     pub const PHASE_HALVINGS: u32 = 2;
 
@@ -204,10 +202,11 @@ impl Calibration {
         self.hold_periods.unwrap_or(known)
     }
 
-    /// The most quiet periods of travel after which what was recalled moves again: [`Self::RETURNING`] of those that it was held.
+    /// Quiet periods of travel after which what was recalled moves again: an eighth. What comes back slowly is small again before it is
+    /// whole, for about a tenth of the way.
     #[must_use]
     pub fn returning_periods(&self) -> u32 {
-        self.hold_periods().div_ceil(Self::RETURNING)
+        self.hold_periods().div_ceil(8)
     }
 
     /// γ = 2^-that of the direction that no radius shows; `None`: it is not learnt.
