@@ -3,16 +3,19 @@
 mod chip;
 #[path = "planted_faults/faults.rs"]
 mod faults;
+#[path = "planted_faults/recall.rs"]
+mod recall;
 
 use std::sync::LazyLock;
 
 use chip::optical;
-use faults::{Fault, faults, harmonic_faults, on_one_line, recall_faults, skew_faults};
+use faults::{Fault, faults, harmonic_faults, on_one_line, skew_faults};
 use nonius_hdl::verify::{Options, verify};
 use nonius_model::design::Design;
 use nonius_model::spec::Spec;
 use nonius_testvectors::stimulus;
 use rayon::prelude::*;
+use recall::recall_faults;
 
 /// As `nonius build` writes them.
 const ROWS: usize = nonius_package::ROWS;
@@ -20,7 +23,7 @@ const RTL: &str = "rtl/optical.v";
 const TABLE: &str = "coefficients/sine_table.mem";
 
 /// What most faults stumble over, first: the same vectors in another order.
-const FIRST: [&str; 5] = ["loss", "bounds", "ties", "random", "fade"];
+const FIRST: [&str; 7] = ["loss", "bounds", "ties", "random", "fade", "vanish", "weak"];
 
 /// The files of a chip, which has no fault.
 fn files(spec: &Spec) -> Files {
@@ -43,8 +46,12 @@ fn files(spec: &Spec) -> Files {
     package.files
 }
 
-/// Those of the shipped design.
-static OPTICAL: LazyLock<Files> = LazyLock::new(|| files(&optical()));
+/// Those of the shipped design, which holds as many periods as its rows have: else the search never begins again.
+static OPTICAL: LazyLock<Files> = LazyLock::new(|| {
+    let mut spec = optical();
+    spec.calibration.hold_periods = Some(40);
+    files(&spec)
+});
 
 const UNTIL_IT_FAILS: Options = Options {
     verilator: false,

@@ -42,6 +42,9 @@ fn sweep(t: f64) -> f64 {
 /// Periods of travel in which the signal fades.
 const FADING: f64 = 12.0;
 
+/// Periods of travel in which it vanishes.
+const VANISHING: f64 = 50.0;
+
 /// All named stimuli, `rows` samples each, from one seed.
 #[must_use]
 pub fn named(design: &Design, rows: usize) -> Vec<Stimulus> {
@@ -88,6 +91,14 @@ pub fn named(design: &Design, rows: usize) -> Vec<Stimulus> {
     let faded = |(cos, sin): (i64, i64), gain: f64| {
         let of = |code: i64| middle + ((code - middle) as f64 * gain).round() as i64;
         (of(cos).clamp(low, full), of(sin).clamp(low, full))
+    };
+    // Gains at so many sixteenths of their bound make it a circle; the limit of what is near the bound is 15.
+    let small = |k: usize, sixteenths: f64| {
+        let constants = &design.constants;
+        let nominal = constants.theta_1_nominal.ideal;
+        let small = nominal / (nominal + constants.gain_near_bound.value() * sixteenths / 15.0);
+        let alpha = std::f64::consts::TAU * k as f64 * top / 2.5;
+        (code(a * small * alpha.cos()), code(a * small * alpha.sin()))
     };
     let mut random = StdRng::seed_from_u64(1);
     let noise: Vec<(i64, i64)> = (0..rows)
@@ -146,6 +157,32 @@ pub fn named(design: &Design, rows: usize) -> Vec<Stimulus> {
             };
             faded(pair(top * k as f64, 1.0, 0.0), gain)
         }),
+        // So slowly that the gains follow for some periods, to nothing, and back as slowly.
+        motion("vanish", &|k| {
+            let vanished = (k as f64 - 0.3 * n) * top;
+            let gain = match k as f64 / n {
+                t if t < 0.3 => 1.0,
+                _ if vanished < VANISHING => 1.0 - vanished / VANISHING,
+                _ => ((vanished - 1.2 * VANISHING) / VANISHING).clamp(0.0, 1.0),
+            };
+            faded(pair(top * k as f64, 1.0, 0.0), gain)
+        }),
+        // Weak once gamma has settled and before anything is proven, until the search begins again. Later weak for most of what is waited
+        // for, whole for some periods, and weak for most of it again.
+        motion("weak", &|k| {
+            let early = k as f64 * top;
+            let weak = (k as f64 - 0.5 * n) * top;
+            let again = 0.625 * f64::from(spec.calibration.hold_periods());
+            let whole = again + 8.0 + f64::from(spec.calibration.returning_periods());
+            let gain = match weak {
+                weak if weak < 0.0 && early > 34.0 && early < 74.0 => 0.88,
+                weak if weak < 0.0 => 1.0,
+                weak if weak < again => 0.88,
+                weak if weak < whole => 1.0,
+                _ => 0.88,
+            };
+            faded(pair(top * k as f64, 1.0, 0.0), gain)
+        }),
         motion("step", &|k| {
             let stepped = if k > rows / 2 {
                 (0.9, 0.04 * a)
@@ -194,15 +231,12 @@ pub fn named(design: &Design, rows: usize) -> Vec<Stimulus> {
                 0.0,
             )
         }),
-        // So small a signal that both gains stay at their bounds, and smaller once parameters are proven there.
+        // So small a signal that both gains come to rest near their bounds, and later at them; a little smaller, beyond the limit.
         motion("small", &|k| {
-            let constants = &design.constants;
-            let bound = constants.gain_near_bound.value() + constants.steady_gain.value();
-            let nominal = constants.theta_1_nominal.ideal;
-            let small = 0.96 * nominal / (nominal + bound);
-            let alpha = std::f64::consts::TAU * k as f64 * top;
-            let left = a * small * if 5 * k > 4 * rows { 0.9 } else { 1.0 };
-            (code(left * alpha.cos()), code(left * alpha.sin()))
+            small(k, if k as f64 / n < 0.62 { 14.6 } else { 16.2 })
+        }),
+        motion("smaller", &|k| {
+            small(k, if k as f64 / n < 0.9 { 15.4 } else { 18.0 })
         }),
         Stimulus {
             name: "ties".into(),

@@ -6,7 +6,7 @@
 // far, is 2^-4 at first and 2^-9 after 5 gears.
 // After S. Balemi, "Automatic calibration of sinusoidal encoder signals", IFAC 2005; equation numbers are the paper's.
 //
-// Design f121a1df1d66: 16 products on 1 multiplier, 19 clocks per sample.
+// Design 0b8a0dcb4e6f: 16 products on 1 multiplier, 20 clocks per sample.
 //
 // Formats: sW.F is a two's complement number of W bits, F of them behind the point; uW.F has no sign and is kept here
 // with a zero in front, so that every number is signed. Angles are in turns of a scale period. A signal that saturates
@@ -26,12 +26,13 @@
 //      |                          | gamma_settled periods_modulo_4 sector sector_relative period_ahead period_behind
 //      |                          | a_period_away reach_ahead reach_behind unseen_ahead used_ahead_counts may_add_ahead
 //      |                          | sector_ahead unseen_behind used_behind_counts may_add_behind search_begun
-//      |                          | proven_stand nominal held_long rises_again restart_cause last_gamma_gear quiet
-//      |                          | gear_done hold_begins hold_ends periods_count_ends gain_c_inside gain_c_rests
-//      |                          | gain_s_inside gain_s_rests gains_steady proves nothing_proven_yet
+//      |                          | proven_stand held_and_lost nominal held_some_periods held_unknown held_long
+//      |                          | rises_again restart_cause last_gamma_gear returned_lately gear_periods_done quiet
+//      |                          | gear_done periods_count_ends parameters_follow held_before gain_c_inside
+//      |                          | gain_c_rests gain_s_inside gain_s_rests gains_steady proves nothing_proven_yet
 //    1 | loop_ab * error_previous | sin_value sin_slope y_c y_s counting whole_period sector_behind travel_clear
 //      |                          | sector_added new_sector still_used_ahead used_up_ahead still_used_behind
-//      |                          | used_up_behind y_5 period_breaks_off lost_before
+//      |                          | used_up_behind y_5 known_in_lock held_or_known period_breaks_off lost_before
 //    2 | theta_1 * y_c            | cos_value cos_slope drift
 //    3 | cos_slope * cos_inside   | c_exact c
 //    4 | theta_3 * y_s            | cos_magnitude cos_hat c_weak
@@ -40,24 +41,26 @@
 //    7 | c * cos_hat              | s_exact s
 //    8 | s * sin_hat              | s_weak signal_present may_flip
 //    9 | s * cos_hat              | rho_exact rho rho_in_window flip half_turn rho_high rho_large rho_not_small
-//      |                          | rho_rises proven_better may_recall rho_limited
-//   10 | c * sin_hat              | alpha_hat_turned rho_too_large
+//      |                          | rho_rises proven_better rho_limited
+//   10 | c * sin_hat              | alpha_hat_turned rho_too_large may_recall
 //   11 | cos_hat * rho_limited    | e_exact e_seen e
 //   12 | sin_hat * rho_limited    | e_in_window in_window level_step e_change sample_counts counted residual_large
 //      |                          | disturbed_lately disturbed_or_held radius_large rho_c period_tick disturbed_period
-//      |                          | gamma_restart gear_passed gamma_shift gear_periods_up periods_end within_period
-//      |                          | still_held first_gear_period last_gear_passed
+//      |                          | gamma_restart gear_passed gamma_shift gear_periods_up periods_end held_periods_up
+//      |                          | free_period within_period still_held first_gear_period last_gear_passed
 //   13 | loop_a * e_change        | level_moved level_full level_empty narrower loop_gear_up full_in_last_gear
 //      |                          | hold_cause hold recall fresh rho_s gradient_2 step_2 gamma_gear_up
-//      |                          | gear_periods_again holding restart_risen recall_again recall_any quiet_periods_end
-//      |                          | proved gain_moved remember search_improves remember_better return_ends
-//      |                          | return_goes_on signal_changed still_known fades fade_ends period_taught lock_falls
+//      |                          | gear_periods_again held_periods_step held_periods_stay holding restart_risen
+//      |                          | recall_again recall_any quiet_periods_pass quiet_periods_end proved gain_moved
+//      |                          | remember search_improves remember_better return_ends return_goes_on signal_changed
+//      |                          | still_known fades fade_ends period_taught lock_falls
 //   14 | y_c * rho_c              | kick gradient_4 step_4 remember_recent together_again travel_ends search_ends
 //      |                          | theta_applies
 //   15 | y_s * rho_s              | speed backwards not_forwards gradient_1 step_1
 //   16 | y_5 * rho_s              | alpha_hat_sum carry count_before gradient_3 step_3
 //   17 | -                        | gradient_5 step_5
 //   18 | -                        |
+//   19 | -                        |
 //
 // Coefficients, by name in the comments below:
 //     loop_a                 0.014132976531982422    Loop coefficient a, turns per radian.
@@ -73,7 +76,7 @@
 //     hold_residual          0.0625                  |ρ| above this holds the parameters once γ has settled.
 //     steady_gain            0.001953125             A gain that moves by more between two times that it is remembered
 //                                                    is of a signal that fades.
-//     gain_bound             0.5                     Bound of a gain's deviation.
+//     gain_near_bound        0.498046875             A gain's deviation from which it is near its bound.
 //     direction_rate         0.0000152587890625      Rate below which the direction does not change, turns per sample.
 //     lock_down              -8                      What a bad sample adds to the lock level.
 //     lock_full              63                      The full lock level.
@@ -84,6 +87,8 @@
 //     gear_periods_last      3                       Periods of travel per γ gear, less one.
 //     held_periods_last      31                      Periods of travel that the parameters are held before the search
 //                                                    begins again, less one.
+//     hold_periods_last      255                     The same where better ones are known.
+//     returning_periods      32                      Quiet periods of travel after a recall that move nothing.
 //     unit_radius            0.9999923706054688      The radius 1, less half a bit of the residual.
 //     zero                   0                       0.
 //     one                    1                       1.
@@ -108,7 +113,7 @@
 module optical (
     input  wire clk, // every register changes at the rising edge
     input  wire rst_n, // asynchronous reset, active low
-    input  wire sample_valid, // one clock per sample, 19 clocks apart or more; the inputs below are valid
+    input  wire sample_valid, // one clock per sample, 20 clocks apart or more; the inputs below are valid
     input  wire [11:0] adc_cos, // code of the cosine channel, two's complement
     input  wire [11:0] adc_sin, // code of the sine channel, two's complement
     input  wire preset, // this sample's period becomes number 0; clears lock_lost
@@ -140,7 +145,8 @@ module optical (
     reg signed [6:0] lock_level; // Confidence of the lock detector.
     reg signed [2:0] loop_gear; // Loop gear: 0 widest, the last is the designed bandwidth.
     reg signed [3:0] gamma_gear; // γ gear: 0 largest.
-    reg signed [5:0] gear_periods; // Whole periods travelled in this γ gear.
+    reg signed [6:0] gear_periods; // Whole periods travelled in this γ gear.
+    reg signed [8:0] held_periods; // Periods of travel for which the parameters are held.
     reg signed [7:0] travel_origin; // Position, modulo 4 periods, where the map of sectors was last cleared.
     reg signed [7:0] travel_low; // Lowest sector seen since, relative to the origin.
     reg signed [7:0] travel_high; // Highest sector seen since, relative to the origin.
@@ -149,16 +155,16 @@ module optical (
     reg signed [24:0] running_3; // θ3 less its nominal value, as the running period of travel has it so far.
     reg signed [23:0] running_4; // θ4 less its nominal value, as the running period of travel has it so far.
     reg signed [23:0] running_5; // θ5 less its nominal value, as the running period of travel has it so far.
-    reg signed [24:0] recent_1; // θ1 less its nominal value at the last end of some quiet periods of travel.
-    reg signed [23:0] recent_2; // θ2 less its nominal value at the last end of some quiet periods of travel.
-    reg signed [24:0] recent_3; // θ3 less its nominal value at the last end of some quiet periods of travel.
-    reg signed [23:0] recent_4; // θ4 less its nominal value at the last end of some quiet periods of travel.
-    reg signed [23:0] recent_5; // θ5 less its nominal value at the last end of some quiet periods of travel.
-    reg signed [24:0] proven_1; // θ1 less its nominal value at the end before.
-    reg signed [23:0] proven_2; // θ2 less its nominal value at the end before.
-    reg signed [24:0] proven_3; // θ3 less its nominal value at the end before.
-    reg signed [23:0] proven_4; // θ4 less its nominal value at the end before.
-    reg signed [23:0] proven_5; // θ5 less its nominal value at the end before.
+    reg signed [17:0] recent_1; // θ1 less its nominal value at the last end of some quiet periods of travel.
+    reg signed [16:0] recent_2; // θ2 less its nominal value at the last end of some quiet periods of travel.
+    reg signed [17:0] recent_3; // θ3 less its nominal value at the last end of some quiet periods of travel.
+    reg signed [16:0] recent_4; // θ4 less its nominal value at the last end of some quiet periods of travel.
+    reg signed [16:0] recent_5; // θ5 less its nominal value at the last end of some quiet periods of travel.
+    reg signed [17:0] proven_1; // θ1 less its nominal value at the end before.
+    reg signed [16:0] proven_2; // θ2 less its nominal value at the end before.
+    reg signed [17:0] proven_3; // θ3 less its nominal value at the end before.
+    reg signed [16:0] proven_4; // θ4 less its nominal value at the end before.
+    reg signed [16:0] proven_5; // θ5 less its nominal value at the end before.
     reg ahead_used; // The sectors ahead of the origin were used right before the map was cleared.
     reg behind_used; // The sectors behind the origin were used right before the map was cleared.
     reg disturbed; // The residual was large in this period of travel.
@@ -252,7 +258,9 @@ module optical (
     reg search_begun;
     reg not_fading;
     reg proven_stand;
+    reg held_and_lost;
     reg not_apart;
+    reg proven_better;
     reg may_recall;
     reg radius_large;
     reg fresh;
@@ -279,9 +287,16 @@ module optical (
     reg signed [1:0] gear_periods_up;
     reg periods_count_ends;
     reg periods_end;
+    reg signed [1:0] held_periods_up;
+    reg not_returning;
+    reg parameters_follow;
+    reg held_before;
+    reg free_period;
+    reg held_or_known;
+    reg signed [8:0] held_periods_next;
     reg within_period;
     reg still_held;
-    reg signed [5:0] gear_periods_next;
+    reg signed [6:0] gear_periods_next;
     reg first_gear_period;
     reg disturbed_next;
     reg risen_next;
@@ -291,6 +306,7 @@ module optical (
     reg signed [23:0] running_2_next;
     reg signed [24:0] running_3_next;
     reg signed [23:0] running_4_next;
+    reg signed [23:0] running_5_next;
     reg signed [3:0] gamma_gear_next;
     reg last_gear_passed;
     reg proves;
@@ -302,6 +318,7 @@ module optical (
     reg remember_recent;
     reg returning_next;
     reg fading_next;
+    reg either_halfway_or_quiet_periods_pass;
     reg halfway_next;
     reg known_next;
     reg gain_moved_or_apart;
@@ -318,10 +335,10 @@ module optical (
     reg signed [17:0] operand_b_0;
     reg signed [35:0] product_0;
 
-    // Step counter: a sample starts in step 0 and takes 19 steps
+    // Step counter: a sample starts in step 0 and takes 20 steps
     reg [4:0] step;
     wire start = (step == 5'd0) & sample_valid;
-    wire last = step == 5'd18;
+    wire last = step == 5'd19;
 
     always @(posedge clk or negedge rst_n)
         if (!rst_n) begin
@@ -581,7 +598,7 @@ module optical (
     wire travel_clear_now = whole_period_now | not_counting_now; // step 1
     wire sector_added = sector_ahead | sector_behind; // step 1
     wire new_sector_now = sector_added | travel_clear_now; // step 1
-    wire signed [7:0] travel_origin_next = travel_clear ? sector : travel_origin; // s8.6, step 18
+    wire signed [7:0] travel_origin_next = travel_clear ? sector : travel_origin; // s8.6, step 19
     wire signed [7:0] travel_low_next_chosen = sector_behind ? sector_relative : travel_low; // s8.6, step 1
     wire signed [7:0] travel_low_next_now = travel_clear_now ? 8'sd0 : travel_low_next_chosen; // s8.6, step 1
     wire signed [7:0] travel_high_next_chosen = sector_ahead ? sector_relative : travel_high; // s8.6, step 1
@@ -609,14 +626,15 @@ module optical (
     wire disturbed_or_held_now = disturbed_lately | held; // step 12
     wire hold_cause = (disturbed_or_held | level_moved_below_lock_full) | returning; // step 13
     wire gamma_gear_below_one_now = gamma_gear < 4'sd1; // step 0
-    wire search_begun_now = ~gamma_gear_below_one_now | ~(gear_periods < 6'sd1); // step 0
+    wire search_begun_now = ~gamma_gear_below_one_now | ~(gear_periods < 7'sd1); // step 0
     wire hold = hold_cause & search_begun; // step 13
     wire not_fading_now = ~fading; // step 0
     wire proven_stand_now = known & not_fading_now; // step 0
     wire rho_rises = ~rho_below_hold_residual; // step 9
+    wire held_and_lost_now = held & ~locked; // step 0
     wire not_apart_now = ~apart; // step 0
-    wire proven_better = not_apart | rho_rises; // step 9
-    wire may_recall_now = proven_stand & proven_better; // step 9
+    wire proven_better_now = (not_apart | rho_rises) | held_and_lost; // step 9
+    wire may_recall_now = proven_stand & proven_better; // step 10
     wire recall = hold & may_recall; // step 13
     wire radius_large_now = rho_high & sample_counts; // step 12
     wire fresh_now = counted & ~hold; // step 13
@@ -691,15 +709,20 @@ module optical (
 
     // Gears of gamma
     //   gamma halves after some periods of travel, starts again when the residual stays large
-    wire held_long_now = held & ~(gear_periods < 6'sh1f); // step 0, with held_periods_last
+    wire held_some_periods = ~(held_periods < 9'sh1f); // step 0, with held_periods_last
+    wire held_unknown = held_some_periods & ~proven_stand_now; // step 0
+    wire held_long_now = ~(held_periods < 9'shff) | held_unknown; // step 0, with hold_periods_last
     wire rises_again = risen & fading; // step 0
     wire restart_cause_now = (gamma_gear_below_gamma_gear_settled_now | held_long_now) | rises_again; // step 0
     wire disturbed_period_now = period_tick & disturbed; // step 12
     wire gamma_restart_now = disturbed_period_now & restart_cause; // step 12
     wire gamma_gear_below_gamma_gear_last_now = gamma_gear < 4'sd5; // step 0, with gamma_gear_last
     wire last_gamma_gear_now = ~gamma_gear_below_gamma_gear_last_now; // step 0
-    wire quiet_now = ~(disturbed | held); // step 0
-    wire gear_done_now = ~(gear_periods < 6'sd3) & quiet_now; // step 0, with gear_periods_last
+    wire returned_lately = returning & ($signed(gear_periods[6:5]) < 2'sd1); // step 0, with returning_periods
+    wire gear_periods_done = ~(gear_periods < 7'sd3) & ~returned_lately; // step 0, with gear_periods_last
+    wire disturbed_or_held_2 = disturbed | held; // step 0
+    wire quiet_now = ~disturbed_or_held_2; // step 0
+    wire gear_done_now = gear_periods_done & quiet_now; // step 0
     wire gear_passed_now = period_tick & gear_done; // step 12
     wire gamma_shift_now = gear_passed_now & gamma_gear_below_gamma_gear_last; // step 12
     wire signed [1:0] gamma_gear_up = gamma_shift ? 2'sd1 : 2'sd0; // s2.0, step 13
@@ -707,21 +730,33 @@ module optical (
         {gamma_gear[3], gamma_gear} + {{3{gamma_gear_up[1]}}, gamma_gear_up};
     wire signed [3:0] gamma_gear_next_bits_2 = {1'b0, gamma_gear_next_sum[2:0]}; // u3.0, step 13
     wire signed [1:0] gear_periods_up_now = period_tick ? 2'sd1 : 2'sd0; // s2.0, step 12
-    wire signed [6:0] gear_periods_next_sum = // s7.0, step 13
-        {gear_periods[5], gear_periods} + {{5{gear_periods_up[1]}}, gear_periods_up};
-    wire signed [5:0] gear_periods_next_bits = {1'b0, gear_periods_next_sum[4:0]}; // u5.0, step 13
-    wire hold_begins = disturbed & ~held; // step 0
-    wire hold_ends = held & ~disturbed; // step 0
-    wire periods_count_ends_now = (gear_done_now | hold_begins) | hold_ends; // step 0
+    wire signed [7:0] gear_periods_next_sum = // s8.0, step 13
+        {gear_periods[6], gear_periods} + {{6{gear_periods_up[1]}}, gear_periods_up};
+    wire signed [6:0] gear_periods_next_bits = {1'b0, gear_periods_next_sum[5:0]}; // u6.0, step 13
+    wire periods_count_ends_now = gear_done_now | disturbed_or_held_2; // step 0
     wire periods_end_now = period_tick & periods_count_ends; // step 12
     wire gear_periods_again = (periods_end | gamma_restart) | not_counting; // step 13
+    wire signed [1:0] held_periods_up_now = disturbed_period_now ? 2'sd1 : 2'sd0; // s2.0, step 12
+    wire not_returning_now = ~returning; // step 0
+    wire parameters_follow_now = quiet_now & not_returning_now; // step 0
+    wire held_before_now = ~(held_periods < 9'sd1); // step 0
+    wire free_period_now = (period_tick & parameters_follow) & held_before; // step 12
+    wire signed [1:0] held_periods_step = free_period ? 2'sh3 : held_periods_up; // s2.0, step 13
+    wire known_in_lock = known & counting_now; // step 1
+    wire held_or_known_now = held | known_in_lock; // step 1
+    wire held_periods_stay = held_or_known & ~gamma_restart; // step 13
+    wire signed [9:0] held_periods_next_sum = // s10.0, step 13
+        {held_periods[8], held_periods} + {{8{held_periods_step[1]}}, held_periods_step};
+    wire signed [8:0] held_periods_next_bits = {1'b0, held_periods_next_sum[7:0]}; // u8.0, step 13
+    wire signed [8:0] held_periods_next_chosen = held_periods_stay ? held_periods_next_bits : 9'sd0; // s9.0, step 13
+    wire signed [8:0] held_periods_next_now = held_periods_next_chosen; // u8.0, step 13
     wire within_period_now = ~period_tick & counting; // step 12
     wire still_held_now = held & ~period_tick; // step 12
     wire holding = (disturbed_period & ~gamma_restart) | still_held; // step 13
     wire signed [3:0] gamma_gear_next_chosen_2 = gamma_restart ? 4'sd0 : gamma_gear_next_bits_2; // s4.0, step 13
     wire signed [3:0] gamma_gear_next_bits = gamma_gear_next_chosen_2; // u3.0, step 13
-    wire signed [5:0] gear_periods_next_chosen = gear_periods_again ? 6'sd0 : gear_periods_next_bits; // s6.0, step 13
-    wire signed [5:0] gear_periods_next_now = gear_periods_next_chosen; // u5.0, step 13
+    wire signed [6:0] gear_periods_next_chosen = gear_periods_again ? 7'sd0 : gear_periods_next_bits; // s7.0, step 13
+    wire signed [6:0] gear_periods_next_now = gear_periods_next_chosen; // u6.0, step 13
     wire first_gear_period_now = (period_tick & quiet) & gamma_gear_below_one; // step 12
     wire disturbed_next_now = residual_large | (disturbed & within_period); // step 13
     wire risen_next_now = radius_large | (risen & within_period); // step 13
@@ -733,30 +768,31 @@ module optical (
     wire restart_risen = gamma_restart & risen; // step 13
     wire recall_again = ((restart_risen & fading) | nominal) & known; // step 13
     wire recall_any_now = (recall | recall_again) | nominal; // step 13
-    wire signed [24:0] running_1_next_now = recall_any ? proven_1 : running_1_next_bits; // s25.25, step 16
-    wire signed [23:0] running_2_next_now = recall_any ? proven_2 : running_2_next_bits; // s24.25, step 14
-    wire signed [24:0] running_3_next_now = recall_any ? proven_3 : running_3_next_bits; // s25.25, step 17
-    wire signed [23:0] running_4_next_now = recall_any ? proven_4 : running_4_next_bits; // s24.25, step 15
-    wire signed [23:0] running_5_next = recall_any ? proven_5 : running_5_next_bits; // s24.25, step 18
+    wire signed [24:0] running_1_next_now = recall_any ? {proven_1, 7'b0} : running_1_next_bits; // s25.25, step 16
+    wire signed [23:0] running_2_next_now = recall_any ? {proven_2, 7'b0} : running_2_next_bits; // s24.25, step 14
+    wire signed [24:0] running_3_next_now = recall_any ? {proven_3, 7'b0} : running_3_next_bits; // s25.25, step 17
+    wire signed [23:0] running_4_next_now = recall_any ? {proven_4, 7'b0} : running_4_next_bits; // s24.25, step 15
+    wire signed [23:0] running_5_next_now = recall_any ? {proven_5, 7'b0} : running_5_next_bits; // s24.25, step 18
     wire signed [3:0] gamma_gear_next_chosen = // s4.0, step 13, with gamma_gear_last
         recall_again ? 4'sd5 : gamma_gear_next_bits;
     wire signed [3:0] gamma_gear_next_now = gamma_gear_next_chosen; // u3.0, step 13
     wire last_gear_passed_now = gear_passed_now & last_gamma_gear; // step 12
-    wire quiet_periods_end = last_gear_passed & halfway; // step 13
-    wire signed [12:0] gain_c_inside_bits = {{2{theta_1_deviation[24]}}, theta_1_deviation[24:14]}; // s13.11, step 0
-    wire signed [12:0] gain_c_rests_bits = {{2{recent_1[24]}}, recent_1[24:14]}; // s13.11, step 0
-    wire signed [11:0] gain_c_inside_sum = gain_c_inside_bits[11:0] + 12'sd4; // s12.11, step 0, with steady_gain
-    wire gain_c_inside = $signed(gain_c_inside_sum[11:10]) < 2'sd1; // step 0, with gain_bound
-    wire signed [11:0] gain_c_rests_difference = gain_c_inside_bits[11:0] - gain_c_rests_bits[11:0]; // s12.11, step 0
+    wire quiet_periods_pass = last_gear_passed & not_returning; // step 13
+    wire quiet_periods_end = quiet_periods_pass & halfway; // step 13
+    wire signed [9:0] gain_c_inside_bits = theta_1_deviation[24:15]; // s10.10, step 0
+    wire signed [9:0] gain_c_rests_bits = recent_1[17:8]; // s10.10, step 0
+    wire gain_c_inside = $signed(gain_c_inside_bits[9:1]) < 9'shff; // step 0, with gain_near_bound
+    wire signed [10:0] gain_c_rests_difference = // s11.10, step 0
+        {gain_c_inside_bits[9], gain_c_inside_bits} - {gain_c_rests_bits[9], gain_c_rests_bits};
     wire gain_c_rests = // step 0, with steady_gain, minus_steady_gain
-        ($signed(gain_c_rests_difference[11:2]) < 10'sd1) & ($signed(~gain_c_rests_difference[11:2]) < 10'sd1);
-    wire signed [12:0] gain_s_inside_bits = {{2{theta_3_deviation[24]}}, theta_3_deviation[24:14]}; // s13.11, step 0
-    wire signed [12:0] gain_s_rests_bits = {{2{recent_3[24]}}, recent_3[24:14]}; // s13.11, step 0
-    wire signed [11:0] gain_s_inside_sum = gain_s_inside_bits[11:0] + 12'sd4; // s12.11, step 0, with steady_gain
-    wire gain_s_inside = $signed(gain_s_inside_sum[11:10]) < 2'sd1; // step 0, with gain_bound
-    wire signed [11:0] gain_s_rests_difference = gain_s_inside_bits[11:0] - gain_s_rests_bits[11:0]; // s12.11, step 0
+        ($signed(gain_c_rests_difference[10:1]) < 10'sd1) & ($signed(~gain_c_rests_difference[10:1]) < 10'sd1);
+    wire signed [9:0] gain_s_inside_bits = theta_3_deviation[24:15]; // s10.10, step 0
+    wire signed [9:0] gain_s_rests_bits = recent_3[17:8]; // s10.10, step 0
+    wire gain_s_inside = $signed(gain_s_inside_bits[9:1]) < 9'shff; // step 0, with gain_near_bound
+    wire signed [10:0] gain_s_rests_difference = // s11.10, step 0
+        {gain_s_inside_bits[9], gain_s_inside_bits} - {gain_s_rests_bits[9], gain_s_rests_bits};
     wire gain_s_rests = // step 0, with steady_gain, minus_steady_gain
-        ($signed(gain_s_rests_difference[11:2]) < 10'sd1) & ($signed(~gain_s_rests_difference[11:2]) < 10'sd1);
+        ($signed(gain_s_rests_difference[10:1]) < 10'sd1) & ($signed(~gain_s_rests_difference[10:1]) < 10'sd1);
     wire gains_steady = (gain_c_rests & gain_c_inside) & (gain_s_rests & gain_s_inside); // step 0
     wire proves_now = gains_steady | ~known; // step 0
     wire proved_now = quiet_periods_end & proves; // step 13
@@ -774,19 +810,25 @@ module optical (
     wire fades = (gamma_restart & held_long) | fading; // step 13
     wire fade_ends = (recall_again | proved_now) | signal_changed; // step 13
     wire together_again = proved | recall_any; // step 14
-    wire signed [24:0] recent_1_next = remember_recent ? running_1_next : recent_1; // s25.25, step 18
-    wire signed [23:0] recent_2_next = remember_recent ? running_2_next : recent_2; // s24.25, step 18
-    wire signed [24:0] recent_3_next = remember_recent ? running_3_next : recent_3; // s25.25, step 18
-    wire signed [23:0] recent_4_next = remember_recent ? running_4_next : recent_4; // s24.25, step 18
-    wire signed [23:0] recent_5_next = remember_recent ? running_5_next : recent_5; // s24.25, step 18
-    wire signed [24:0] proven_1_next = remember ? recent_1 : proven_1; // s25.25, step 18
-    wire signed [23:0] proven_2_next = remember ? recent_2 : proven_2; // s24.25, step 18
-    wire signed [24:0] proven_3_next = remember ? recent_3 : proven_3; // s25.25, step 18
-    wire signed [23:0] proven_4_next = remember ? recent_4 : proven_4; // s24.25, step 18
-    wire signed [23:0] proven_5_next = remember ? recent_5 : proven_5; // s24.25, step 18
+    wire signed [17:0] recent_1_next_bits = running_1_next[24:7]; // s18.18, step 19
+    wire signed [17:0] recent_1_next = remember_recent ? recent_1_next_bits : recent_1; // s18.18, step 19
+    wire signed [16:0] recent_2_next_bits = running_2_next[23:7]; // s17.18, step 19
+    wire signed [16:0] recent_2_next = remember_recent ? recent_2_next_bits : recent_2; // s17.18, step 19
+    wire signed [17:0] recent_3_next_bits = running_3_next[24:7]; // s18.18, step 19
+    wire signed [17:0] recent_3_next = remember_recent ? recent_3_next_bits : recent_3; // s18.18, step 19
+    wire signed [16:0] recent_4_next_bits = running_4_next[23:7]; // s17.18, step 19
+    wire signed [16:0] recent_4_next = remember_recent ? recent_4_next_bits : recent_4; // s17.18, step 19
+    wire signed [16:0] recent_5_next_bits = running_5_next[23:7]; // s17.18, step 19
+    wire signed [16:0] recent_5_next = remember_recent ? recent_5_next_bits : recent_5; // s17.18, step 19
+    wire signed [17:0] proven_1_next = remember ? recent_1 : proven_1; // s18.18, step 19
+    wire signed [16:0] proven_2_next = remember ? recent_2 : proven_2; // s17.18, step 19
+    wire signed [17:0] proven_3_next = remember ? recent_3 : proven_3; // s18.18, step 19
+    wire signed [16:0] proven_4_next = remember ? recent_4 : proven_4; // s17.18, step 19
+    wire signed [16:0] proven_5_next = remember ? recent_5 : proven_5; // s17.18, step 19
     wire returning_next_now = return_goes_on | recall_again; // step 13
     wire fading_next_now = fades & ~fade_ends; // step 13
-    wire halfway_next_now = halfway ^ last_gear_passed; // step 13
+    wire either_halfway_or_quiet_periods_pass_now = halfway ^ quiet_periods_pass; // step 13
+    wire halfway_next_now = either_halfway_or_quiet_periods_pass & ~recall_any; // step 14
     wire known_next_now = still_known | proved_now; // step 13
     wire gain_moved_or_apart_now = gain_moved | apart; // step 13
     wire apart_next_now = gain_moved_or_apart & ~together_again; // step 14
@@ -799,11 +841,11 @@ module optical (
     wire travel_ends = period_taught | period_breaks_off; // step 14
     wire search_ends = gamma_gear_below_gamma_gear_settled | travel_ends; // step 14
     wire theta_applies_now = search_ends | recall_any; // step 14
-    wire signed [24:0] theta_1_deviation_next = theta_applies ? running_1_next : theta_1_deviation; // s25.25, step 18
-    wire signed [23:0] theta_2_deviation_next = theta_applies ? running_2_next : theta_2_deviation; // s24.25, step 18
-    wire signed [24:0] theta_3_deviation_next = theta_applies ? running_3_next : theta_3_deviation; // s25.25, step 18
-    wire signed [23:0] theta_4_deviation_next = theta_applies ? running_4_next : theta_4_deviation; // s24.25, step 18
-    wire signed [23:0] theta_5_deviation_next = theta_applies ? running_5_next : theta_5_deviation; // s24.25, step 18
+    wire signed [24:0] theta_1_deviation_next = theta_applies ? running_1_next : theta_1_deviation; // s25.25, step 19
+    wire signed [23:0] theta_2_deviation_next = theta_applies ? running_2_next : theta_2_deviation; // s24.25, step 19
+    wire signed [24:0] theta_3_deviation_next = theta_applies ? running_3_next : theta_3_deviation; // s25.25, step 19
+    wire signed [23:0] theta_4_deviation_next = theta_applies ? running_4_next : theta_4_deviation; // s24.25, step 19
+    wire signed [23:0] theta_5_deviation_next = theta_applies ? running_5_next : theta_5_deviation; // s24.25, step 19
 
     // Flags
     //   what the machine control needs to know
@@ -886,6 +928,7 @@ module optical (
             search_begun <= search_begun_now;
             not_fading <= not_fading_now;
             proven_stand <= proven_stand_now;
+            held_and_lost <= held_and_lost_now;
             not_apart <= not_apart_now;
             nominal <= nominal_now;
             held_long <= held_long_now;
@@ -895,6 +938,9 @@ module optical (
             quiet <= quiet_now;
             gear_done <= gear_done_now;
             periods_count_ends <= periods_count_ends_now;
+            not_returning <= not_returning_now;
+            parameters_follow <= parameters_follow_now;
+            held_before <= held_before_now;
             proves <= proves_now;
             not_gains_steady <= not_gains_steady_now;
             nothing_proven_yet <= nothing_proven_yet_now;
@@ -914,6 +960,7 @@ module optical (
             ahead_used_next <= ahead_used_next_now;
             behind_used_next <= behind_used_next_now;
             y_5 <= y_5_now;
+            held_or_known <= held_or_known_now;
             period_breaks_off <= period_breaks_off_now;
             lost_before <= lost_before_now;
         end
@@ -955,13 +1002,14 @@ module optical (
             rho_high <= rho_high_now;
             rho_large <= rho_large_now;
             rho_not_small <= rho_not_small_now;
-            may_recall <= may_recall_now;
+            proven_better <= proven_better_now;
             rho_limited <= rho_limited_now;
         end
         if (step == 5'd10) begin
             s_times_cos_hat <= s_times_cos_hat_now;
             alpha_hat_turned <= alpha_hat_turned_now;
             rho_too_large <= rho_too_large_now;
+            may_recall <= may_recall_now;
         end
         if (step == 5'd11) begin
             e <= e_now;
@@ -980,6 +1028,8 @@ module optical (
             gamma_shift <= gamma_shift_now;
             gear_periods_up <= gear_periods_up_now;
             periods_end <= periods_end_now;
+            held_periods_up <= held_periods_up_now;
+            free_period <= free_period_now;
             within_period <= within_period_now;
             still_held <= still_held_now;
             first_gear_period <= first_gear_period_now;
@@ -993,6 +1043,7 @@ module optical (
             fresh <= fresh_now;
             rho_s <= rho_s_now;
             step_2 <= step_2_now;
+            held_periods_next <= held_periods_next_now;
             gear_periods_next <= gear_periods_next_now;
             disturbed_next <= disturbed_next_now;
             risen_next <= risen_next_now;
@@ -1004,7 +1055,7 @@ module optical (
             remember_better <= remember_better_now;
             returning_next <= returning_next_now;
             fading_next <= fading_next_now;
-            halfway_next <= halfway_next_now;
+            either_halfway_or_quiet_periods_pass <= either_halfway_or_quiet_periods_pass_now;
             known_next <= known_next_now;
             gain_moved_or_apart <= gain_moved_or_apart_now;
             period_taught <= period_taught_now;
@@ -1016,6 +1067,7 @@ module optical (
             step_4 <= step_4_now;
             running_2_next <= running_2_next_now;
             remember_recent <= remember_recent_now;
+            halfway_next <= halfway_next_now;
             apart_next <= apart_next_now;
             theta_applies <= theta_applies_now;
             lock_lost_next <= lock_lost_next_now;
@@ -1038,6 +1090,9 @@ module optical (
             step_5 <= step_5_now;
             running_3_next <= running_3_next_now;
         end
+        if (step == 5'd18) begin
+            running_5_next <= running_5_next_now;
+        end
     end
 
     // The sample commits
@@ -1056,6 +1111,7 @@ module optical (
             loop_gear <= 0;
             gamma_gear <= 0;
             gear_periods <= 0;
+            held_periods <= 0;
             travel_origin <= 0;
             travel_low <= 0;
             travel_high <= 0;
@@ -1102,6 +1158,7 @@ module optical (
             loop_gear <= loop_gear_next;
             gamma_gear <= gamma_gear_next;
             gear_periods <= gear_periods_next;
+            held_periods <= held_periods_next;
             travel_origin <= travel_origin_next;
             travel_low <= travel_low_next;
             travel_high <= travel_high_next;
@@ -1173,15 +1230,10 @@ module optical (
         step_3_geared[24:22],
         step_4_geared[24:21],
         gamma_gear_next_sum[4:3],
-        gear_periods_next_sum[6:5],
-        gain_c_inside_bits[12],
-        gain_c_rests_bits[12],
-        gain_c_inside_sum[9:0],
-        gain_c_rests_difference[1:0],
-        gain_s_inside_bits[12],
-        gain_s_rests_bits[12],
-        gain_s_inside_sum[9:0],
-        gain_s_rests_difference[1:0],
+        gear_periods_next_sum[7:6],
+        held_periods_next_sum[9:8],
+        gain_c_rests_difference[0],
+        gain_s_rests_difference[0],
         product_0[35]
     };
 

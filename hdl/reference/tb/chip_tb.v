@@ -84,7 +84,8 @@ module chip_tb;
     reg signed [6:0] expect_lock_level;
     reg signed [2:0] expect_loop_gear;
     reg signed [3:0] expect_gamma_gear;
-    reg signed [5:0] expect_gear_periods;
+    reg signed [6:0] expect_gear_periods;
+    reg signed [8:0] expect_held_periods;
     reg signed [7:0] expect_travel_origin;
     reg signed [7:0] expect_travel_low;
     reg signed [7:0] expect_travel_high;
@@ -93,16 +94,16 @@ module chip_tb;
     reg signed [24:0] expect_running_3;
     reg signed [23:0] expect_running_4;
     reg signed [23:0] expect_running_5;
-    reg signed [24:0] expect_recent_1;
-    reg signed [23:0] expect_recent_2;
-    reg signed [24:0] expect_recent_3;
-    reg signed [23:0] expect_recent_4;
-    reg signed [23:0] expect_recent_5;
-    reg signed [24:0] expect_proven_1;
-    reg signed [23:0] expect_proven_2;
-    reg signed [24:0] expect_proven_3;
-    reg signed [23:0] expect_proven_4;
-    reg signed [23:0] expect_proven_5;
+    reg signed [17:0] expect_recent_1;
+    reg signed [16:0] expect_recent_2;
+    reg signed [17:0] expect_recent_3;
+    reg signed [16:0] expect_recent_4;
+    reg signed [16:0] expect_recent_5;
+    reg signed [17:0] expect_proven_1;
+    reg signed [16:0] expect_proven_2;
+    reg signed [17:0] expect_proven_3;
+    reg signed [16:0] expect_proven_4;
+    reg signed [16:0] expect_proven_5;
     reg expect_locked;
     reg expect_lock_lost;
     reg expect_signal_lost;
@@ -176,32 +177,32 @@ module chip_tb;
                 got = got + $fscanf(file, "%h %h %h",
                     expect_theta_5_deviation, expect_lock_level, expect_loop_gear);
                 got = got + $fscanf(file, "%h %h %h",
-                    expect_gamma_gear, expect_gear_periods, expect_travel_origin);
+                    expect_gamma_gear, expect_gear_periods, expect_held_periods);
                 got = got + $fscanf(file, "%h %h %h",
-                    expect_travel_low, expect_travel_high, expect_running_1);
+                    expect_travel_origin, expect_travel_low, expect_travel_high);
                 got = got + $fscanf(file, "%h %h %h",
-                    expect_running_2, expect_running_3, expect_running_4);
+                    expect_running_1, expect_running_2, expect_running_3);
                 got = got + $fscanf(file, "%h %h %h",
-                    expect_running_5, expect_recent_1, expect_recent_2);
+                    expect_running_4, expect_running_5, expect_recent_1);
                 got = got + $fscanf(file, "%h %h %h",
-                    expect_recent_3, expect_recent_4, expect_recent_5);
+                    expect_recent_2, expect_recent_3, expect_recent_4);
                 got = got + $fscanf(file, "%h %h %h",
-                    expect_proven_1, expect_proven_2, expect_proven_3);
+                    expect_recent_5, expect_proven_1, expect_proven_2);
                 got = got + $fscanf(file, "%h %h %h",
-                    expect_proven_4, expect_proven_5, expect_locked);
+                    expect_proven_3, expect_proven_4, expect_proven_5);
                 got = got + $fscanf(file, "%h %h %h",
-                    expect_lock_lost, expect_signal_lost, expect_direction);
+                    expect_locked, expect_lock_lost, expect_signal_lost);
                 got = got + $fscanf(file, "%h %h %h",
-                    expect_ahead_used, expect_behind_used, expect_disturbed);
+                    expect_direction, expect_ahead_used, expect_behind_used);
                 got = got + $fscanf(file, "%h %h %h",
-                    expect_risen, expect_held, expect_returning);
+                    expect_disturbed, expect_risen, expect_held);
                 got = got + $fscanf(file, "%h %h %h",
-                    expect_fading, expect_known, expect_halfway);
-                got = got + $fscanf(file, "%h",
-                    expect_apart);
+                    expect_returning, expect_fading, expect_known);
+                got = got + $fscanf(file, "%h %h",
+                    expect_halfway, expect_apart);
                 // No wire: Verilator does not notice what $fscanf changes.
                 expect_position = {expect_count, expect_alpha_hat[26:0]};
-                if (got != 69) begin
+                if (got != 70) begin
                     bad = 1'b1;
                     $display("row %0d of %0s cannot be read", played, name);
                 end else if (sample != played) begin
@@ -218,14 +219,14 @@ module chip_tb;
                     calibrate = ~calibrate;
                     waited = 1;
                     // The watchdog: a chip that hangs is late.
-                    while (!valid && waited <= 19) begin
+                    while (!valid && waited <= 20) begin
                         // A strobe that comes too early must not matter either.
                         sample_valid = sample[2:0] == 3'd5 && waited == 1;
                         @(negedge clk);
                         sample_valid = 1'b0;
                         waited = waited + 1;
                     end
-                    if (waited != 19) check_failed("latency", 19, {96'd0, waited});
+                    if (waited != 20) check_failed("latency", 20, {96'd0, waited});
                     // In the order of the data flow: the first that differs is nearest to the cause.
                     if (theta_2 !== expect_theta_2)
                         check_failed("theta_2",
@@ -326,9 +327,12 @@ module chip_tb;
                     if (chip.rho_s !== expect_rho_s)
                         check_failed("rho_s",
                             {110'd0, expect_rho_s}, {110'd0, chip.rho_s});
+                    if (chip.held_periods !== expect_held_periods)
+                        check_failed("held_periods",
+                            {119'd0, expect_held_periods}, {119'd0, chip.held_periods});
                     if (chip.gear_periods !== expect_gear_periods)
                         check_failed("gear_periods",
-                            {122'd0, expect_gear_periods}, {122'd0, chip.gear_periods});
+                            {121'd0, expect_gear_periods}, {121'd0, chip.gear_periods});
                     if (chip.disturbed !== expect_disturbed)
                         check_failed("disturbed",
                             {127'd0, expect_disturbed}, {127'd0, chip.disturbed});
@@ -358,34 +362,34 @@ module chip_tb;
                             {124'd0, expect_gamma_gear}, {124'd0, chip.gamma_gear});
                     if (chip.recent_1 !== expect_recent_1)
                         check_failed("recent_1",
-                            {103'd0, expect_recent_1}, {103'd0, chip.recent_1});
+                            {110'd0, expect_recent_1}, {110'd0, chip.recent_1});
                     if (chip.recent_2 !== expect_recent_2)
                         check_failed("recent_2",
-                            {104'd0, expect_recent_2}, {104'd0, chip.recent_2});
+                            {111'd0, expect_recent_2}, {111'd0, chip.recent_2});
                     if (chip.recent_3 !== expect_recent_3)
                         check_failed("recent_3",
-                            {103'd0, expect_recent_3}, {103'd0, chip.recent_3});
+                            {110'd0, expect_recent_3}, {110'd0, chip.recent_3});
                     if (chip.recent_4 !== expect_recent_4)
                         check_failed("recent_4",
-                            {104'd0, expect_recent_4}, {104'd0, chip.recent_4});
+                            {111'd0, expect_recent_4}, {111'd0, chip.recent_4});
                     if (chip.recent_5 !== expect_recent_5)
                         check_failed("recent_5",
-                            {104'd0, expect_recent_5}, {104'd0, chip.recent_5});
+                            {111'd0, expect_recent_5}, {111'd0, chip.recent_5});
                     if (chip.proven_1 !== expect_proven_1)
                         check_failed("proven_1",
-                            {103'd0, expect_proven_1}, {103'd0, chip.proven_1});
+                            {110'd0, expect_proven_1}, {110'd0, chip.proven_1});
                     if (chip.proven_2 !== expect_proven_2)
                         check_failed("proven_2",
-                            {104'd0, expect_proven_2}, {104'd0, chip.proven_2});
+                            {111'd0, expect_proven_2}, {111'd0, chip.proven_2});
                     if (chip.proven_3 !== expect_proven_3)
                         check_failed("proven_3",
-                            {103'd0, expect_proven_3}, {103'd0, chip.proven_3});
+                            {110'd0, expect_proven_3}, {110'd0, chip.proven_3});
                     if (chip.proven_4 !== expect_proven_4)
                         check_failed("proven_4",
-                            {104'd0, expect_proven_4}, {104'd0, chip.proven_4});
+                            {111'd0, expect_proven_4}, {111'd0, chip.proven_4});
                     if (chip.proven_5 !== expect_proven_5)
                         check_failed("proven_5",
-                            {104'd0, expect_proven_5}, {104'd0, chip.proven_5});
+                            {111'd0, expect_proven_5}, {111'd0, chip.proven_5});
                     if (chip.returning !== expect_returning)
                         check_failed("returning",
                             {127'd0, expect_returning}, {127'd0, chip.returning});
@@ -423,7 +427,7 @@ module chip_tb;
                         check_failed("position", {69'd0, expect_position}, {69'd0, position});
                     // Some samples come later than they might: until then nothing moves, and valid is one clock long.
                     if (sample[1:0] == 2'd2) begin
-                        repeat (19 + 2) begin
+                        repeat (20 + 2) begin
                             @(negedge clk);
                             if (valid) check_failed("valid", 128'd0, 128'd1);
                         end

@@ -21,11 +21,20 @@ pub(crate) fn on_one_line(verilog: &str) -> String {
     lines.join("\n") + "\n"
 }
 
+/// Whether a line holds a word; a wire that a register keeps has another name.
+fn holds(line: &str, word: &str) -> bool {
+    let other = match word.strip_suffix("_now =") {
+        Some(name) => format!("{name} ="),
+        None => word.replace(" =", "_now ="),
+    };
+    line.contains(word) || (word.ends_with(" =") && line.contains(&other))
+}
+
 /// The one line that holds all of `words`.
 fn line_with<'a>(verilog: &'a str, words: &[&str]) -> &'a str {
     let mut lines = verilog
         .lines()
-        .filter(|line| words.iter().all(|word| line.contains(word)));
+        .filter(|line| words.iter().all(|word| holds(line, word)));
     let found = lines.next();
     assert!(lines.next().is_none(), "{words:?} stand in two lines");
     found.unwrap_or_else(|| panic!("no line holds {words:?}"))
@@ -98,7 +107,7 @@ fn fault(name: &'static str, change: fn(&str) -> String) -> Fault {
 }
 
 /// Of the one line that holds all of `words`, `from` becomes `to`.
-fn swap(
+pub(crate) fn swap(
     name: &'static str,
     words: &'static [&'static str],
     from: &'static str,
@@ -113,8 +122,8 @@ pub(crate) fn faults() -> Vec<Fault> {
         swap(
             "periods that the parameters are held: one less",
             &["wire held_long_now ="],
-            "6'sh1f",
-            "6'sh1e",
+            "7'sh27",
+            "7'sh26",
         ),
         fault("rounding of the phase error: by the wrong bit", |v| {
             let (guard, below) = guard(v, "e_seen");
@@ -313,7 +322,7 @@ pub(crate) fn faults() -> Vec<Fault> {
         swap(
             "no hold in the first gear",
             &["wire search_begun_now ="],
-            " | ~(gear_periods < 6'sd1)",
+            " | ~(gear_periods < 4'sd1)",
             "",
         ),
     ]
@@ -381,83 +390,5 @@ pub(crate) fn harmonic_faults() -> Vec<Fault> {
             let half = between(v, &words, "'sh", ";");
             replaced(v, &words, &format!("'sh{half};"), "'sh0;")
         }),
-    ]
-}
-
-/// Faults in the recall.
-pub(crate) fn recall_faults() -> Vec<Fault> {
-    vec![
-        swap(
-            "recall while the search follows a fade",
-            &["wire proven_stand_now ="],
-            " & not_fading_now",
-            "",
-        ),
-        swap(
-            "recall of what is recent",
-            &["recall_any ? proven_2"],
-            "recall_any ? proven_2",
-            "recall_any ? recent_2",
-        ),
-        swap(
-            "no recall of the phase",
-            &["recall_any ? proven_5"],
-            "recall_any ?",
-            "1'b0 ?",
-        ),
-        swap(
-            "nothing is remembered before anything is proven",
-            &["wire remember_now ="],
-            " | nothing_proven_yet",
-            "",
-        ),
-        swap(
-            "the search goes on at the last gamma's pace where the signal is back",
-            &["wire restart_cause_now ="],
-            " | rises_again",
-            "",
-        ),
-        swap(
-            "nominal parameters after a loss",
-            &["wire recall_any_now ="],
-            " | nominal",
-            "",
-        ),
-        swap(
-            "what stays too large is a fade",
-            &["wire fade_ends ="],
-            " | signal_changed",
-            "",
-        ),
-        swap(
-            "remembered twice as often",
-            &["wire quiet_periods_end"],
-            " & halfway",
-            "",
-        ),
-        swap(
-            "what is recalled waits for the end of the period",
-            &["wire theta_applies_now ="],
-            " | recall_any",
-            " & ~recall_any",
-        ),
-        swap(
-            "no recall where the signal is back",
-            &["wire recall_again ="],
-            "& known",
-            "& 1'b0",
-        ),
-        swap(
-            "held for a period only",
-            &["wire return_goes_on ="],
-            "recall &",
-            "1'b0 &",
-        ),
-        swap(
-            "quiet periods counted from before the loss",
-            &["wire gear_periods_again ="],
-            " | not_counting",
-            "",
-        ),
     ]
 }

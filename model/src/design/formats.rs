@@ -56,11 +56,6 @@ fn remembered(accumulator: Format, signal_fraction: u32) -> Quantiser {
     ))
 }
 
-/// The least that a gain moves where it is of a signal that fades: a power of two makes a short comparator.
-fn steady_gain(spec: &Spec, f: u32) -> Constant {
-    Constant::rounded(exp2(spec.steady_gain().log2().ceil() as i64), f.min(10))
-}
-
 /// The most quiet periods of travel that are counted.
 fn periods(c: &Calibration) -> u32 {
     if c.recalls() {
@@ -215,7 +210,14 @@ pub(super) fn structure(
         loop_gear: counting_to(acquisition.gears.max(3)),
         gamma_gear: counting_to(spec.calibration.gears()),
         gear_periods: counting_to(periods(&spec.calibration).saturating_sub(1)),
-        held_periods: counting_to(spec.calibration.hold_periods().max(Calibration::HELD) - 1),
+        held_periods: {
+            let known = if spec.calibration.recalls() {
+                spec.calibration.hold_periods()
+            } else {
+                0
+            };
+            counting_to(known.max(Calibration::HELD) - 1)
+        },
     };
     Ok(Structure {
         method: match spec.tracking.method {
@@ -354,11 +356,12 @@ pub(super) fn constants(
         weak_signal: Constant::rounded(0.25, 2),
         restart_residual: Constant::rounded(spec.calibration.restart_residual, f.min(8)),
         hold_residual: Constant::rounded(spec.hold_residual(), f.min(8)),
-        steady_gain: steady_gain(spec, f),
+        // A power of two makes a short comparator.
+        steady_gain: Constant::rounded(exp2(spec.steady_gain().log2().ceil() as i64), f.min(10)),
         gain_near_bound: {
             let gain = structure.formats.deviation[0].format;
-            let bound = exp2(i64::from(gain.width) - 1 - i64::from(gain.fraction));
-            Constant::rounded(bound - steady_gain(spec, f).value(), f.min(10))
+            let power = i64::from(gain.width) - 1 - i64::from(gain.fraction);
+            Constant::rounded(15.0 / 16.0 * exp2(power), (4 - power).max(0) as u32)
         },
         direction_rate: Constant::rounded(exp2(-i64::from(f)), words.phase_bits),
         lock_down: whole(-8),

@@ -104,7 +104,9 @@ pub fn hold<S: Signal>(
         let proven = proven(state);
         // What has moved on since is recalled only where the signal rises, or was fading before it was lost.
         let rises = rho.less_than(k.hold_residual).not().named("rho_rises");
-        let faded = state.held.and(state.locked.not()).named("held_and_lost");
+        // A gap that ends a period leaves one.
+        let faded = state.held_periods.less_than(k.one.scale(2)).not();
+        let faded = faded.and(state.locked.not()).named("held_and_lost");
         let better = state.apart.not().or(rises).or(faded).named("proven_better");
         let proven = proven.and(better).named("may_recall");
         held.and(proven).named("recall")

@@ -28,7 +28,7 @@ static RECALL: Formula = Formula {
 };
 
 /// Bits of fraction of a gain as it is looked at: a few are enough.
-const GAIN_FRACTION: u32 = 10;
+const GAIN_FRACTION: u32 = 11;
 
 /// What is remembered of θ1 … θ9.
 pub struct Memory<S: Signal> {

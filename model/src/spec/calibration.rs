@@ -103,6 +103,8 @@ impl Calibration {
     pub const SETTLED: u32 = 4;
     /// Periods of travel that parameters are held of which nothing better is known, before the search begins again.
     pub const HELD: u32 = 32;
+    /// The same of those of which something is known, where the design does not say.
+    pub const HELD_KNOWN: u32 = 256;
     /// Halvings of the phase's step then, in the final form of five parameters.
     pub const PHASE_HALVINGS: u32 = 2;
 
@@ -198,8 +200,9 @@ impl Calibration {
     /// that fades or comes back over some hundred periods. What is not known to be right is held for [`Self::HELD`].
     #[must_use]
     pub fn hold_periods(&self) -> u32 {
-        let known = if self.recalls() { 256 } else { Self::HELD };
-        self.hold_periods.unwrap_or(known)
+        let known = self.recall.unwrap_or(true);
+        let periods = if known { Self::HELD_KNOWN } else { Self::HELD };
+        self.hold_periods.unwrap_or(periods)
     }
 
     /// Quiet periods of travel after which what was recalled moves again: an eighth. What comes back slowly is small again before it is
