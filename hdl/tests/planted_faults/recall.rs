@@ -1,0 +1,123 @@
+//! Single faults in the recall, each of one place.
+
+use crate::faults::{Fault, swap};
+
+/// Faults in the recall.
+pub(crate) fn recall_faults() -> Vec<Fault> {
+    vec![
+        swap(
+            "recall while the search follows a fade",
+            &["wire proven_stand_now ="],
+            " & not_fading_now",
+            "",
+        ),
+        swap(
+            "recall of what is recent",
+            &["recall_any ? {proven_2"],
+            "recall_any ? {proven_2",
+            "recall_any ? {recent_2",
+        ),
+        swap(
+            "no recall of the phase",
+            &["recall_any ? {proven_5"],
+            "recall_any ?",
+            "1'b0 ?",
+        ),
+        swap(
+            "nothing is remembered before anything is proven",
+            &["wire remember_now ="],
+            " | nothing_proven_yet",
+            "",
+        ),
+        swap(
+            "the search goes on at the last gamma's pace where the signal is back",
+            &["wire restart_cause_now ="],
+            " | rises_again",
+            "",
+        ),
+        swap(
+            "nominal parameters after a loss",
+            &["wire recall_any_now ="],
+            " | nominal",
+            "",
+        ),
+        swap(
+            "what stays too large is a fade",
+            &["wire fade_ends ="],
+            " | signal_changed",
+            "",
+        ),
+        swap(
+            "remembered twice as often",
+            &["wire quiet_periods_end"],
+            " & halfway",
+            "",
+        ),
+        swap(
+            "what is recalled waits for the end of the period",
+            &["wire theta_applies_now ="],
+            " | recall_any",
+            " & ~recall_any",
+        ),
+        swap(
+            "no recall where the signal is back",
+            &["wire recall_again ="],
+            "& known",
+            "& 1'b0",
+        ),
+        swap(
+            "held for a period only",
+            &["wire return_goes_on ="],
+            "recall &",
+            "1'b0 &",
+        ),
+        swap(
+            "quiet periods counted from before the loss",
+            &["wire gear_periods_again ="],
+            " | not_counting",
+            "",
+        ),
+        swap(
+            "no recall where a fade ends in a loss",
+            &["wire proven_better_now ="],
+            " | held_and_lost",
+            "",
+        ),
+        swap(
+            "what is recalled moves before the signal is whole",
+            &["wire gear_periods_done ="],
+            " & ~returned_lately",
+            "",
+        ),
+        swap(
+            "periods free are not counted off",
+            &["held_periods_step ="],
+            "free_period ? 2'sh3 :",
+            "free_period ? 2'sh0 :",
+        ),
+        swap(
+            "periods at rest are counted off",
+            &["wire parameters_follow_now ="],
+            " & not_returning_now",
+            "",
+        ),
+        swap(
+            "what is known is held no longer than the unknown",
+            &["wire held_unknown ="],
+            " & ~proven_stand_now",
+            "",
+        ),
+        swap(
+            "what is unknown is held as long as the known",
+            &["wire held_long_now ="],
+            " | held_unknown",
+            "",
+        ),
+        swap(
+            "periods held count on through a loss",
+            &["wire known_in_lock ="],
+            "known & counting_now",
+            "known",
+        ),
+    ]
+}
