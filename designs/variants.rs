@@ -268,7 +268,7 @@ pub(crate) fn recalls() -> Vec<Variant> {
         Variant::of("recall", |spec| {
             spec.calibration.parameters = parameters;
             spec.calibration.gear_periods = Some(1);
-            spec.calibration.hold_periods = Some(32);
+            spec.calibration.hold_periods = Some(40);
             spec.calibration.method = method;
             spec.chip.multipliers = multipliers;
         })

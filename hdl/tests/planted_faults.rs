@@ -15,7 +15,7 @@ use nonius_model::design::Design;
 use nonius_model::spec::Spec;
 use nonius_testvectors::stimulus;
 use rayon::prelude::*;
-use recall::recall_faults;
+use recall::{moved_faults, recall_faults};
 
 /// As `nonius build` writes them.
 const ROWS: usize = nonius_package::ROWS;
@@ -116,6 +116,16 @@ fn vectors_catch_every_fault_in_the_recall() {
     let variant = &chip::shipped::variants::recalls()[1];
     let files = files(&variant.spec);
     all_caught("the recall", &files, RTL, &recall_faults());
+}
+
+#[test]
+fn vectors_catch_every_fault_in_the_recall_of_what_has_moved() {
+    let mut spec = chip::shipped::variants::recalls()[1].spec.clone();
+    // Gains that follow a fade of some periods, and are held for all of it.
+    let c = &mut spec.calibration;
+    (c.gamma_first, c.gamma_last, c.hold_periods) = (3, 7, Some(100));
+    let files = files(&spec);
+    all_caught("the recall of what has moved", &files, RTL, &moved_faults());
 }
 
 #[test]

@@ -43,7 +43,7 @@ fn sweep(t: f64) -> f64 {
 const FADING: f64 = 12.0;
 
 /// Periods of travel in which it vanishes.
-const VANISHING: f64 = 50.0;
+const VANISHING: f64 = 100.0;
 
 /// All named stimuli, `rows` samples each, from one seed.
 #[must_use]
@@ -157,25 +157,28 @@ pub fn named(design: &Design, rows: usize) -> Vec<Stimulus> {
             };
             faded(pair(top * k as f64, 1.0, 0.0), gain)
         }),
-        // So slowly that the gains follow for some periods, to nothing, and back as slowly.
+        // So slowly that the gains follow for some periods, to nothing, and back.
         motion("vanish", &|k| {
-            let vanished = (k as f64 - 0.3 * n) * top;
-            let gain = match k as f64 / n {
-                t if t < 0.3 => 1.0,
-                _ if vanished < VANISHING => 1.0 - vanished / VANISHING,
-                _ => ((vanished - 1.2 * VANISHING) / VANISHING).clamp(0.0, 1.0),
+            let vanished = (k as f64 - 0.22 * n) * top / VANISHING;
+            let gain = if vanished < 1.0 {
+                1.0 - vanished.max(0.0)
+            } else {
+                ((vanished - 1.05) * 2.0).clamp(0.0, 1.0)
             };
             faded(pair(top * k as f64, 1.0, 0.0), gain)
         }),
-        // Weak once gamma has settled and before anything is proven, until the search begins again. Later weak for most of what is waited
-        // for, whole for some periods, and weak for most of it again.
+        // Weak once gamma has settled and before anything is proven, until the search begins again.
+        motion("early", &|k| {
+            let periods = k as f64 * top;
+            let weak = periods > 34.0 && periods < 74.0;
+            faded(pair(periods, 1.0, 0.0), if weak { 0.88 } else { 1.0 })
+        }),
+        // Weak for most of what is waited for, whole for some periods, and weak for most of it again.
         motion("weak", &|k| {
-            let early = k as f64 * top;
-            let weak = (k as f64 - 0.5 * n) * top;
+            let weak = (k as f64 - 0.4 * n) * top;
             let again = 0.625 * f64::from(spec.calibration.hold_periods());
             let whole = again + 8.0 + f64::from(spec.calibration.returning_periods());
             let gain = match weak {
-                weak if weak < 0.0 && early > 34.0 && early < 74.0 => 0.88,
                 weak if weak < 0.0 => 1.0,
                 weak if weak < again => 0.88,
                 weak if weak < whole => 1.0,

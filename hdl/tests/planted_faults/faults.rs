@@ -277,6 +277,18 @@ pub(crate) fn faults() -> Vec<Fault> {
             replaced(&v, &["wire gains_steady ="], inside, "")
         }),
         swap(
+            "what is unknown is held as long as the known",
+            &["wire held_long_now ="],
+            " | held_unknown",
+            "",
+        ),
+        swap(
+            "quiet periods counted from before the loss",
+            &["wire gear_periods_again ="],
+            " | not_counting",
+            "",
+        ),
+        swap(
             "proven while gains move",
             &["wire proves"],
             "gains_steady | ~known",

@@ -72,18 +72,6 @@ pub(crate) fn recall_faults() -> Vec<Fault> {
             "1'b0 &",
         ),
         swap(
-            "quiet periods counted from before the loss",
-            &["wire gear_periods_again ="],
-            " | not_counting",
-            "",
-        ),
-        swap(
-            "no recall where a fade ends in a loss",
-            &["wire proven_better_now ="],
-            " | held_and_lost",
-            "",
-        ),
-        swap(
             "what is recalled moves before the signal is whole",
             &["wire gear_periods_done ="],
             " & ~returned_lately",
@@ -108,16 +96,20 @@ pub(crate) fn recall_faults() -> Vec<Fault> {
             "",
         ),
         swap(
-            "what is unknown is held as long as the known",
-            &["wire held_long_now ="],
-            " | held_unknown",
-            "",
-        ),
-        swap(
             "periods held count on through a loss",
             &["wire known_in_lock ="],
             "known & counting_now",
             "known",
         ),
     ]
+}
+
+/// Faults in the recall where gains have moved on.
+pub(crate) fn moved_faults() -> Vec<Fault> {
+    vec![swap(
+        "no recall where a fade ends in a loss",
+        &["wire proven_better_now ="],
+        " | held_and_lost",
+        "",
+    )]
 }
