@@ -1,7 +1,7 @@
 //! The chip against the paper: same ADC codes, same physical design, two programs that share no formula.
 //!
-//! The chip makes decisions that the paper does not know (γ shifts gear, each sector of travel counts once, the modes
-//! are equalised). The reference is told them sample by sample; everything else it computes from the physical design.
+//! The chip makes decisions that the paper does not know (γ shifts gear, each sector of travel counts once, what was found is applied
+//! where a period ends, the modes are equalised). The reference is told them sample by sample; everything else it computes from the physical design.
 
 mod agreement;
 mod support;

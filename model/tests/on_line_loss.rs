@@ -110,14 +110,15 @@ fn a_slow_return_is_followed() {
         assert!(seen.end < 0.1 * seen.after + 2.0 * seen.before, "{seen:?}");
         let set = variant.spec.calibration.parameters;
         format!(
-            "{set} parameters {:.0}, {:.1}",
+            "{set} parameters {:.0}, {:.0}, {:.1}",
+            1e3 * seen.worst,
             1e3 * seen.after,
             1e3 * seen.end
         )
     });
     let left: Vec<String> = left.collect();
     nonius_kept::figure(
-        "loss of signal, faded and back over 1000 periods each: left at the return, and 120 periods later, mrad",
+        "loss of signal, faded and back over 1000 periods each: at most on the way, left at the return, and 120 periods later, mrad",
         &left.join("; "),
         "model/tests/on_line_loss.rs",
     );

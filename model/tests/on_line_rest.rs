@@ -1,8 +1,8 @@
 //! Standstill and vibration: without net travel the parameters stay where they are.
 //!
-//! Between two clearings of the map of sectors each of the 64 sectors moves the parameters once at most, and the map is cleared
-//! where the position is a whole period from where it was last. So what stays within a period can take no more than what is left
-//! of one map, on one side of its place, however long it lasts: ten minutes differ from one by chance only, and the tests show both.
+//! Once γ has settled the parameters move where a period of travel ends: what stays within a period moves nothing, however long it
+//! lasts. The sum of squares moves them with every sector, each once between two clearings of the map, which is cleared where the
+//! position is a whole period from where it was last: there it takes no more than what is left of one map.
 
 mod chip_support;
 

@@ -78,7 +78,7 @@ pub fn harmonics(spec: &Spec) -> Harmonics {
 
 /// The gradient's modes are 1/2 for offsets, 1/4 and 1/2 for gains, 1/8 for the phase: brought to about one speed as the
 /// chip does, whose gains and phase carry the square of the amplitude at its input to a power of two. The final form of four
-/// parameters takes half of each gain's gradient from the other's; that of five has its phase twice as fast until γ has settled.
+/// parameters takes half of each gain's gradient from the other's; that of five has its phase twice as fast until γ has settled, half as fast then.
 fn equaliser(spec: &Spec, parameters: Parameters) -> Steps {
     let octaves = 2.0 * (spec.sensor.amplitude / spec.adc.full_scale).log2();
     let nearest = (octaves - octaves.round()).exp2();
@@ -138,7 +138,8 @@ fn gathered(spec: &Spec) -> f64 {
 }
 
 /// The whole system for a design, for signals in the unit of [`Normalise`]: search, γ and its halvings as the design
-/// says, the modes equalised, an update per sector of travel and in lock only, started from the arctangent.
+/// says, the modes equalised, a step per sector of travel and in lock only, applied where a period ends once γ has settled, started
+/// from the arctangent.
 ///
 /// # Errors
 /// As [`tracking`]; a number of parameters other than 0, 4, 5, 8, 9.

@@ -61,7 +61,7 @@ impl GateState {
         }
     }
 
-    /// The map of sectors was cleared with the last sample: a period of travel ended there, or nothing counted.
+    /// The map of sectors was cleared with the last sample: a period of travel ended there, or without lock nothing counted.
     #[must_use]
     pub fn cleared(&self) -> bool {
         self.cleared
