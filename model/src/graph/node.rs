@@ -77,7 +77,8 @@ impl<'g> Signal for Node<'g> {
         if power == 0 {
             self
         } else {
-            self.with(Op::Scale(self.id, power))
+            let constant = self.recorder.scaled(self.id, power);
+            constant.unwrap_or_else(|| self.with(Op::Scale(self.id, power)))
         }
     }
     fn quantise(self, to: &Quantiser) -> Self {

@@ -110,6 +110,19 @@ impl Recorder {
         Node { recorder: self, id }
     }
 
+    /// A constant times 2^`power`, as a constant; `None`: it is none, or less of it would be left.
+    pub(super) fn scaled(&self, id: NodeId, power: i32) -> Option<Node<'_>> {
+        let mut inner = self.inner.borrow_mut();
+        let entry = &inner.graph.nodes[id.index()];
+        let Op::Constant(raw) = entry.op else {
+            return None;
+        };
+        let fraction = entry.format.fraction;
+        let raw = raw.checked_mul(1i64.checked_shl(u32::try_from(power).ok()?)?)?;
+        let id = inner.constant(None, raw, fraction);
+        Some(Node { recorder: self, id })
+    }
+
     /// States that `node` is what register `name` holds after the sample.
     pub fn next(&self, name: &str, node: NodeId) {
         self.inner.borrow_mut().graph.next.push((name.into(), node));
