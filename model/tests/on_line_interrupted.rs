@@ -4,6 +4,7 @@ mod chip_support;
 
 use std::f64::consts::TAU;
 
+use chip_support::bent::{RATE, bent_sensor, slow};
 use chip_support::loss::{PERIOD, sensor_for};
 use chip_support::{Bench, largest, optical};
 use nonius_kept::figure;
@@ -15,16 +16,8 @@ const TEST: &str = "model/tests/on_line_interrupted.rs";
 /// six thousand times. What it has taught is applied where the pin falls, so the residual answers, and it does not pile up.
 #[test]
 fn what_is_broken_off_does_not_pile_up() {
-    let mut spec = optical();
-    spec.adc.sample_rate_hz = 5000.0;
-    spec.sensor.speed_max_periods_per_s = 500.0;
-    spec.tracking.bandwidth_hz = 300.0;
-    spec.accuracy.rms_periods = 200e-6;
-    let bend = |u: f64| u + 0.01 * u * u + 0.03 * u * u * u;
-    let signals = |a: f64| {
-        let (c, s) = (a.cos() + 0.1, (a - 5f64.to_radians()).sin() - 0.1);
-        (bend(c), bend(s))
-    };
+    let spec = slow(&optical());
+    let signals = bent_sensor(&spec, 2);
     let worst = [0.05, 0.3, 0.55, 0.8].into_par_iter().map(|place| {
         let mut bench = Bench::new(&spec, 3);
         let mut turns = 0.0;
@@ -34,9 +27,9 @@ fn what_is_broken_off_does_not_pile_up() {
         }
         let left = |bench: &Bench| 1e3 * largest(&bench.miscalibration_at(180, &signals));
         let before = left(&bench);
-        for k in 0..600 * 5000u32 {
-            let swing = 0.1 * (TAU * 7.3 * f64::from(k) / 5000.0).sin();
-            bench.step_if(signals(TAU * (turns + swing)), k % 500 != 0);
+        for k in 0..600 * RATE {
+            let swing = 0.1 * (TAU * 7.3 * f64::from(k) / f64::from(RATE)).sin();
+            bench.step_if(signals(TAU * (turns + swing)), k % (RATE / 10) != 0);
         }
         let mut after = left(&bench);
         for k in 0..2000u32 {

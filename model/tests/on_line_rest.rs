@@ -9,17 +9,15 @@ mod chip_support;
 use std::f64::consts::TAU;
 
 use chip_support::Bench;
+use chip_support::bent::{RATE, bent_sensor, slow};
 use chip_support::shipped::variants::{Variant, searches};
 use nonius_kept::figure;
 use nonius_model::bits::Bits;
 use nonius_model::design::Design;
 use nonius_model::kernel::State;
 use nonius_model::kernel::step::Equaliser;
-use nonius_model::spec::{Calibration, Spec};
+use nonius_model::spec::Calibration;
 use rayon::prelude::*;
-
-/// Samples per second.
-const RATE: u32 = 5000;
 
 /// Deviations of θ1 … θ9, every bit of them.
 fn parameters(s: &State<Bits>) -> [f64; 9] {
@@ -54,43 +52,13 @@ fn noise(design: &Design) -> [f64; 9] {
     gamma.map(|gamma| design.spec.sensor.noise_rms * (gamma / 2.0).sqrt())
 }
 
-fn calibrated_phase(spec: &Spec) -> f64 {
-    match spec.calibration.parameters {
-        5 | 9 => 5f64.to_radians(),
-        _ => 0.0,
-    }
-}
-
-/// A sensor with bends of 1 and 3 %; offsets of 10 % with these signs.
-fn bent_sensor(spec: &Spec, signs: u32) -> impl Fn(f64) -> (f64, f64) + use<> {
-    let sign = move |bit: u32| if signs >> bit & 1 == 0 { 0.1 } else { -0.1 };
-    // What is not calibrated is no part of the sensor.
-    let phase = calibrated_phase(spec);
-    let bent = |u: f64| u + 0.01 * u * u + 0.03 * u * u * u;
-    move |alpha: f64| {
-        let (c, s) = (alpha.cos() + sign(0), (alpha - phase).sin() + sign(1));
-        (bent(c), bent(s))
-    }
-}
-
-/// A design whose completion, where there is one, is awake at 50 periods a second.
-fn slow(variant: &Variant) -> Spec {
-    let mut spec = variant.spec.clone();
-    spec.adc.sample_rate_hz = RATE.into();
-    spec.sensor.speed_max_periods_per_s = 500.0;
-    let completed = spec.calibration.completed().is_some();
-    spec.tracking.bandwidth_hz = if completed { 150.0 } else { 300.0 };
-    spec.accuracy.rms_periods = 200e-6;
-    spec
-}
-
 /// A vibration: amplitude in periods, frequency in hertz.
 type Vibration = (f64, f64);
 
 /// How far the furthest parameter goes, in units of its noise, while the scale rests, or vibrates about `place` in each of these
 /// ways.
 fn moved(variant: &Variant, place: f64, ways: &[Vibration], seconds: u32, seed: u32) -> Vec<f64> {
-    let spec = slow(variant);
+    let spec = slow(&variant.spec);
     // Every sign at every place, whatever the noise.
     let signals = bent_sensor(&spec, seed / 5);
     let mut running = Bench::new(&spec, u64::from(seed));

@@ -391,5 +391,5 @@ fn keys_of_no_calibration_are_refused() {
         assert!(message.contains("leave it out"), "{message}");
     }
     let keys = keys().filter(|(section, key)| *section == "calibration" && *key != "parameters");
-    assert_eq!(keys.count(), 11);
+    assert_eq!(keys.count(), 12);
 }

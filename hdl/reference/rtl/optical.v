@@ -6,7 +6,7 @@
 // far, is 2^-4 at first and 2^-9 after 5 gears.
 // After S. Balemi, "Automatic calibration of sinusoidal encoder signals", IFAC 2005; equation numbers are the paper's.
 //
-// Design 0b8a0dcb4e6f: 16 products on 1 multiplier, 20 clocks per sample.
+// Design 0b990403d2f8: 16 products on 1 multiplier, 19 clocks per sample.
 //
 // Formats: sW.F is a two's complement number of W bits, F of them behind the point; uW.F has no sign and is kept here
 // with a zero in front, so that every number is signed. Angles are in turns of a scale period. A signal that saturates
@@ -25,14 +25,15 @@
 //      |                          | sin_inside cos_address cos_inside cos_negative theta_1 theta_3 theta_5 last_gear
 //      |                          | gamma_settled periods_modulo_4 sector sector_relative period_ahead period_behind
 //      |                          | a_period_away reach_ahead reach_behind unseen_ahead used_ahead_counts may_add_ahead
-//      |                          | sector_ahead unseen_behind used_behind_counts may_add_behind search_begun
-//      |                          | proven_stand held_and_lost nominal held_some_periods held_unknown held_long
-//      |                          | rises_again restart_cause last_gamma_gear returned_lately gear_periods_done quiet
-//      |                          | gear_done periods_count_ends parameters_follow held_before gain_c_inside
-//      |                          | gain_c_rests gain_s_inside gain_s_rests gains_steady proves nothing_proven_yet
-//    1 | loop_ab * error_previous | sin_value sin_slope y_c y_s counting whole_period sector_behind travel_clear
-//      |                          | sector_added new_sector still_used_ahead used_up_ahead still_used_behind
-//      |                          | used_up_behind y_5 known_in_lock held_or_known period_breaks_off lost_before
+//      |                          | sector_ahead unseen_behind used_behind_counts may_add_behind sector_behind
+//      |                          | search_begun proven_stand held_and_lost nominal held_some_periods held_unknown
+//      |                          | held_long rises_again restart_cause last_gamma_gear returned_lately
+//      |                          | gear_periods_done quiet gear_done periods_count_ends parameters_follow held_before
+//      |                          | gain_c_inside gain_c_rests gain_s_inside gain_s_rests gains_steady proves
+//      |                          | nothing_proven_yet
+//    1 | loop_ab * error_previous | sin_value sin_slope y_c y_s counting whole_period travel_clear sector_added
+//      |                          | new_sector still_used_ahead used_up_ahead still_used_behind used_up_behind y_5
+//      |                          | known_in_lock held_or_known period_breaks_off lost_before
 //    2 | theta_1 * y_c            | cos_value cos_slope drift
 //    3 | cos_slope * cos_inside   | c_exact c
 //    4 | theta_3 * y_s            | cos_magnitude cos_hat c_weak
@@ -41,26 +42,25 @@
 //    7 | c * cos_hat              | s_exact s
 //    8 | s * sin_hat              | s_weak signal_present may_flip
 //    9 | s * cos_hat              | rho_exact rho rho_in_window flip half_turn rho_high rho_large rho_not_small
-//      |                          | rho_rises proven_better rho_limited
-//   10 | c * sin_hat              | alpha_hat_turned rho_too_large may_recall
+//      |                          | rho_rises proven_better may_recall rho_limited
+//   10 | c * sin_hat              | rho_too_large
 //   11 | cos_hat * rho_limited    | e_exact e_seen e
 //   12 | sin_hat * rho_limited    | e_in_window in_window level_step e_change sample_counts counted residual_large
-//      |                          | disturbed_lately disturbed_or_held radius_large rho_c period_tick disturbed_period
-//      |                          | gamma_restart gear_passed gamma_shift gear_periods_up periods_end held_periods_up
-//      |                          | free_period within_period still_held first_gear_period last_gear_passed
+//      |                          | disturbed_lately disturbed_or_held radius_large rho_c period_tick gradient_2
+//      |                          | disturbed_period gamma_restart gear_passed gamma_shift gear_periods_up periods_end
+//      |                          | held_periods_up free_period within_period still_held first_gear_period
+//      |                          | last_gear_passed
 //   13 | loop_a * e_change        | level_moved level_full level_empty narrower loop_gear_up full_in_last_gear
-//      |                          | hold_cause hold recall fresh rho_s gradient_2 step_2 gamma_gear_up
+//      |                          | hold_cause hold recall fresh rho_s step_2 gradient_4 gamma_gear_up
 //      |                          | gear_periods_again held_periods_step held_periods_stay holding restart_risen
 //      |                          | recall_again recall_any quiet_periods_pass quiet_periods_end proved gain_moved
 //      |                          | remember search_improves remember_better return_ends return_goes_on signal_changed
 //      |                          | still_known fades fade_ends period_taught lock_falls
-//   14 | y_c * rho_c              | kick gradient_4 step_4 remember_recent together_again travel_ends search_ends
-//      |                          | theta_applies
-//   15 | y_s * rho_s              | speed backwards not_forwards gradient_1 step_1
-//   16 | y_5 * rho_s              | alpha_hat_sum carry count_before gradient_3 step_3
+//   14 | y_c * rho_c              | kick step_4 remember_recent together_again travel_ends search_ends theta_applies
+//   15 | y_s * rho_s              | speed alpha_hat_turned alpha_hat_sum carry backwards not_forwards gradient_1 step_1
+//   16 | y_5 * rho_s              | count_before gradient_3 step_3
 //   17 | -                        | gradient_5 step_5
 //   18 | -                        |
-//   19 | -                        |
 //
 // Coefficients, by name in the comments below:
 //     loop_a                 0.014132976531982422    Loop coefficient a, turns per radian.
@@ -76,7 +76,7 @@
 //     hold_residual          0.0625                  |ρ| above this holds the parameters once γ has settled.
 //     steady_gain            0.001953125             A gain that moves by more between two times that it is remembered
 //                                                    is of a signal that fades.
-//     gain_near_bound        0.498046875             A gain's deviation from which it is near its bound.
+//     gain_near_bound        0.46875                 A gain's deviation from which it is near its bound.
 //     direction_rate         0.0000152587890625      Rate below which the direction does not change, turns per sample.
 //     lock_down              -8                      What a bad sample adds to the lock level.
 //     lock_full              63                      The full lock level.
@@ -113,11 +113,11 @@
 module optical (
     input  wire clk, // every register changes at the rising edge
     input  wire rst_n, // asynchronous reset, active low
-    input  wire sample_valid, // one clock per sample, 20 clocks apart or more; the inputs below are valid
+    input  wire sample_valid, // one clock per sample, 19 clocks apart or more; the inputs below are valid
     input  wire [11:0] adc_cos, // code of the cosine channel, two's complement
     input  wire [11:0] adc_sin, // code of the sine channel, two's complement
     input  wire preset, // this sample's period becomes number 0; clears lock_lost
-    input  wire calibrate, // this sample may move the parameters
+    input  wire calibrate, // this sample may teach the parameters; where it falls, what was learned so far is applied
     output wire signed [58:0] position, // periods, s59.27: whole periods and alpha_hat for the next sample
     output reg signed [15:0] theta_1, // θ1 as multiplied. s16.14
     output reg signed [23:0] theta_2, // θ2. s24.25
@@ -197,10 +197,10 @@ module optical (
     reg signed [17:0] c;
     reg signed [17:0] s;
     reg c_below_weak_signal;
-    reg c_below_minus_weak_signal;
+    reg not_c_below_minus_weak_signal;
     reg c_weak;
     reg s_below_weak_signal;
-    reg s_below_minus_weak_signal;
+    reg not_s_below_minus_weak_signal;
     reg signal_lost_next;
     reg signed [34:0] rho_exact_difference;
     reg signed [17:0] rho;
@@ -211,22 +211,17 @@ module optical (
     reg in_window;
     reg may_flip;
     reg signed [7:0] level_moved_sum;
-    reg level_empty;
     reg loop_gear_below_loop_gear_last;
     reg last_gear;
-    reg signed [2:0] loop_gear_next_bits;
+    reg signed [2:0] loop_gear_next_chosen;
     reg locked_next;
     reg signed [6:0] lock_level_next;
-    reg signed [2:0] loop_gear_next;
-    reg signed [25:0] kick;
-    reg signed [25:0] drift;
     reg signed [26:0] speed_sum_2;
+    reg signed [27:0] speed_sum;
     reg signed [1:0] half_turn;
-    reg signed [28:0] alpha_hat_turned;
     reg signed [27:0] alpha_hat_next;
+    reg signed [1:0] count_next_scaled;
     reg signed [31:0] count_next;
-    reg backwards;
-    reg not_forwards;
     reg direction_next;
     reg counting;
     reg gamma_gear_below_gamma_gear_settled;
@@ -238,19 +233,17 @@ module optical (
     reg a_period_away;
     reg whole_period;
     reg sector_ahead;
-    reg unseen_behind;
-    reg may_add_behind;
+    reg sector_behind;
     reg not_counting;
     reg travel_clear;
     reg new_sector;
     reg signed [7:0] travel_low_next;
-    reg signed [7:0] travel_high_next;
     reg ahead_used_next;
     reg behind_used_next;
     reg counted;
     reg rho_high;
     reg rho_large;
-    reg rho_not_small;
+    reg gamma_settled_and_rho_not_small;
     reg rho_too_large;
     reg residual_large;
     reg disturbed_or_held;
@@ -260,7 +253,6 @@ module optical (
     reg proven_stand;
     reg held_and_lost;
     reg not_apart;
-    reg proven_better;
     reg may_recall;
     reg radius_large;
     reg fresh;
@@ -271,9 +263,10 @@ module optical (
     reg nominal;
     reg signed [24:0] step_5;
     reg signed [21:0] step_1;
+    reg signed [24:0] step_2_geared;
     reg signed [20:0] step_2;
     reg signed [21:0] step_3;
-    reg signed [20:0] step_4;
+    reg signed [24:0] step_4_geared;
     reg held_long;
     reg restart_cause;
     reg disturbed_period;
@@ -306,7 +299,6 @@ module optical (
     reg signed [23:0] running_2_next;
     reg signed [24:0] running_3_next;
     reg signed [23:0] running_4_next;
-    reg signed [23:0] running_5_next;
     reg signed [3:0] gamma_gear_next;
     reg last_gear_passed;
     reg proves;
@@ -316,6 +308,7 @@ module optical (
     reg remember;
     reg remember_better;
     reg remember_recent;
+    reg signed [16:0] recent_2_next;
     reg returning_next;
     reg fading_next;
     reg either_halfway_or_quiet_periods_pass;
@@ -335,10 +328,10 @@ module optical (
     reg signed [17:0] operand_b_0;
     reg signed [35:0] product_0;
 
-    // Step counter: a sample starts in step 0 and takes 20 steps
+    // Step counter: a sample starts in step 0 and takes 19 steps
     reg [4:0] step;
     wire start = (step == 5'd0) & sample_valid;
-    wire last = step == 5'd19;
+    wire last = step == 5'd18;
 
     always @(posedge clk or negedge rst_n)
         if (!rst_n) begin
@@ -450,11 +443,11 @@ module optical (
     // Loss of signal
     //   |c| and |s| both below the threshold
     wire c_below_weak_signal_now = $signed(c_now[17:14]) < 4'sd1; // step 3, with weak_signal
-    wire c_below_minus_weak_signal_now = ~($signed(~c_now[17:14]) < 4'sd1); // step 3, with minus_weak_signal
-    wire c_weak_now = c_below_weak_signal & ~c_below_minus_weak_signal; // step 4
+    wire not_c_below_minus_weak_signal_now = $signed(~c_now[17:14]) < 4'sd1; // step 3, with minus_weak_signal
+    wire c_weak_now = c_below_weak_signal & not_c_below_minus_weak_signal; // step 4
     wire s_below_weak_signal_now = $signed(s_now[17:14]) < 4'sd1; // step 7, with weak_signal
-    wire s_below_minus_weak_signal_now = ~($signed(~s_now[17:14]) < 4'sd1); // step 7, with minus_weak_signal
-    wire s_weak = s_below_weak_signal & ~s_below_minus_weak_signal; // step 8
+    wire not_s_below_minus_weak_signal_now = $signed(~s_now[17:14]) < 4'sd1; // step 7, with minus_weak_signal
+    wire s_weak = s_below_weak_signal & not_s_below_minus_weak_signal; // step 8
     wire signal_lost_next_now = c_weak & s_weak; // step 8
 
     // Radial residual
@@ -503,20 +496,20 @@ module optical (
         level_moved_sum[7] ? 7'sd0 : (level_moved_sum[6] ? {1'b0, {6{1'b1}}} : {1'b0, level_moved_sum[5:0]});
     wire level_moved_below_lock_full = level_moved < 7'sh3f; // step 13, with lock_full
     wire level_full = ~level_moved_below_lock_full; // step 13
-    wire level_empty_now = level_moved < 7'sd1; // step 13
+    wire level_empty = level_moved < 7'sd1; // step 13
     wire loop_gear_below_loop_gear_last_now = loop_gear < 3'sd3; // step 0, with loop_gear_last
     wire last_gear_now = ~loop_gear_below_loop_gear_last_now; // step 0
     wire narrower = level_full & loop_gear_below_loop_gear_last; // step 13
     wire signed [1:0] loop_gear_up = narrower ? 2'sd1 : 2'sd0; // s2.0, step 13
     wire signed [3:0] loop_gear_next_sum = // s4.0, step 13
         {loop_gear[2], loop_gear} + {{2{loop_gear_up[1]}}, loop_gear_up};
-    wire signed [2:0] loop_gear_next_bits_now = {1'b0, loop_gear_next_sum[1:0]}; // u2.0, step 13
-    wire signed [2:0] loop_gear_next_chosen = level_empty ? 3'sd0 : loop_gear_next_bits; // s3.0, step 14
+    wire signed [2:0] loop_gear_next_bits = {1'b0, loop_gear_next_sum[1:0]}; // u2.0, step 13
+    wire signed [2:0] loop_gear_next_chosen_now = level_empty ? 3'sd0 : loop_gear_next_bits; // s3.0, step 13
     wire signed [6:0] lock_level_next_chosen = narrower ? 7'sh1f : level_moved; // s7.0, step 13, with lock_restart
     wire full_in_last_gear = level_full & last_gear; // step 13
-    wire locked_next_now = (locked | full_in_last_gear) & ~level_empty_now; // step 13
+    wire locked_next_now = (locked | full_in_last_gear) & ~level_empty; // step 13
     wire signed [6:0] lock_level_next_now = lock_level_next_chosen; // u6.0, step 13
-    wire signed [2:0] loop_gear_next_now = loop_gear_next_chosen; // u2.0, step 14
+    wire signed [2:0] loop_gear_next = loop_gear_next_chosen; // u2.0, step 18
 
     // Loop filter
     //   rate' = rate + a (e - e_1) + (a + b) e_1; a times 2^n, a + b times 4^n in acquisition
@@ -531,15 +524,15 @@ module optical (
     wire signed [26:0] kick_unshifted = kick_scaled[33:7];
     wire signed [26:0] kick_shifted = kick_unshifted >>> loop_gear[1:0];
     wire signed [25:0] kick_rounded = kick_shifted[26:1] + {25'b0, kick_shifted[0]};
-    wire signed [25:0] kick_now = kick_rounded; // s26.27, step 14
+    wire signed [25:0] kick = kick_rounded; // s26.27, step 14
     wire signed [33:0] loop_ab_times_error_previous = product_0[33:0]; // s34.42, step 2
     wire signed [33:0] drift_scaled = loop_ab_times_error_previous; // s34.36, step 2
     wire signed [25:0] drift_unshifted = drift_scaled[33:8];
     wire signed [25:0] drift_shifted = drift_unshifted >>> {loop_gear[1:0], 1'b0};
     wire signed [24:0] drift_rounded = drift_shifted[25:1] + {24'b0, drift_shifted[0]};
-    wire signed [25:0] drift_now = {drift_rounded[24], drift_rounded}; // s26.27, step 2
-    wire signed [26:0] speed_sum_2_now = {rate[25], rate} + {drift[25], drift}; // s27.27, step 3
-    wire signed [27:0] speed_sum = {speed_sum_2[26], speed_sum_2} + {{2{kick[25]}}, kick}; // s28.27, step 15
+    wire signed [25:0] drift = {drift_rounded[24], drift_rounded}; // s26.27, step 2
+    wire signed [26:0] speed_sum_2_now = {rate[25], rate} + {drift[25], drift}; // s27.27, step 2
+    wire signed [27:0] speed_sum_now = {speed_sum_2[26], speed_sum_2} + {{2{kick[25]}}, kick}; // s28.27, step 14
     wire signed [25:0] speed_now = // s26.27, step 15
         ((&speed_sum[27:25]) | ~(|speed_sum[27:25])) ? speed_sum[25:0] : {speed_sum[27], {25{~speed_sum[27]}}};
 
@@ -547,22 +540,22 @@ module optical (
     //   alpha_hat' = alpha_hat + rate' (mod 1), count' = count + carry
     //   (paper equation (9))
     wire signed [1:0] half_turn_now = flip ? 2'sd1 : 2'sd0; // s2.1, step 9
-    wire signed [28:0] alpha_hat_turned_now = // s29.27, step 10
+    wire signed [28:0] alpha_hat_turned = // s29.27, step 15
         {alpha_hat[27], alpha_hat} + {half_turn[1], half_turn, 26'b0};
-    wire signed [28:0] alpha_hat_sum = alpha_hat_turned + {{3{speed[25]}}, speed}; // s29.27, step 16
-    wire signed [27:0] alpha_hat_next_now = {1'b0, alpha_hat_sum[26:0]}; // u27.27, step 16
-    wire signed [2:0] carry = {alpha_hat_sum[28], alpha_hat_sum[28:27]}; // s3.0, step 16
+    wire signed [28:0] alpha_hat_sum = alpha_hat_turned + {{3{speed_now[25]}}, speed_now}; // s29.27, step 15
+    wire signed [27:0] alpha_hat_next_now = {1'b0, alpha_hat_sum[26:0]}; // u27.27, step 15
+    wire signed [2:0] carry = {alpha_hat_sum[28], alpha_hat_sum[28:27]}; // s3.0, step 15
     wire signed [31:0] count_before = preset_held ? 32'sd0 : count; // s32.32, step 16
-    wire signed [1:0] count_next_scaled = carry[1:0]; // s2.32, step 16
+    wire signed [1:0] count_next_scaled_now = carry[1:0]; // s2.32, step 15
     wire signed [32:0] count_next_sum = // s33.32, step 16
         {count_before[31], count_before} + {{31{count_next_scaled[1]}}, count_next_scaled};
     wire signed [31:0] count_next_now = count_next_sum[31:0]; // s32.32, step 16
 
     // Direction
     //   sign of the rate, with a dead band
-    wire backwards_now = ~($signed(~speed_now[25:11]) < 15'sd1); // step 15, with minus_direction_rate
-    wire not_forwards_now = $signed(speed_now[25:11]) < 15'sd1; // step 15, with direction_rate
-    wire direction_next_now = backwards | (direction & not_forwards); // step 16
+    wire backwards = ~($signed(~speed_now[25:11]) < 15'sd1); // step 15, with minus_direction_rate
+    wire not_forwards = $signed(speed_now[25:11]) < 15'sd1; // step 15, with direction_rate
+    wire direction_next_now = backwards | (direction & not_forwards); // step 15
 
     // Travel
     //   a sector of the period is fresh until it was used once since the last whole period
@@ -588,21 +581,21 @@ module optical (
     wire used_ahead_counts = ahead_used & gamma_gear_below_gamma_gear_settled_now; // step 0
     wire may_add_ahead = ~(($signed(sector_relative_now[7:4]) < 4'sd1) & used_ahead_counts); // step 0
     wire sector_ahead_now = unseen_ahead & may_add_ahead; // step 0
-    wire unseen_behind_now = // step 0
+    wire unseen_behind = // step 0
         (sector_relative_now < travel_low) & (reach_behind < $signed({sector_relative_now[7], sector_relative_now}));
     wire used_behind_counts = behind_used & gamma_gear_below_gamma_gear_settled_now; // step 0
-    wire may_add_behind_now = // step 0, with minus_quarter
+    wire may_add_behind = // step 0, with minus_quarter
         ~(($signed(~sector_relative_now[7:4]) < 4'sd1) & used_behind_counts);
-    wire sector_behind = unseen_behind & may_add_behind; // step 1
+    wire sector_behind_now = unseen_behind & may_add_behind; // step 0
     wire not_counting_now = ~counting_now; // step 1
     wire travel_clear_now = whole_period_now | not_counting_now; // step 1
     wire sector_added = sector_ahead | sector_behind; // step 1
     wire new_sector_now = sector_added | travel_clear_now; // step 1
-    wire signed [7:0] travel_origin_next = travel_clear ? sector : travel_origin; // s8.6, step 19
+    wire signed [7:0] travel_origin_next = travel_clear ? sector : travel_origin; // s8.6, step 18
     wire signed [7:0] travel_low_next_chosen = sector_behind ? sector_relative : travel_low; // s8.6, step 1
     wire signed [7:0] travel_low_next_now = travel_clear_now ? 8'sd0 : travel_low_next_chosen; // s8.6, step 1
-    wire signed [7:0] travel_high_next_chosen = sector_ahead ? sector_relative : travel_high; // s8.6, step 1
-    wire signed [7:0] travel_high_next_now = travel_clear_now ? 8'sd0 : travel_high_next_chosen; // s8.6, step 1
+    wire signed [7:0] travel_high_next_chosen = sector_ahead ? sector_relative : travel_high; // s8.6, step 18
+    wire signed [7:0] travel_high_next = travel_clear ? 8'sd0 : travel_high_next_chosen; // s8.6, step 18
     wire still_used_ahead = ahead_used & ~(whole_period_now | sector_ahead); // step 1
     wire used_up_ahead = period_behind | still_used_ahead; // step 1
     wire ahead_used_next_now = counting_now & used_up_ahead; // step 1
@@ -618,9 +611,10 @@ module optical (
     wire rho_high_now = ~($signed(rho_now[17:14]) < 4'sd1); // step 9, with restart_residual
     wire rho_large_now = rho_high_now | ~($signed(~rho_now[17:14]) < 4'sd1); // step 9, with minus_restart_residual
     wire rho_below_hold_residual = $signed(rho_now[17:12]) < 6'sd1; // step 9, with hold_residual
-    wire rho_not_small_now = // step 9, with minus_hold_residual
+    wire rho_not_small = // step 9, with minus_hold_residual
         ~(rho_below_hold_residual & ($signed(~rho_now[17:12]) < 6'sd1));
-    wire rho_too_large_now = rho_large | (gamma_settled & rho_not_small); // step 10
+    wire gamma_settled_and_rho_not_small_now = gamma_settled & rho_not_small; // step 9
+    wire rho_too_large_now = rho_large | gamma_settled_and_rho_not_small; // step 10
     wire residual_large_now = rho_too_large & sample_counts; // step 12
     wire disturbed_lately = residual_large_now | disturbed; // step 12
     wire disturbed_or_held_now = disturbed_lately | held; // step 12
@@ -631,10 +625,10 @@ module optical (
     wire not_fading_now = ~fading; // step 0
     wire proven_stand_now = known & not_fading_now; // step 0
     wire rho_rises = ~rho_below_hold_residual; // step 9
-    wire held_and_lost_now = held & ~locked; // step 0
+    wire held_and_lost_now = ~($signed(held_periods[8:2]) < 7'sd1) & ~locked; // step 0, with held_and_lost_constant
     wire not_apart_now = ~apart; // step 0
-    wire proven_better_now = (not_apart | rho_rises) | held_and_lost; // step 9
-    wire may_recall_now = proven_stand & proven_better; // step 10
+    wire proven_better = (not_apart | rho_rises) | held_and_lost; // step 9
+    wire may_recall_now = proven_stand & proven_better; // step 9
     wire recall = hold & may_recall; // step 13
     wire radius_large_now = rho_high & sample_counts; // step 12
     wire fresh_now = counted & ~hold; // step 13
@@ -679,8 +673,8 @@ module optical (
         ((&running_1_next_difference[25:24]) | ~(|running_1_next_difference[25:24]))
             ? running_1_next_difference[24:0]
             : {running_1_next_difference[25], {24{~running_1_next_difference[25]}}};
-    wire signed [17:0] gradient_2 = rho_c; // s18.22, step 13
-    wire signed [24:0] step_2_geared = shifted_1; // s25.25, step 13
+    wire signed [17:0] gradient_2 = rho_c_now; // s18.22, step 12
+    wire signed [24:0] step_2_geared_now = shifted_1; // s25.25, step 12
     wire signed [20:0] step_2_now = fresh_now ? step_2_geared[20:0] : 21'sd0; // s21.25, step 13
     wire signed [24:0] running_2_next_difference = // s25.25, step 14
         {running_2[23], running_2} - {{4{step_2[20]}}, step_2};
@@ -697,12 +691,12 @@ module optical (
         ((&running_3_next_difference[25:24]) | ~(|running_3_next_difference[25:24]))
             ? running_3_next_difference[24:0]
             : {running_3_next_difference[25], {24{~running_3_next_difference[25]}}};
-    wire signed [17:0] gradient_4 = rho_s; // s18.22, step 14
-    wire signed [24:0] step_4_geared = shifted_1; // s25.25, step 14
-    wire signed [20:0] step_4_now = fresh ? step_4_geared[20:0] : 21'sd0; // s21.25, step 14
-    wire signed [24:0] running_4_next_difference = // s25.25, step 15
+    wire signed [17:0] gradient_4 = rho_s_now; // s18.22, step 13
+    wire signed [24:0] step_4_geared_now = shifted_1; // s25.25, step 13
+    wire signed [20:0] step_4 = fresh ? step_4_geared[20:0] : 21'sd0; // s21.25, step 14
+    wire signed [24:0] running_4_next_difference = // s25.25, step 14
         {running_4[23], running_4} - {{4{step_4[20]}}, step_4};
-    wire signed [23:0] running_4_next_bits = // s24.25, step 15
+    wire signed [23:0] running_4_next_bits = // s24.25, step 14
         ((&running_4_next_difference[24:23]) | ~(|running_4_next_difference[24:23]))
             ? running_4_next_difference[23:0]
             : {running_4_next_difference[24], {23{~running_4_next_difference[24]}}};
@@ -771,28 +765,28 @@ module optical (
     wire signed [24:0] running_1_next_now = recall_any ? {proven_1, 7'b0} : running_1_next_bits; // s25.25, step 16
     wire signed [23:0] running_2_next_now = recall_any ? {proven_2, 7'b0} : running_2_next_bits; // s24.25, step 14
     wire signed [24:0] running_3_next_now = recall_any ? {proven_3, 7'b0} : running_3_next_bits; // s25.25, step 17
-    wire signed [23:0] running_4_next_now = recall_any ? {proven_4, 7'b0} : running_4_next_bits; // s24.25, step 15
-    wire signed [23:0] running_5_next_now = recall_any ? {proven_5, 7'b0} : running_5_next_bits; // s24.25, step 18
+    wire signed [23:0] running_4_next_now = recall_any ? {proven_4, 7'b0} : running_4_next_bits; // s24.25, step 14
+    wire signed [23:0] running_5_next = recall_any ? {proven_5, 7'b0} : running_5_next_bits; // s24.25, step 18
     wire signed [3:0] gamma_gear_next_chosen = // s4.0, step 13, with gamma_gear_last
         recall_again ? 4'sd5 : gamma_gear_next_bits;
     wire signed [3:0] gamma_gear_next_now = gamma_gear_next_chosen; // u3.0, step 13
     wire last_gear_passed_now = gear_passed_now & last_gamma_gear; // step 12
     wire quiet_periods_pass = last_gear_passed & not_returning; // step 13
     wire quiet_periods_end = quiet_periods_pass & halfway; // step 13
-    wire signed [9:0] gain_c_inside_bits = theta_1_deviation[24:15]; // s10.10, step 0
-    wire signed [9:0] gain_c_rests_bits = recent_1[17:8]; // s10.10, step 0
-    wire gain_c_inside = $signed(gain_c_inside_bits[9:1]) < 9'shff; // step 0, with gain_near_bound
-    wire signed [10:0] gain_c_rests_difference = // s11.10, step 0
-        {gain_c_inside_bits[9], gain_c_inside_bits} - {gain_c_rests_bits[9], gain_c_rests_bits};
+    wire signed [10:0] gain_c_inside_bits = theta_1_deviation[24:14]; // s11.11, step 0
+    wire signed [10:0] gain_c_rests_bits = recent_1[17:7]; // s11.11, step 0
+    wire gain_c_inside = $signed(gain_c_inside_bits[10:6]) < 5'shf; // step 0, with gain_near_bound
+    wire signed [11:0] gain_c_rests_difference = // s12.11, step 0
+        {gain_c_inside_bits[10], gain_c_inside_bits} - {gain_c_rests_bits[10], gain_c_rests_bits};
     wire gain_c_rests = // step 0, with steady_gain, minus_steady_gain
-        ($signed(gain_c_rests_difference[10:1]) < 10'sd1) & ($signed(~gain_c_rests_difference[10:1]) < 10'sd1);
-    wire signed [9:0] gain_s_inside_bits = theta_3_deviation[24:15]; // s10.10, step 0
-    wire signed [9:0] gain_s_rests_bits = recent_3[17:8]; // s10.10, step 0
-    wire gain_s_inside = $signed(gain_s_inside_bits[9:1]) < 9'shff; // step 0, with gain_near_bound
-    wire signed [10:0] gain_s_rests_difference = // s11.10, step 0
-        {gain_s_inside_bits[9], gain_s_inside_bits} - {gain_s_rests_bits[9], gain_s_rests_bits};
+        ($signed(gain_c_rests_difference[11:2]) < 10'sd1) & ($signed(~gain_c_rests_difference[11:2]) < 10'sd1);
+    wire signed [10:0] gain_s_inside_bits = theta_3_deviation[24:14]; // s11.11, step 0
+    wire signed [10:0] gain_s_rests_bits = recent_3[17:7]; // s11.11, step 0
+    wire gain_s_inside = $signed(gain_s_inside_bits[10:6]) < 5'shf; // step 0, with gain_near_bound
+    wire signed [11:0] gain_s_rests_difference = // s12.11, step 0
+        {gain_s_inside_bits[10], gain_s_inside_bits} - {gain_s_rests_bits[10], gain_s_rests_bits};
     wire gain_s_rests = // step 0, with steady_gain, minus_steady_gain
-        ($signed(gain_s_rests_difference[10:1]) < 10'sd1) & ($signed(~gain_s_rests_difference[10:1]) < 10'sd1);
+        ($signed(gain_s_rests_difference[11:2]) < 10'sd1) & ($signed(~gain_s_rests_difference[11:2]) < 10'sd1);
     wire gains_steady = (gain_c_rests & gain_c_inside) & (gain_s_rests & gain_s_inside); // step 0
     wire proves_now = gains_steady | ~known; // step 0
     wire proved_now = quiet_periods_end & proves; // step 13
@@ -810,21 +804,21 @@ module optical (
     wire fades = (gamma_restart & held_long) | fading; // step 13
     wire fade_ends = (recall_again | proved_now) | signal_changed; // step 13
     wire together_again = proved | recall_any; // step 14
-    wire signed [17:0] recent_1_next_bits = running_1_next[24:7]; // s18.18, step 19
-    wire signed [17:0] recent_1_next = remember_recent ? recent_1_next_bits : recent_1; // s18.18, step 19
-    wire signed [16:0] recent_2_next_bits = running_2_next[23:7]; // s17.18, step 19
-    wire signed [16:0] recent_2_next = remember_recent ? recent_2_next_bits : recent_2; // s17.18, step 19
-    wire signed [17:0] recent_3_next_bits = running_3_next[24:7]; // s18.18, step 19
-    wire signed [17:0] recent_3_next = remember_recent ? recent_3_next_bits : recent_3; // s18.18, step 19
-    wire signed [16:0] recent_4_next_bits = running_4_next[23:7]; // s17.18, step 19
-    wire signed [16:0] recent_4_next = remember_recent ? recent_4_next_bits : recent_4; // s17.18, step 19
-    wire signed [16:0] recent_5_next_bits = running_5_next[23:7]; // s17.18, step 19
-    wire signed [16:0] recent_5_next = remember_recent ? recent_5_next_bits : recent_5; // s17.18, step 19
-    wire signed [17:0] proven_1_next = remember ? recent_1 : proven_1; // s18.18, step 19
-    wire signed [16:0] proven_2_next = remember ? recent_2 : proven_2; // s17.18, step 19
-    wire signed [17:0] proven_3_next = remember ? recent_3 : proven_3; // s18.18, step 19
-    wire signed [16:0] proven_4_next = remember ? recent_4 : proven_4; // s17.18, step 19
-    wire signed [16:0] proven_5_next = remember ? recent_5 : proven_5; // s17.18, step 19
+    wire signed [17:0] recent_1_next_bits = running_1_next[24:7]; // s18.18, step 18
+    wire signed [17:0] recent_1_next = remember_recent ? recent_1_next_bits : recent_1; // s18.18, step 18
+    wire signed [16:0] recent_2_next_bits = running_2_next_now[23:7]; // s17.18, step 14
+    wire signed [16:0] recent_2_next_now = remember_recent_now ? recent_2_next_bits : recent_2; // s17.18, step 14
+    wire signed [17:0] recent_3_next_bits = running_3_next[24:7]; // s18.18, step 18
+    wire signed [17:0] recent_3_next = remember_recent ? recent_3_next_bits : recent_3; // s18.18, step 18
+    wire signed [16:0] recent_4_next_bits = running_4_next[23:7]; // s17.18, step 18
+    wire signed [16:0] recent_4_next = remember_recent ? recent_4_next_bits : recent_4; // s17.18, step 18
+    wire signed [16:0] recent_5_next_bits = running_5_next[23:7]; // s17.18, step 18
+    wire signed [16:0] recent_5_next = remember_recent ? recent_5_next_bits : recent_5; // s17.18, step 18
+    wire signed [17:0] proven_1_next = remember ? recent_1 : proven_1; // s18.18, step 18
+    wire signed [16:0] proven_2_next = remember ? recent_2 : proven_2; // s17.18, step 18
+    wire signed [17:0] proven_3_next = remember ? recent_3 : proven_3; // s18.18, step 18
+    wire signed [16:0] proven_4_next = remember ? recent_4 : proven_4; // s17.18, step 18
+    wire signed [16:0] proven_5_next = remember ? recent_5 : proven_5; // s17.18, step 18
     wire returning_next_now = return_goes_on | recall_again; // step 13
     wire fading_next_now = fades & ~fade_ends; // step 13
     wire either_halfway_or_quiet_periods_pass_now = halfway ^ quiet_periods_pass; // step 13
@@ -841,11 +835,11 @@ module optical (
     wire travel_ends = period_taught | period_breaks_off; // step 14
     wire search_ends = gamma_gear_below_gamma_gear_settled | travel_ends; // step 14
     wire theta_applies_now = search_ends | recall_any; // step 14
-    wire signed [24:0] theta_1_deviation_next = theta_applies ? running_1_next : theta_1_deviation; // s25.25, step 19
-    wire signed [23:0] theta_2_deviation_next = theta_applies ? running_2_next : theta_2_deviation; // s24.25, step 19
-    wire signed [24:0] theta_3_deviation_next = theta_applies ? running_3_next : theta_3_deviation; // s25.25, step 19
-    wire signed [23:0] theta_4_deviation_next = theta_applies ? running_4_next : theta_4_deviation; // s24.25, step 19
-    wire signed [23:0] theta_5_deviation_next = theta_applies ? running_5_next : theta_5_deviation; // s24.25, step 19
+    wire signed [24:0] theta_1_deviation_next = theta_applies ? running_1_next : theta_1_deviation; // s25.25, step 18
+    wire signed [23:0] theta_2_deviation_next = theta_applies ? running_2_next : theta_2_deviation; // s24.25, step 18
+    wire signed [24:0] theta_3_deviation_next = theta_applies ? running_3_next : theta_3_deviation; // s25.25, step 18
+    wire signed [23:0] theta_4_deviation_next = theta_applies ? running_4_next : theta_4_deviation; // s24.25, step 18
+    wire signed [23:0] theta_5_deviation_next = theta_applies ? running_5_next : theta_5_deviation; // s24.25, step 18
 
     // Flags
     //   what the machine control needs to know
@@ -857,8 +851,8 @@ module optical (
     reg signed [25:0] unshifted_1;
     always @*
         case (step)
-            5'd13: unshifted_1 = {{4{gradient_2[17]}}, gradient_2, 4'b0}; // step_2_geared
-            5'd14: unshifted_1 = {{4{gradient_4[17]}}, gradient_4, 4'b0}; // step_4_geared
+            5'd12: unshifted_1 = {{4{gradient_2[17]}}, gradient_2, 4'b0}; // step_2_geared
+            5'd13: unshifted_1 = {{4{gradient_4[17]}}, gradient_4, 4'b0}; // step_4_geared
             5'd15: unshifted_1 = {{3{gradient_1[28]}}, gradient_1[28:6]}; // step_1_geared
             5'd16: unshifted_1 = {{3{gradient_3[28]}}, gradient_3[28:6]}; // step_3_geared
             default: unshifted_1 = gradient_5[30:5];
@@ -922,8 +916,7 @@ module optical (
             period_behind <= period_behind_now;
             a_period_away <= a_period_away_now;
             sector_ahead <= sector_ahead_now;
-            unseen_behind <= unseen_behind_now;
-            may_add_behind <= may_add_behind_now;
+            sector_behind <= sector_behind_now;
             gamma_gear_below_one <= gamma_gear_below_one_now;
             search_begun <= search_begun_now;
             not_fading <= not_fading_now;
@@ -956,7 +949,6 @@ module optical (
             travel_clear <= travel_clear_now;
             new_sector <= new_sector_now;
             travel_low_next <= travel_low_next_now;
-            travel_high_next <= travel_high_next_now;
             ahead_used_next <= ahead_used_next_now;
             behind_used_next <= behind_used_next_now;
             y_5 <= y_5_now;
@@ -966,13 +958,12 @@ module optical (
         end
         if (step == 5'd2) begin
             cos_value <= cos_value_now;
-            drift <= drift_now;
+            speed_sum_2 <= speed_sum_2_now;
         end
         if (step == 5'd3) begin
             c <= c_now;
             c_below_weak_signal <= c_below_weak_signal_now;
-            c_below_minus_weak_signal <= c_below_minus_weak_signal_now;
-            speed_sum_2 <= speed_sum_2_now;
+            not_c_below_minus_weak_signal <= not_c_below_minus_weak_signal_now;
         end
         if (step == 5'd4) begin
             cos_hat <= cos_hat_now;
@@ -987,7 +978,7 @@ module optical (
         if (step == 5'd7) begin
             s <= s_now;
             s_below_weak_signal <= s_below_weak_signal_now;
-            s_below_minus_weak_signal <= s_below_minus_weak_signal_now;
+            not_s_below_minus_weak_signal <= not_s_below_minus_weak_signal_now;
         end
         if (step == 5'd8) begin
             signal_lost_next <= signal_lost_next_now;
@@ -1001,15 +992,13 @@ module optical (
             half_turn <= half_turn_now;
             rho_high <= rho_high_now;
             rho_large <= rho_large_now;
-            rho_not_small <= rho_not_small_now;
-            proven_better <= proven_better_now;
+            gamma_settled_and_rho_not_small <= gamma_settled_and_rho_not_small_now;
+            may_recall <= may_recall_now;
             rho_limited <= rho_limited_now;
         end
         if (step == 5'd10) begin
             s_times_cos_hat <= s_times_cos_hat_now;
-            alpha_hat_turned <= alpha_hat_turned_now;
             rho_too_large <= rho_too_large_now;
-            may_recall <= may_recall_now;
         end
         if (step == 5'd11) begin
             e <= e_now;
@@ -1022,6 +1011,7 @@ module optical (
             disturbed_or_held <= disturbed_or_held_now;
             radius_large <= radius_large_now;
             rho_c <= rho_c_now;
+            step_2_geared <= step_2_geared_now;
             disturbed_period <= disturbed_period_now;
             gamma_restart <= gamma_restart_now;
             gear_passed <= gear_passed_now;
@@ -1036,13 +1026,13 @@ module optical (
             last_gear_passed <= last_gear_passed_now;
         end
         if (step == 5'd13) begin
-            level_empty <= level_empty_now;
-            loop_gear_next_bits <= loop_gear_next_bits_now;
+            loop_gear_next_chosen <= loop_gear_next_chosen_now;
             locked_next <= locked_next_now;
             lock_level_next <= lock_level_next_now;
             fresh <= fresh_now;
             rho_s <= rho_s_now;
             step_2 <= step_2_now;
+            step_4_geared <= step_4_geared_now;
             held_periods_next <= held_periods_next_now;
             gear_periods_next <= gear_periods_next_now;
             disturbed_next <= disturbed_next_now;
@@ -1062,11 +1052,11 @@ module optical (
             lock_falls <= lock_falls_now;
         end
         if (step == 5'd14) begin
-            loop_gear_next <= loop_gear_next_now;
-            kick <= kick_now;
-            step_4 <= step_4_now;
+            speed_sum <= speed_sum_now;
             running_2_next <= running_2_next_now;
+            running_4_next <= running_4_next_now;
             remember_recent <= remember_recent_now;
+            recent_2_next <= recent_2_next_now;
             halfway_next <= halfway_next_now;
             apart_next <= apart_next_now;
             theta_applies <= theta_applies_now;
@@ -1074,24 +1064,19 @@ module optical (
         end
         if (step == 5'd15) begin
             speed <= speed_now;
-            backwards <= backwards_now;
-            not_forwards <= not_forwards_now;
+            alpha_hat_next <= alpha_hat_next_now;
+            count_next_scaled <= count_next_scaled_now;
+            direction_next <= direction_next_now;
             step_1 <= step_1_now;
-            running_4_next <= running_4_next_now;
         end
         if (step == 5'd16) begin
-            alpha_hat_next <= alpha_hat_next_now;
             count_next <= count_next_now;
-            direction_next <= direction_next_now;
             step_3 <= step_3_now;
             running_1_next <= running_1_next_now;
         end
         if (step == 5'd17) begin
             step_5 <= step_5_now;
             running_3_next <= running_3_next_now;
-        end
-        if (step == 5'd18) begin
-            running_5_next <= running_5_next_now;
         end
     end
 
@@ -1232,8 +1217,8 @@ module optical (
         gamma_gear_next_sum[4:3],
         gear_periods_next_sum[7:6],
         held_periods_next_sum[9:8],
-        gain_c_rests_difference[0],
-        gain_s_rests_difference[0],
+        gain_c_rests_difference[1:0],
+        gain_s_rests_difference[1:0],
         product_0[35]
     };
 

@@ -115,7 +115,7 @@ fn without(c: &Calibration) -> Result<(), DesignError> {
         let worked_out = Calibration {
             parameters: 0,
             gear_periods: Some(c.gear_periods()),
-            hold_periods: Some(c.hold_periods()),
+            hold_periods: Some(c.hold_periods.unwrap_or(Calibration::HELD_KNOWN)),
             recall: Some(c.recall.unwrap_or(true)),
             ..c.clone()
         };

@@ -1,6 +1,7 @@
 //! A bit-true chip, a sensor in front of it, and how far its parameters are from the truth.
 #![allow(dead_code, reason = "each test uses its own part")]
 
+pub(crate) mod bent;
 pub(crate) mod loss;
 #[path = "../../../designs/shipped.rs"]
 pub(crate) mod shipped;
