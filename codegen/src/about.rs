@@ -57,8 +57,10 @@ pub(crate) fn purpose(spec: &Spec) -> Vec<String> {
 
 /// What the input `calibrate` does.
 pub(crate) fn calibrate(spec: &Spec) -> &'static str {
-    if spec.calibration.is_on() {
+    if spec.calibration.waits() {
         "this sample may teach the parameters; where it falls, what was learned so far is applied"
+    } else if spec.calibration.is_on() {
+        "this sample may move the parameters"
     } else {
         "does nothing: this chip has no calibration"
     }

@@ -1,6 +1,8 @@
 //! A testbench that cannot fail is worthless: single faults in the Verilog, and the vectors catch each.
 
 mod chip;
+#[path = "planted_faults/edit.rs"]
+mod edit;
 #[path = "planted_faults/faults.rs"]
 mod faults;
 #[path = "planted_faults/recall.rs"]
@@ -9,7 +11,8 @@ mod recall;
 use std::sync::LazyLock;
 
 use chip::optical;
-use faults::{Fault, faults, harmonic_faults, on_one_line, skew_faults};
+use edit::{Fault, on_one_line};
+use faults::{faults, harmonic_faults, skew_faults};
 use nonius_hdl::verify::{Options, verify};
 use nonius_model::design::Design;
 use nonius_model::spec::Spec;

@@ -109,7 +109,7 @@ impl Chip<f64> {
 }
 
 /// The accumulator whose value a register remembers, or has so far.
-fn remembered(name: &str) -> Option<&'static str> {
+fn accumulator(name: &str) -> Option<&'static str> {
     let (_, of) = name
         .split_once('_')
         .filter(|(what, _)| ["recent", "proven", "running"].contains(what))?;
@@ -153,7 +153,7 @@ pub fn registers(structure: &Structure) -> (Vec<&'static str>, Vec<&'static str>
         name if name.starts_with("gathered") => c.gathers(),
         _ => true,
     };
-    let kept = |name: &str| match remembered(name) {
+    let kept = |name: &str| match accumulator(name) {
         Some(theta) if name.starts_with("running") => c.waits() && is_used(theta),
         Some(theta) => c.recalls() && is_used(theta),
         None => is_used(name),
@@ -261,15 +261,13 @@ pub fn record(
 #[must_use]
 pub fn register_format(name: &str, structure: &Structure) -> crate::format::Format {
     let f = &structure.formats;
-    let of = remembered(name).unwrap_or(name);
-    if name.starts_with("recent_") || name.starts_with("proven_") {
-        let deviations = State::<Bits>::VALUES.iter();
-        let mut deviations = deviations.filter(|value| value.ends_with("_deviation"));
-        if let Some(i) = deviations.position(|value| *value == of) {
-            return f.remembered[i].format;
-        }
+    let remembered = name
+        .strip_prefix("recent_")
+        .or(name.strip_prefix("proven_"));
+    if let Some(n) = remembered.and_then(|n| n.parse::<usize>().ok()) {
+        return f.remembered[n - 1].format;
     }
-    match of {
+    match accumulator(name).unwrap_or(name) {
         "alpha_hat" | "alpha_hat_previous" => f.alpha.format,
         "count" => f.count.format,
         "rate" => f.rate.format,

@@ -47,9 +47,9 @@ pub(super) fn slowest_completed_hz(spec: &Spec) -> f64 {
 /// Most of them: a counter and one more stay in the container, whose sign is not theirs.
 pub(super) const TRAVEL_SAMPLES_MAX: u32 = (1 << (CONTAINER_INTEGER - 3)) - 1;
 
-/// An accumulator as it is remembered: two bits finer than the pair that it corrects.
-fn remembered(accumulator: Format, signal_fraction: u32) -> Quantiser {
-    let less = accumulator.fraction.saturating_sub(signal_fraction + 2);
+/// An accumulator with no more bits of fraction than these.
+fn coarser(accumulator: Format, fraction: u32) -> Quantiser {
+    let less = accumulator.fraction.saturating_sub(fraction);
     Quantiser::grid(Format::signed(
         accumulator.width - less,
         accumulator.fraction - less,
@@ -191,9 +191,11 @@ pub(super) fn structure(
         theta_bend: multiplied.bend,
         theta_cubic: multiplied.cubic,
         deviation: r.deviation.map(accumulator),
+        // Two bits finer than the pair that they correct.
         remembered: r
             .deviation
-            .map(|power| remembered(accumulator(power).format, f)),
+            .map(|power| coarser(accumulator(power).format, f + 2)),
+        gain_watched: coarser(accumulator(r.deviation[0]).format, 11),
         alpha_gradient: {
             let g = follow.sensitivity_fraction;
             Quantiser::saturating(Format::signed(g + 2, g))

@@ -129,6 +129,8 @@ pub struct Formats {
     pub deviation: [Quantiser; 9],
     /// What is remembered of them.
     pub remembered: [Quantiser; 9],
+    /// A gain as it is watched for a fade.
+    pub gain_watched: Quantiser,
     /// ∇α̂ of recursion (11) and its increment, radians.
     pub alpha_gradient: Quantiser,
     /// Gathered gradient of the sum of squares, or of the start.

@@ -7,17 +7,16 @@
 //!
 //! A slower fade outlasts the hold, and the search begins again and follows it; one slower still is followed without. So nothing is
 //! proven while a gain moves: what is stays as it was until the search has come to its last gear again and the gains rest. A sensor whose
-//! gains move on is not what it was, either: then only a radius that is too large, as where a fade is over, or a loss of lock after a
-//! period and more with one that is too small, as where it ends, brings back what is proven, and what falls out for some samples does
-//! not. Where the radius is far too large before that, the signal is back: what is proven comes
-//! back, with the last gear. So it does where the signal is lost in the first gear, with which nothing else is known; before anything is
-//! proven that is what the last gear ended with, in the first one the last quiet period, and the search goes on from there.
+//! gains move on is not what it was, either: then only a radius that is too large, as where a fade is over, or a loss of lock after four
+//! periods and more with one that is too small, as where it ends, brings back what is proven, and what falls out for some samples does
+//! not. Where the radius is far too large before that, the signal is back: what is proven comes back, with the last gear. So it does
+//! where the signal is lost in the first gear, with which nothing else is known; before anything is proven that is what the last gear
+//! ended with, in the first one the last quiet period, and the search goes on from there.
 
 use super::calibration::Update;
 use super::detector::within;
 use super::gears::{Gears, last_gear, nominal};
 use super::{Coefficients, State, Structure};
-use crate::format::{Format, Quantiser};
 use crate::signal::{Formula, Logic, Signal};
 use crate::spec::CalibrationMethod;
 
@@ -26,9 +25,6 @@ static RECALL: Formula = Formula {
     equation: "held where it is known, or back: theta = proven; after twice gear_periods quiet periods in the last gear: recent' = theta, proven' = recent if no gain moves",
     source: "",
 };
-
-/// Bits of fraction of a gain as it is looked at: a few are enough.
-const GAIN_FRACTION: u32 = 11;
 
 /// What is remembered of θ1 … θ9.
 pub struct Memory<S: Signal> {
@@ -139,11 +135,9 @@ pub fn recall<S: Signal>(
 /// No gain has moved much since it was last remembered, nor is one near its bound: a signal that fades slowly takes them along, up to
 /// there.
 fn steady<S: Signal>(state: &State<S>, k: &Coefficients<S>, structure: &Structure) -> S::Bool {
-    let whole = structure.formats.deviation[0].format;
-    let less = whole.fraction.saturating_sub(GAIN_FRACTION);
-    let gain = Quantiser::grid(Format::signed(whole.width - less, whole.fraction - less));
+    let gain = &structure.formats.gain_watched;
     let of = |now: S, before: S, name: [&'static str; 2]| {
-        let [now, before] = [now, before].map(|theta| theta.quantise(&gain));
+        let [now, before] = [now, before].map(|theta| theta.quantise(gain));
         let inside = now.less_than(k.gain_near_bound).named(name[0]);
         within(now - before, k.steady_gain)
             .named(name[1])

@@ -39,9 +39,9 @@ bundle! {
         loop_gear,
         /// γ gear: 0 largest.
         gamma_gear,
-        /// Whole periods travelled in this γ gear.
+        /// Quiet periods of travel in this γ gear, or since a recall.
         gear_periods,
-        /// Periods of travel for which the parameters are held.
+        /// Periods of travel held; where better parameters are known, less those in which they were free.
         held_periods,
         /// Position, modulo 4 periods, where the map of sectors was last cleared.
         travel_origin,
@@ -180,7 +180,7 @@ bundle! {
         held,
         /// Whole periods of travel follow one another fast enough for the completion.
         moving,
-        /// The parameters are held until the periods of a gear have passed quietly, too (recall).
+        /// What was recalled is held until some periods have passed quietly (recall).
         returning,
         /// The search began again where the residual had stayed: the signal may have faded (recall).
         fading,
