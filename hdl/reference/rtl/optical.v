@@ -145,8 +145,8 @@ module optical (
     reg signed [6:0] lock_level; // Confidence of the lock detector.
     reg signed [2:0] loop_gear; // Loop gear: 0 widest, the last is the designed bandwidth.
     reg signed [3:0] gamma_gear; // γ gear: 0 largest.
-    reg signed [6:0] gear_periods; // Whole periods travelled in this γ gear.
-    reg signed [8:0] held_periods; // Periods of travel for which the parameters are held.
+    reg signed [6:0] gear_periods; // Quiet periods of travel in this γ gear, or since a recall.
+    reg signed [8:0] held_periods; // Periods of travel held, where better parameters are known less the free ones.
     reg signed [7:0] travel_origin; // Position, modulo 4 periods, where the map of sectors was last cleared.
     reg signed [7:0] travel_low; // Lowest sector seen since, relative to the origin.
     reg signed [7:0] travel_high; // Highest sector seen since, relative to the origin.
@@ -170,7 +170,7 @@ module optical (
     reg disturbed; // The residual was large in this period of travel.
     reg risen; // The radius was too large in this period of travel.
     reg held; // The residual was large in the period before: the parameters are held.
-    reg returning; // The parameters are held until the periods of a gear have passed quietly, too (recall).
+    reg returning; // What was recalled is held until some periods have passed quietly (recall).
     reg fading; // The search began again where the residual had stayed: the signal may have faded (recall).
     reg known; // Parameters have been remembered in the last gear (recall).
     reg halfway; // Half of the way to where they are remembered next (recall).

@@ -41,7 +41,7 @@ bundle! {
         gamma_gear,
         /// Quiet periods of travel in this γ gear, or since a recall.
         gear_periods,
-        /// Periods of travel held; where better parameters are known, less those in which they were free.
+        /// Periods of travel held, where better parameters are known less the free ones.
         held_periods,
         /// Position, modulo 4 periods, where the map of sectors was last cleared.
         travel_origin,
