@@ -28,7 +28,10 @@ struct Arguments {
     /// Only seeds that stand for this kind of case: nothing, one, wild, two or stranger.
     #[arg(long, value_parser = kind, conflicts_with = "docs")]
     kind: Option<Kind>,
-    /// Folder for blind.md.
+    /// Only recordings of this drive: constant, sweeping, reversing or stopandgo; the others are drawn and left out.
+    #[arg(long, value_parser = ["constant", "sweeping", "reversing", "stopandgo"])]
+    drive: Option<String>,
+    /// Folder for blind.md, or blind_DRIVE.md of one drive.
     #[arg(long)]
     docs: Option<PathBuf>,
     /// Folder for the sealed truths; a temporary one if none is given.
@@ -71,11 +74,12 @@ fn run(arguments: &Arguments) -> Result<()> {
     )?);
     let results: Vec<Result<Score>> = seeds
         .into_par_iter()
-        .map(|seed| {
-            let score = case(seed, arguments, folder);
+        .filter_map(|seed| {
+            let score = case(seed, arguments, folder).transpose();
             bar.suspend(|| match &score {
-                Ok(score) => println!("{seed} opened: {}", line(score)),
-                Err(error) => println!("{seed} not scored: {error:#}"),
+                Some(Ok(score)) => println!("{seed} opened: {}", line(score)),
+                Some(Err(error)) => println!("{seed} not scored: {error:#}"),
+                None => {}
             });
             bar.inc(1);
             score
@@ -102,9 +106,13 @@ fn run(arguments: &Arguments) -> Result<()> {
     Ok(())
 }
 
-/// One case: sealed, judged, opened, scored.
-fn case(seed: u64, arguments: &Arguments, folder: &Path) -> Result<Score> {
+/// One case: sealed, judged, opened, scored; `None` if another drive is wanted.
+fn case(seed: u64, arguments: &Arguments, folder: &Path) -> Result<Option<Score>> {
     let case = Case::draw(seed, arguments.samples)?;
+    let wanted = arguments.drive.as_ref();
+    if wanted.is_some_and(|drive| *drive != case.truth.drive) {
+        return Ok(None);
+    }
     let sealed = seal(&case.truth, folder)?;
     println!("{seed} sealed: {}", sealed.hash);
     let csv = case.csv();
@@ -112,7 +120,7 @@ fn case(seed: u64, arguments: &Arguments, folder: &Path) -> Result<Score> {
         std::fs::write(folder.join(format!("{seed}.csv")), &csv)?;
     }
     let verdict = verdict(&csv).map_err(|why| anyhow::anyhow!("seed {seed}: refused: {why}"))?;
-    Ok(Score::of(sealed.open()?, &case, &verdict))
+    Ok(Some(Score::of(sealed.open()?, &case, &verdict)))
 }
 
 fn line(score: &Score) -> String {
@@ -161,15 +169,21 @@ fn line(score: &Score) -> String {
 /// Writes the page beside its place, then moves it there.
 fn write(docs: &Path, arguments: &Arguments, text: &str) -> Result<()> {
     let last = arguments.seed + arguments.cases.saturating_sub(1);
+    let (mut option, mut only, mut name) = (String::new(), String::new(), "blind.md".to_owned());
+    if let Some(drive) = &arguments.drive {
+        option = format!(" --drive {drive}");
+        only = format!(", those of {drive} drives");
+        name = format!("blind_{drive}.md");
+    }
     let page = format!(
         "# Blind campaign\n\n<!-- Written by the command below; do not edit. -->\n\n    cargo run --release -p nonius-blind \
-         --example campaign -- --cases {} --seed {} --samples {} --docs docs\n\nSeeds {} to {last}, {} samples each. What \
-         is hidden, and how its SNR is defined, stands in `blind/src/`.\n\n{text}",
+         --example campaign -- --cases {} --seed {} --samples {}{option} --docs docs\n\nSeeds {} to {last}{only}, {} samples each. \
+         What is hidden, and how its SNR is defined, stands in `blind/src/`.\n\n{text}",
         arguments.cases, arguments.seed, arguments.samples, arguments.seed, arguments.samples
     );
     std::fs::create_dir_all(docs)?;
     let mut file = tempfile::NamedTempFile::new_in(docs)?;
     std::io::Write::write_all(&mut file, page.as_bytes())?;
-    file.persist(docs.join("blind.md"))?;
+    file.persist(docs.join(name))?;
     Ok(())
 }

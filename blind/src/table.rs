@@ -9,16 +9,21 @@ use crate::truth::Kind;
 /// The page: table, efficiency, confusion, every wrong name with its seed.
 #[must_use]
 pub fn page(scores: &[Score]) -> String {
+    let mut text = String::new();
     let all = Summary::new(scores.iter());
     let reversing = Summary::new(scores.iter().filter(|s| s.truth.drive == "reversing"));
-    let mut text = String::from("| | target | all drives | reversing |\n|---|---|---|---|\n");
+    let mut columns = vec![("reversing", &reversing)];
+    if reversing.scores.len() < all.scores.len() {
+        columns.insert(0, ("all drives", &all));
+    }
+    let mut row = |what: &str, target: &str, cell: &dyn Fn(&(&str, &Summary)) -> String| {
+        let cells: Vec<String> = columns.iter().map(cell).collect();
+        let _ = writeln!(text, "| {what} | {target} | {} |", cells.join(" | "));
+    };
+    row("", "target", &|(name, _)| (*name).into());
+    row("---", "---", &|_| "---".into());
     for (what, target, ask) in QUESTIONS {
-        let _ = writeln!(
-            text,
-            "| {what} | {target} | {} | {} |",
-            ask(&all),
-            ask(&reversing)
-        );
+        row(what, target, &|(_, scores)| ask(scores));
     }
     text +=
         "\n## Found, by detection SNR\n\nRight name first or in a group of two; single causes.\n\n";

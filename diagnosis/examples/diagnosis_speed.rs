@@ -84,7 +84,7 @@ fn main() {
          repaired recording, in what shapes are made of (angle, speed, corrected pair …) and in the data of the model, and a\n\
          spectrum is made of all. Functions are made block by block and only their products are kept. Each finding keeps 12\n\
          bytes a sample at most for its pictures; while an angle is followed anew, what shapes are made of stands there twice.\n\
-         In recordings of 120000 samples and more, what is large is found in one block of several first; its numbers, and all\n\
+         In recordings of 100000 samples and more, what is large is found in one block of several first; its numbers, and all\n\
          that is said to be there or not, come from all samples.\n\n\
          | samples | hidden | found | seconds by the clock | on the processor | megabytes | bytes a sample |\n|---|---|---|---|---|---|---|\n",
     );

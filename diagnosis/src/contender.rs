@@ -5,6 +5,7 @@ use crate::ahead;
 use crate::beside::Beside;
 use crate::cause::{Candidate, Domain, Sign};
 use crate::causes::{self, ACCELERATION_GAIN, Catalogue, HYSTERESIS};
+use crate::channels::Channels;
 use crate::context::Context;
 use crate::exact;
 use crate::held::{holds, stand_beside};
@@ -52,7 +53,7 @@ pub(crate) struct Nameless {
     pub(crate) name: &'static str,
     /// Shapes that hold it.
     pub(crate) shapes: Vec<Shape>,
-    /// Log-likelihood that it explains, its numbers paid for, or that steps do.
+    /// Log-likelihood that it explains where noise of the channels shows, its numbers paid for, or that steps do.
     pub(crate) paid: f64,
 }
 
@@ -163,7 +164,7 @@ pub(crate) fn contender(
         }
         system.extend();
         let shapes = both(&own.candidate.shapes, &held.beyond);
-        let paid = own.paid(price);
+        let paid = paid_where_noise_shows(system, fit, &own.candidate.shapes, own.freedom as f64);
         first = Some(Contender::Unnamed(Nameless {
             unnamed,
             domain: Some(own.candidate.domain),
@@ -287,7 +288,21 @@ fn goes_with_angle(context: &Context, candidate: &Candidate) -> bool {
     halves.chain(beside_rate).any(near)
 }
 
-/// Log-likelihood that steps in time explain of the radius, where that is more than a slow change does: then it is no drift.
+/// Log-likelihood that a cause explains where noise of the channels is looked for, its numbers paid for: what it explains along
+/// the circle as well says nothing against that noise.
+pub(crate) fn paid_where_noise_shows(
+    system: &System,
+    fit: &Fit,
+    cause: &[Shape],
+    numbers: f64,
+) -> f64 {
+    let power = |fit: &Fit| Channels::of(system, &system.residual(fit)).power();
+    let with = system.fit(both(&fit.shapes, cause));
+    let gain = 0.5 * (power(fit) - power(&with)) / system.noise().powi(2);
+    gain - price(system.context.samples() as f64) * numbers
+}
+
+/// Log-likelihood that steps in time explain of the channels, where that is more than a slow change does: then it is no drift.
 fn steps_instead(system: &System, fit: &Fit, drift: &Scored, rest: &[&Scored]) -> Option<f64> {
     let own = drift.candidate.name;
     let changes: &[Change] = if own == GAIN_DRIFT {
@@ -301,8 +316,8 @@ fn steps_instead(system: &System, fit: &Fit, drift: &Scored, rest: &[&Scored]) -
         let mut amounts = system.fit(named.to_vec()).solution.x;
         let range = fit.shapes.len()..fit.shapes.len() + drift.candidate.shapes.len();
         amounts[range].fill(0.0);
-        let [radial, ..] = system.samples.left(&self::amounts(named, &amounts));
-        steps::instead(system.context, &radial, system.noise(), changes)
+        let left = system.left(&self::amounts(named, &amounts));
+        steps::instead(Channels::of(system, &left), system.noise(), changes)
     };
     let alone = among(&named)?;
     // What turns over with the direction looks like steps, and what another drift does may look like some.

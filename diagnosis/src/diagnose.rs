@@ -5,6 +5,7 @@ use nonius_recording::Recording;
 use serde::Serialize;
 
 use crate::calm::{self, Calm};
+use crate::channels::Channels;
 use crate::checks::{self, Checked};
 use crate::contender::is_drift;
 use crate::context::{Context, ContextError};
@@ -274,7 +275,7 @@ fn conclude(
     }
     // What looked like it before anything was known may have got a name.
     let flicker = match &system.flicker {
-        Some(known) if !selection.accepted.is_empty() => known.again(context, &left.radial),
+        Some(known) if !selection.accepted.is_empty() => known.again(Channels::of(system, &left)),
         known => known.clone(),
     };
     // What is left of an unknown shape can look like anything.

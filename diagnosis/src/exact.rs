@@ -25,7 +25,7 @@ const STEPS: usize = 8;
 /// Small changes that one step may go.
 const REACH: f64 = 12.0;
 /// Samples that are enough to find what is large, and to see the colour of the noise.
-const ENOUGH: usize = 60_000;
+const ENOUGH: usize = 50_000;
 /// Share of its standard error by which a number may still move when its fit ends.
 const AT_REST: f64 = 0.2;
 /// Detection SNR of a remainder from which on a recording is looked at anew before anything else can be named for it.

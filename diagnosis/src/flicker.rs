@@ -10,6 +10,7 @@
 use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
 
+use crate::channels::Channels;
 use crate::context::Context;
 use crate::finding::{Chip, Finding, Gain, Parameter};
 use crate::one_over_f;
@@ -50,7 +51,7 @@ pub(crate) struct Flicker {
     /// Where it is as large as the white noise, hertz.
     pub(crate) corner: f64,
     gain: f64,
-    /// Log-likelihood that it explains of the radius sample by sample, its number paid for.
+    /// Log-likelihood that it explains of what is seen sample by sample, its number paid for.
     paid: f64,
     log_p: f64,
     /// Slowest part of the spectrum that was looked at, cycles per recording.
@@ -245,33 +246,35 @@ pub(crate) fn likelihood_of(context: &Context, radial: &[f64]) -> Option<f64> {
     let corner = corner(&lines, &bands(&lines)).0;
     let power: f64 = radial.iter().map(|r| r * r).sum();
     let white = -0.5 * radial.len() as f64 * power.max(f64::MIN_POSITIVE).ln();
-    Some(white + one_over_f::gain(context, radial, corner))
+    let seen = Channels::in_radius(context, radial);
+    Some(white + one_over_f::gain(seen, corner))
 }
 
-/// Whether two levels explain nearly as much of the radius as flicker noise does sample by sample, its number paid for, or more:
+/// Whether two levels explain nearly as much of what is seen as flicker noise does sample by sample, its number paid for, or more:
 /// of noise that is 1/f they explain half, and of levels that are not quite two, as stray light makes, more than such noise or as
 /// much.
-fn jumps(context: &Context, radial: &[f64], paid: f64) -> bool {
+fn jumps(seen: Channels, paid: f64) -> bool {
     const NEARLY: f64 = 0.75;
-    let two = telegraph::gain(context, radial);
+    let two = telegraph::gain(seen);
     two.is_some_and(|two| two > NEARLY * paid)
 }
 
 /// Flicker noise in what everything else leaves of the radius.
 pub(crate) fn find(context: &Context, radial: &[f64]) -> Option<Flicker> {
-    find_from(context, radial, SLOWEST)
+    find_from(Channels::in_radius(context, radial), SLOWEST)
 }
 
 /// Flicker noise where it explains clearly more than a slow change or steps do, whose log-likelihood, their numbers paid for,
 /// is given: of weak noise hardly more than its slowest parts are seen.
-pub(crate) fn instead(context: &Context, radial: &[f64], change: f64) -> Option<Flicker> {
+pub(crate) fn instead(seen: Channels, change: f64) -> Option<Flicker> {
     const CLEARLY: f64 = 1.1;
-    let found = find_from(context, radial, 1).filter(|f| !f.jumps)?;
+    let found = find_from(seen, 1).filter(|f| !f.jumps)?;
     (found.paid > CLEARLY * change).then_some(found)
 }
 
 /// Flicker noise in a spectrum from so many cycles per recording on.
-fn find_from(context: &Context, radial: &[f64], slowest: usize) -> Option<Flicker> {
+fn find_from(seen: Channels, slowest: usize) -> Option<Flicker> {
+    let (context, radial) = (seen.context, seen.radial);
     let n = radial.len();
     if n < 64 {
         return None;
@@ -289,7 +292,7 @@ fn find_from(context: &Context, radial: &[f64], slowest: usize) -> Option<Flicke
         return None;
     }
     // A spectrum holds half of what the samples tell.
-    let in_time = one_over_f::gain(context, radial, best.0);
+    let in_time = one_over_f::gain(seen, best.0);
     let gain = gain.max(in_time);
     let log_p = after_trials(log_tail(2.0 * gain, 1), TRIALS);
     if log_p > SHOWN.ln() {
@@ -317,14 +320,19 @@ fn find_from(context: &Context, radial: &[f64], slowest: usize) -> Option<Flicke
         log_p,
         paid,
         slowest,
-        jumps: jumps(context, radial, paid),
+        jumps: jumps(seen, paid),
     })
 }
 
 impl Flicker {
-    /// The same noise in what is left of the radius when more is known.
-    pub(crate) fn again(&self, context: &Context, radial: &[f64]) -> Option<Self> {
-        find_from(context, radial, self.slowest)
+    /// The same noise in what is left when more is known.
+    pub(crate) fn again(&self, left: Channels) -> Option<Self> {
+        let seen = if self.is_instead_of_a_change() {
+            left
+        } else {
+            Channels::in_radius(left.context, left.radial)
+        };
+        find_from(seen, self.slowest)
     }
 
     /// It was weighed against a slow change, and found to explain more.

@@ -11,6 +11,7 @@ mod block;
 mod calm;
 mod cause;
 mod causes;
+mod channels;
 mod checks;
 mod contender;
 mod context;

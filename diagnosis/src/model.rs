@@ -286,6 +286,13 @@ impl<'a> System<'a> {
         map
     }
 
+    /// Rms of the noise along the circle, where a reference shows the motion and that noise is white.
+    pub(crate) fn against_reference(&self) -> Option<f64> {
+        let own = &self.samples.whiteners[Row::Tangential as usize];
+        let shows = self.context.against_reference.is_some() && own.is_white();
+        shows.then_some(own.sigma)
+    }
+
     /// Rms of the unpredictable part of the radial residual.
     pub(crate) fn noise(&self) -> f64 {
         self.samples.whiteners[0].sigma

@@ -2,10 +2,10 @@
 //! and by every second line, which is worth half of the recording.
 //!
 //! Noise with a 1/f spectrum is a sum of first-order processes of equal power whose time constants are evenly spaced in
-//! their logarithm. Both channels have such noise, the radius shows r = c cos α + s sin α of it beside white noise: a Kalman
-//! filter tells how likely each sample is after the ones before it.
+//! their logarithm. Both channels have such noise, the radius shows r = c cos α + s sin α of it beside white noise, and what is
+//! against a reference s cos α − c sin α: a Kalman filter tells how likely each sample is after the ones before it.
 
-use crate::context::Context;
+use crate::channels::{Channels, Row};
 use crate::telegraph::ENOUGH;
 
 /// Ratio of neighbouring time constants: the sum follows 1/f to a few per cent.
@@ -17,13 +17,13 @@ const LONGEST: f64 = 0.5;
 /// Corner frequencies that are tried, over the one of the spectrum.
 const CORNERS: [f64; 5] = [0.35, 0.6, 1.0, 1.7, 2.9];
 
-/// Log-likelihood that flicker noise explains of a radial residual beyond white noise, near a corner frequency in hertz.
-pub(crate) fn gain(context: &Context, radial: &[f64], corner: f64) -> f64 {
-    let n = radial.len().min(ENOUGH);
-    let part = &radial[..n];
-    let of_one = |by: f64| Processes::new(context, n, by * corner).gain(context, part);
+/// Log-likelihood that flicker noise explains of what is seen beyond white noise, near a corner frequency in hertz.
+pub(crate) fn gain(seen: Channels, corner: f64) -> f64 {
+    let n = seen.samples().min(ENOUGH);
+    let part = seen.first(n);
+    let of_one = |by: f64| Processes::new(&part, by * corner).gain(&part);
     let best = CORNERS.into_iter().map(of_one).fold(0.0, f64::max);
-    best / n as f64 * radial.len() as f64
+    best / n as f64 * seen.samples() as f64
 }
 
 /// First-order processes of both channels, in units of the white noise.
@@ -39,9 +39,10 @@ struct Processes {
 }
 
 impl Processes {
-    fn new(context: &Context, samples: usize, corner: f64) -> Self {
-        let shortest = (SHORTEST / corner * context.rate).max(1.0);
-        let longest = LONGEST * samples as f64;
+    fn new(seen: &Channels, corner: f64) -> Self {
+        let rate = seen.context.rate;
+        let shortest = (SHORTEST / corner * rate).max(1.0);
+        let longest = LONGEST * seen.samples() as f64;
         let mut times = vec![longest];
         while let Some(next) = times.last().map(|t| t / RATIO).filter(|t| *t > shortest) {
             times.push(next);
@@ -49,7 +50,7 @@ impl Processes {
         let one: Vec<f64> = times.iter().map(|t| (-1.0 / t).exp()).collect();
         let stay = [one.as_slice(), one.as_slice()].concat();
         // Σ of 2 v τ / (1 + ω²τ²) over evenly spaced ln τ is v / (2 f ln RATIO).
-        let power = 2.0 * RATIO.ln() * corner / context.rate;
+        let power = 2.0 * RATIO.ln() * corner / rate;
         let m = stay.len();
         let mut covariance = vec![0.0; m * m];
         (0..m).for_each(|i| covariance[i * m + i] = power);
@@ -61,40 +62,43 @@ impl Processes {
         }
     }
 
-    fn gain(mut self, context: &Context, radial: &[f64]) -> f64 {
-        let (m, mut row) = (self.stay.len(), vec![]);
+    fn gain(mut self, seen: &Channels) -> f64 {
+        let mut with = vec![];
         let (mut spread, mut power, mut white, mut counts) = (0.0, 0.0, 0.0, 0.0);
-        for (k, r) in radial.iter().enumerate() {
+        for k in 0..seen.samples() {
             self.step();
-            if context.weight[k] == 0.0 {
+            if seen.context.weight[k] == 0.0 {
                 continue;
             }
-            let seen = |i: usize| {
-                if i < m / 2 {
-                    context.cos[k]
-                } else {
-                    context.sin[k]
-                }
-            };
-            row.clear();
-            row.extend(self.covariance.chunks(m).map(|line| {
-                let (c, s) = line.split_at(m / 2);
-                context.cos[k] * c.iter().sum::<f64>() + context.sin[k] * s.iter().sum::<f64>()
-            }));
-            let expected: f64 = (0..m).map(|i| seen(i) * self.state[i]).sum();
-            let variance = 1.0 + (0..m).map(|i| seen(i) * row[i]).sum::<f64>();
-            let off = r - expected;
-            for (i, line) in self.covariance.chunks_mut(m).enumerate() {
-                let by = row[i] / variance;
-                self.state[i] += by * off;
-                line.iter_mut().zip(&row).for_each(|(p, q)| *p -= by * q);
+            for row in seen.rows(k) {
+                let (variance, off) = self.take(&row, &mut with);
+                spread += variance.ln();
+                power += off * off / variance;
+                white += row.left * row.left;
+                counts += 1.0;
             }
-            spread += variance.ln();
-            power += off * off / variance;
-            white += r * r;
-            counts += 1.0;
         }
         0.5 * (counts * (white / power).ln() - spread)
+    }
+
+    /// Takes what is seen: its variance, and by how much it is not what was expected. `with`: room for covariances.
+    fn take(&mut self, row: &Row, with: &mut Vec<f64>) -> (f64, f64) {
+        let m = self.stay.len();
+        let of = |i: usize| row.of[usize::from(i >= m / 2)];
+        with.clear();
+        with.extend(self.covariance.chunks(m).map(|line| {
+            let (c, s) = line.split_at(m / 2);
+            row.of[0] * c.iter().sum::<f64>() + row.of[1] * s.iter().sum::<f64>()
+        }));
+        let expected: f64 = (0..m).map(|i| of(i) * self.state[i]).sum();
+        let variance = 1.0 + (0..m).map(|i| of(i) * with[i]).sum::<f64>();
+        let off = row.left - expected;
+        for (i, line) in self.covariance.chunks_mut(m).enumerate() {
+            let by = with[i] / variance;
+            self.state[i] += by * off;
+            line.iter_mut().zip(&*with).for_each(|(p, q)| *p -= by * q);
+        }
+        (variance, off)
     }
 
     /// A sample later.

@@ -3,7 +3,8 @@
 use crate::beside::Beside;
 use crate::cause::{Candidate, Domain};
 use crate::causes::{self, AC_COUPLING, Catalogue, HYSTERESIS};
-use crate::contender::{Contender, contender, lives};
+use crate::channels::Channels;
+use crate::contender::{Contender, contender, lives, paid_where_noise_shows};
 use crate::context::Context;
 use crate::doubt::doubt;
 use crate::exact::{self, Start};
@@ -146,8 +147,17 @@ fn slow_noise(system: &mut System, residual: &Residual, change: f64) -> bool {
     if system.only_white || system.flicker.is_some() {
         return false;
     }
-    system.flicker = flicker::instead(system.context, &residual.radial, change);
+    system.flicker = flicker::instead(Channels::of(system, residual), change);
     system.flicker.is_some()
+}
+
+/// Most that a slow change explains where noise of the channels is looked for.
+fn best_change(system: &System, fit: &Fit, scored: &[Scored]) -> f64 {
+    let slow = scored.iter().filter(|s| s.candidate.domain == Domain::Time);
+    let best = slow.max_by(|a, b| a.gain.total_cmp(&b.gain));
+    best.map_or(0.0, |s| {
+        paid_where_noise_shows(system, fit, &s.candidate.shapes, s.freedom as f64).max(0.0)
+    })
 }
 
 fn search(
@@ -195,6 +205,14 @@ fn search(
         scored.sort_by(|a, b| a.log_p.total_cmp(&b.log_p));
         scored = with_weighed(system, fixed, &found.fit, &residual, open, scored);
         if scored.is_empty() || scored[0].log_p > SHOWN.ln() {
+            // Weak noise that is slow explains more than any slow change, where no such change is to be seen.
+            let known = !found.unnamed.is_empty() || closed.contains(&Domain::Time);
+            let change = || best_change(system, &found.fit, &scored);
+            if system.every() == 1 && !known && slow_noise(system, &residual, change()) {
+                closed.push(Domain::Time);
+                refused.extend(SLOW);
+                continue;
+            }
             break;
         }
         // What is left of an unknown shape can look like anything.
@@ -233,7 +251,10 @@ fn search(
                     let gain = fit.solution.gain() - found.fit.solution.gain();
                     let numbers = cause.candidate.shapes.len() as f64;
                     let paid = gain - price(context.samples() as f64) * numbers;
-                    if paid < FAINT && slow_noise(system, &residual, paid) {
+                    let own = found.fit.shapes.len()..;
+                    let seen =
+                        paid_where_noise_shows(system, &found.fit, &fit.shapes[own], numbers);
+                    if paid < FAINT && slow_noise(system, &residual, seen) {
                         closed.push(Domain::Time);
                         refused.extend(SLOW);
                         continue;

@@ -6,7 +6,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::context::Context;
+use crate::channels::{Channels, Row};
 use crate::generic::hat;
 use crate::pair::PairSums;
 use crate::polygon::{PIECES, Polygon};
@@ -46,39 +46,33 @@ impl Change {
     }
 }
 
-/// What a radial residual holds of both channels, in units of the noise.
+/// What is seen of both channels, in units of the noise.
 struct Changing<'a> {
-    context: &'a Context,
-    radial: &'a [f64],
+    seen: Channels<'a>,
     /// Rms.
     noise: f64,
     change: Change,
 }
 
-/// Log-likelihood that steps explain of a radial residual, with noise of that rms, where lines do not explain as much of
-/// whichever of these changes.
-pub(crate) fn instead(
-    context: &Context,
-    radial: &[f64],
-    noise: f64,
-    changes: &[Change],
-) -> Option<f64> {
-    let count = STRETCHES.min(radial.len() / 8);
+/// Log-likelihood that steps explain of what is seen, with noise of that rms, where lines do not explain as much of whichever of
+/// these changes.
+pub(crate) fn instead(seen: Channels, noise: f64, changes: &[Change]) -> Option<f64> {
+    let samples = seen.samples();
+    let count = STRETCHES.min(samples / 8);
     if count < 2 || noise <= 0.0 {
         return None;
     }
     // Of a number.
-    let price = price(radial.len() as f64);
+    let price = price(samples as f64);
     let (mut lines, mut steps) = (f64::MIN, f64::MIN);
     for change in changes {
         let changing = Changing {
-            context,
-            radial,
+            seen,
             noise,
             change: *change,
         };
         let stretches: Vec<PairSums> = (0..count)
-            .map(|i| changing.sums(i * radial.len() / count..(i + 1) * radial.len() / count))
+            .map(|i| changing.sums(i * samples / count..(i + 1) * samples / count))
             .collect();
         let of_lines = KNOTS.into_iter().map(|knots| changing.lines(knots, price));
         lines = of_lines.fold(lines, f64::max);
@@ -96,22 +90,27 @@ pub(crate) fn instead(
 }
 
 impl Changing<'_> {
-    /// What amounts of one make of a sample, and the sample.
-    fn sample(&self, k: usize) -> [f64; 3] {
-        let (cos, sin) = (self.context.cos[k], self.context.sin[k]);
-        let [c, s] = match self.change {
-            Change::Gains => [cos * cos, sin * sin],
-            Change::Radius => [1.0, 0.0],
-            Change::Offsets => [cos, sin],
+    /// What amounts of one make of what a sample shows, and that.
+    fn rows(&self, k: usize) -> impl Iterator<Item = [f64; 3]> {
+        let context = self.seen.context;
+        let (cos, sin) = (context.cos[k], context.sin[k]);
+        let amounts = move |Row { of: [c, s], left }: Row| {
+            let [c, s] = match self.change {
+                Change::Gains => [c * cos, s * sin],
+                Change::Radius => [c * cos + s * sin, 0.0],
+                Change::Offsets => [c, s],
+            };
+            [c, s, left / self.noise].map(|v| v * context.weight[k])
         };
-        [c, s, self.radial[k] / self.noise].map(|v| v * self.context.weight[k])
+        self.seen.rows(k).map(amounts)
     }
 
     fn sums(&self, of: std::ops::Range<usize>) -> PairSums {
         let mut sums = PairSums::default();
         for k in of {
-            let [c, s, r] = self.sample(k);
-            sums.add(c, s, r, 1.0);
+            for [c, s, r] in self.rows(k) {
+                sums.add(c, s, r, 1.0);
+            }
         }
         sums
     }
@@ -120,18 +119,19 @@ impl Changing<'_> {
     fn products(&self, knots: usize) -> (DMatrix<f64>, DVector<f64>) {
         let m = CHANNELS * knots;
         let (mut gram, mut right) = (DMatrix::zeros(m, m), DVector::zeros(m));
-        let last = (self.radial.len() - 1) as f64;
-        for k in 0..self.radial.len() {
-            let [c, s, r] = self.sample(k);
+        let last = (self.seen.samples() - 1) as f64;
+        for k in 0..self.seen.samples() {
             let when = k as f64 / last;
             let first = ((when * (knots - 1) as f64) as usize).min(knots - 2);
             // Two knots are near, each with both channels.
             let near = [first, first + 1].map(|i| hat(knots, i, when));
-            let all = [near[0] * c, near[0] * s, near[1] * c, near[1] * s];
-            for (i, a) in all.iter().enumerate() {
-                right[CHANNELS * first + i] += a * r;
-                for (j, b) in all.iter().enumerate() {
-                    gram[(CHANNELS * first + i, CHANNELS * first + j)] += a * b;
+            for [c, s, r] in self.rows(k) {
+                let all = [near[0] * c, near[0] * s, near[1] * c, near[1] * s];
+                for (i, a) in all.iter().enumerate() {
+                    right[CHANNELS * first + i] += a * r;
+                    for (j, b) in all.iter().enumerate() {
+                        gram[(CHANNELS * first + i, CHANNELS * first + j)] += a * b;
+                    }
                 }
             }
         }

@@ -1,10 +1,10 @@
 //! Whether slow noise of the channels jumps between two levels, as popcorn noise and stray light do. Its spectrum can be
 //! that of flicker noise; its likelihood is another: the levels are a hidden Markov chain (Baum and Welch) that shows in
-//! the radius, r = cₛ cos α + dₛ sin α in state s, beside white noise.
+//! the radius, r = cₛ cos α + dₛ sin α in state s, and against a reference, beside white noise.
 //!
 //! It is no cause of the catalogue. It is fitted so that flicker noise is not named for it.
 
-use crate::context::Context;
+use crate::channels::Channels;
 use crate::pair::PairSums;
 use crate::statistics::price;
 
@@ -27,23 +27,24 @@ struct Chain {
     variance: f64,
 }
 
-/// Log-likelihood that the best two levels explain of a radial residual beyond white noise, their numbers paid for; none where
-/// they explain nothing.
-pub(crate) fn gain(context: &Context, radial: &[f64]) -> Option<f64> {
-    let n = radial.len().min(ENOUGH);
-    let part = &radial[..n];
-    let white = part.iter().map(|r| r * r).sum::<f64>() / n.max(1) as f64;
+/// Log-likelihood that the best two levels explain of what is seen beyond white noise, their numbers paid for; none where they
+/// explain nothing.
+pub(crate) fn gain(seen: Channels) -> Option<f64> {
+    let n = seen.samples().min(ENOUGH);
+    let part = seen.first(n);
+    let rows = n as f64 * seen.count();
+    let white = part.power() / rows.max(1.0);
     if white.is_nan() || white <= 0.0 {
         return None;
     }
-    let of_white = -0.5 * n as f64 * (white.ln() + 1.0);
+    let of_white = -0.5 * rows * (white.ln() + 1.0);
     let price = FREEDOM * price(n as f64);
     let likelihood = STRETCHES
         .into_iter()
-        .filter_map(|length| Chain::start(context, part, length, white))
-        .filter_map(|chain| chain.fitted(context, part))
+        .filter_map(|length| Chain::start(&part, length, white))
+        .filter_map(|chain| chain.fitted(&part))
         .max_by(f64::total_cmp)?;
-    let gain = (likelihood - of_white - price) / n as f64 * radial.len() as f64;
+    let gain = (likelihood - of_white - price) / n as f64 * seen.samples() as f64;
     (gain > 0.0).then_some(gain)
 }
 
@@ -57,13 +58,14 @@ struct Step {
 
 impl Chain {
     /// Levels from stretches of the recording, split in two along the line on which they differ most.
-    fn start(context: &Context, radial: &[f64], length: usize, white: f64) -> Option<Self> {
-        let levels: Vec<Level> = (0..radial.len() / length)
+    fn start(seen: &Channels, length: usize, white: f64) -> Option<Self> {
+        let levels: Vec<Level> = (0..seen.samples() / length)
             .map(|i| {
                 let mut sums = PairSums::default();
-                let own = i * length..(i + 1) * length;
-                for (k, r) in own.clone().zip(&radial[own]) {
-                    sums.add(context.cos[k], context.sin[k], *r, context.weight[k]);
+                for k in i * length..(i + 1) * length {
+                    for row in seen.rows(k) {
+                        sums.add(row.of[0], row.of[1], row.left, seen.context.weight[k]);
+                    }
                 }
                 // Where only one offset is seen, the other does not count.
                 sums.add_nothing(0.1 * length as f64);
@@ -99,11 +101,11 @@ impl Chain {
     }
 
     /// Log-likelihood of the best chain near.
-    fn fitted(self, context: &Context, radial: &[f64]) -> Option<f64> {
+    fn fitted(self, seen: &Channels) -> Option<f64> {
         let mut best: Option<f64> = None;
         let mut now = self;
         for _ in 0..STEPS {
-            let step = now.step(context, radial);
+            let step = now.step(seen);
             if !step.likelihood.is_finite() {
                 break;
             }
@@ -114,24 +116,26 @@ impl Chain {
     }
 
     /// What each state makes of a sample, up to a common factor.
-    fn density(&self, cos: f64, sin: f64, r: f64) -> [f64; 2] {
+    fn density(&self, seen: &Channels, k: usize) -> [f64; 2] {
         self.level.map(|[c, d]| {
-            let off = r - c * cos - d * sin;
-            (-0.5 * off * off / self.variance)
-                .exp()
-                .max(f64::MIN_POSITIVE)
+            let off = seen
+                .rows(k)
+                .map(|row| row.left - c * row.of[0] - d * row.of[1]);
+            let off: f64 = off.map(|off| off * off).sum();
+            (-0.5 * off / self.variance).exp().max(f64::MIN_POSITIVE)
         })
     }
 
     /// A step of expectation and maximisation.
-    fn step(&self, context: &Context, radial: &[f64]) -> Step {
-        let n = radial.len();
+    fn step(&self, seen: &Channels) -> Step {
+        let n = seen.samples();
+        let rows = n as f64 * seen.count();
         let stay = self.leave.map(|l| 1.0 - l);
         let mut now = [0.5, 0.5];
         let mut forward = Vec::with_capacity(n);
-        let mut likelihood = -0.5 * n as f64 * self.variance.ln();
-        for (k, r) in radial.iter().enumerate() {
-            let density = self.density(context.cos[k], context.sin[k], *r);
+        let mut likelihood = -0.5 * rows * self.variance.ln();
+        for k in 0..n {
+            let density = self.density(seen, k);
             let come = [
                 now[0] * stay[0] + now[1] * self.leave[1],
                 now[1] * stay[1] + now[0] * self.leave[0],
@@ -145,16 +149,17 @@ impl Chain {
         let (mut sums, mut left, mut stood) = ([PairSums::default(); 2], [0.0; 2], [0.0; 2]);
         let mut back = [1.0, 1.0];
         for k in (0..n).rev() {
-            let (cos, sin, r) = (context.cos[k], context.sin[k], radial[k]);
             let both = [forward[k][0] * back[0], forward[k][1] * back[1]];
             let total = both[0] + both[1];
             for (sums, share) in sums.iter_mut().zip(both) {
-                sums.add(cos, sin, r, share / total);
+                for row in seen.rows(k) {
+                    sums.add(row.of[0], row.of[1], row.left, share / total);
+                }
             }
             let Some(before) = k.checked_sub(1).map(|b| forward[b]) else {
                 break;
             };
-            let density = self.density(cos, sin, r);
+            let density = self.density(seen, k);
             let on = [density[0] * back[0], density[1] * back[1]];
             let moved = [
                 before[0] * self.leave[0] * on[1],
@@ -175,12 +180,11 @@ impl Chain {
         }
         let level = sums.map(|s| s.amounts());
         let explained: f64 = sums.iter().map(PairSums::explained).sum();
-        let power: f64 = radial.iter().map(|r| r * r).sum();
         let rate = |i: usize| (left[i] / (left[i] + stood[i])).clamp(1e-6, 0.5);
         let next = Self {
             level,
             leave: [rate(0), rate(1)],
-            variance: ((power - explained) / n as f64).max(f64::MIN_POSITIVE),
+            variance: ((seen.power() - explained) / rows).max(f64::MIN_POSITIVE),
         };
         Step { likelihood, next }
     }

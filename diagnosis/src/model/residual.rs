@@ -55,7 +55,12 @@ impl System<'_> {
 
     /// What a fit leaves.
     pub(crate) fn residual(&self, fit: &Fit) -> Residual {
-        let [radial, tangential, motion] = self.samples.left(&fit.amounts());
+        self.left(&fit.amounts())
+    }
+
+    /// What so much of each atom leaves.
+    pub(crate) fn left(&self, amounts: &[(usize, f64)]) -> Residual {
+        let [radial, tangential, motion] = self.samples.left(amounts);
         Residual {
             radial,
             tangential,
