@@ -204,6 +204,51 @@ pub(crate) fn jumps(recording: &Recording, checked: &Checked) -> Vec<(usize, usi
     found
 }
 
+/// Those of some samples behind which the angle is late by what it moves in a sample: they were put in. One of them is looked
+/// for, not the farthest of all, so a smaller jump tells; curves are as long as leaves the least noise there.
+pub(crate) fn late(recording: &Recording, checked: &Checked, of: &[usize]) -> Vec<usize> {
+    /// Longer curves, for slow axes.
+    const LONGER: [(usize, i32); 2] = [(600, 5), (1200, 5)];
+    /// Standard deviations from which on a jump counts.
+    const SURE: f64 = 5.0;
+    /// Parts of a side at which the noise is looked at.
+    const PARTS: usize = 4;
+    /// Samples on either side that tell how fast the axis is.
+    const SPEED: usize = 32;
+    let Some(angle) = angle(recording, &checked.weight) else {
+        return vec![];
+    };
+    let n = angle.len();
+    let sides: Vec<(usize, Vec<f64>)> = SIDES
+        .into_iter()
+        .chain(LONGER)
+        .map(|(side, order)| (side, step_weights(side, order, None)))
+        .collect();
+    // Size and noise of a jump before a sample.
+    let jump = |k: usize, side: usize, weights: &[f64]| -> Option<(f64, f64)> {
+        let size = |k: usize| -> Option<f64> {
+            let near = angle.get(k.checked_sub(side)?..k + side)?;
+            Some(near.iter().zip(weights).map(|(a, w)| a * w).sum())
+        };
+        let around = (k.saturating_sub(AROUND * side)..k + AROUND * side).step_by(side / PARTS);
+        let apart = around.filter(|j| j.abs_diff(k) >= side).filter_map(size);
+        let sizes: Vec<f64> = apart.map(f64::abs).collect();
+        (sizes.len() > AROUND * PARTS).then_some((size(k)?, ninth(&sizes) / 1.645))
+    };
+    let is_late = |k: &usize| {
+        let looks = sides
+            .iter()
+            .filter_map(|(side, weights)| jump(*k, *side, weights));
+        let best = looks.min_by(|a, b| a.1.total_cmp(&b.1));
+        let (from, to) = (k.saturating_sub(SPEED), (k + SPEED).min(n - 1));
+        let moves = (angle[to] - angle[from]) / (to - from - 1) as f64;
+        best.is_some_and(|(size, sigma)| {
+            size.abs() > SURE * sigma && (size + moves).abs() < WHOLE * moves.abs() + 3.0 * sigma
+        })
+    };
+    of.iter().copied().filter(is_late).collect()
+}
+
 /// Whether the sensor jumps with its reference: what is between them does not jump, and would if the reference alone did.
 fn together(apart: &[f64], reference: &Jump) -> bool {
     let k = reference.before;

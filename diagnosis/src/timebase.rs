@@ -6,7 +6,7 @@ use nonius_recording::Recording;
 
 use crate::checks::{Checked, ninth, repeats};
 use crate::finding::{Finding, Parameter, Place};
-use crate::jumps::jumps;
+use crate::jumps::{jumps, late};
 
 /// Samples on either side whose slope tells how far the scale moves.
 const LINE: usize = 8;
@@ -14,6 +14,8 @@ const LINE: usize = 8;
 const BLOCK: usize = 256;
 /// Samples on either side whose steps are compared with the one behind a sample.
 const NEAR: usize = 4;
+/// Of so many samples not one has the codes of the one before where each that has is looked at.
+const SELDOM: usize = 500;
 /// Repeated samples that chance may make of a recording.
 const BY_CHANCE: f64 = 0.01;
 
@@ -131,10 +133,15 @@ pub(crate) fn repeated(recording: &Recording, checked: &mut Checked) {
         let of_channels: f64 = channels.iter().map(|c| c.chance(k)).product();
         of_channels * of_reference(k)
     };
-    let twins: Vec<usize> = (LINE..n.saturating_sub(LINE))
+    let alike: Vec<usize> = (LINE..n.saturating_sub(LINE))
         .filter(|&k| same(k) && !same(k - 1) && !same(k + 1))
-        .filter(|&k| chance(k) * (n as f64) < BY_CHANCE)
         .collect();
+    let seldom = |k: &usize| chance(*k) * (n as f64) < BY_CHANCE;
+    let mut twins: Vec<usize> = alike.iter().copied().filter(seldom).collect();
+    if twins.is_empty() && alike.len() * SELDOM < n {
+        // On a slow axis with noise the codes alone say too little; that all that follows is late says more.
+        twins = late(recording, checked, &alike);
+    }
     if twins.is_empty() || twins.len() >= n / 10 {
         return;
     }

@@ -109,13 +109,15 @@ fn samples_repeated_in_noise() {
 /// The same of samples that were put in, which make all that follows late.
 #[test]
 fn samples_put_in_in_noise() {
-    shows_in(&NOISY, "repeated_samples", |rows| put_in(rows, 0.025..0.03));
+    shows_in(&NOISY, "repeated_samples", |rows| {
+        put_in(rows, 0.025..0.03, 700)
+    });
 }
 
-/// Puts rows in where the scale moves by so much.
-fn put_in(rows: &mut Rows, moving: std::ops::Range<f64>) {
+/// Puts rows in where the scale moves by so much, at such places at least so many samples apart.
+fn put_in(rows: &mut Rows, moving: std::ops::Range<f64>, apart: usize) {
     let mut places: Vec<usize> = (1000..19_000)
-        .step_by(700)
+        .step_by(apart)
         .filter(|k| moving.contains(&moves(rows, *k)))
         .collect();
     assert!(places.len() > 2);
@@ -126,12 +128,20 @@ fn put_in(rows: &mut Rows, moving: std::ops::Range<f64>) {
     at_even_times(rows);
 }
 
-/// The same by little more than the noise.
-fn put_in_slowly(rows: &mut Rows) {
-    put_in(rows, 0.008..0.02);
+/// Where noise could have brought the codes back, the angle tells: from there on it is late by what it moves in a sample.
+#[test]
+fn samples_put_in_that_the_angle_shows() {
+    shows_in(&NOISY, "repeated_samples", |rows| {
+        put_in(rows, 0.008..0.02, 700)
+    });
 }
 
-/// Where noise could have brought the codes back, the reference tells: it hardly ever repeats itself without them.
+/// The same by a small part of the noise.
+fn put_in_slowly(rows: &mut Rows) {
+    put_in(rows, 0.0..0.001, 20);
+}
+
+/// Where the angle does not tell either, the reference does: it hardly ever repeats itself without them.
 #[test]
 fn samples_put_in_that_a_reference_shows() {
     assert_eq!(names(&damaged(&NOISY, put_in_slowly)), [""; 0]);
