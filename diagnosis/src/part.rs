@@ -13,7 +13,7 @@ pub(crate) const CHUNK: usize = 1024;
 pub(crate) const STRIDE: usize = CHUNK + ORDER;
 /// Columns that are multiplied together.
 const PANEL: usize = 48;
-/// Fewest columns that are worth a matrix product.
+/// Fewest columns, and samples, that are worth a matrix product.
 const WORTH: usize = 6;
 
 /// The columns of a row in a block: atoms in the order asked for, then the data.
@@ -42,7 +42,8 @@ impl Part {
 
     /// Adds the products of columns `a` with columns `b` to a matrix of all by all.
     fn products(&self, white: bool, a: Range<usize>, b: Range<usize>, sums: &mut DMatrix<f64>) {
-        if a.len().min(b.len()) < WORTH {
+        // Fewer samples than that nalgebra would take through its vector product, which reads strided rows as columns.
+        if a.len().min(b.len()).min(self.samples) < WORTH {
             for i in a {
                 let left = self.column(white, i);
                 for j in b.clone() {
