@@ -2,6 +2,7 @@
 
 use nonius_recording::Recording;
 
+use crate::edges::{Edges, edges};
 use crate::finding::{Finding, Parameter, Place};
 use crate::timebase;
 
@@ -162,7 +163,7 @@ fn bits_and_steps(channel: &str, codes: &[i64], bits: u32) -> Vec<Finding> {
 /// Samples on either side of the curve through the neighbours.
 const REACH: usize = 3;
 /// So many times the ninth decile is far off: six standard deviations of Gaussian noise, which not one sample in 10⁸ is.
-const FAR: f64 = 3.65;
+pub(crate) const FAR: f64 = 3.65;
 /// Ranges of values in each of which noise may have a size of its own.
 const RANGES: usize = 16;
 /// Samples on either side that tell how large the noise is just there.
@@ -259,10 +260,17 @@ pub(crate) fn ninth(sizes: &[f64]) -> f64 {
 fn glitches(recording: &Recording, checked: &mut Checked) {
     let n = recording.samples();
     let rate = recording.metadata.sample_rate_hz;
-    let mut found = vec![];
-    let channels = [&recording.cos, &recording.sin];
-    let off = channels.map(|v| (0..n).map(|k| off_the_curve(v, k)).collect::<Vec<f64>>());
-    for (which, values) in channels.into_iter().enumerate() {
+    let Edges {
+        channels,
+        far: mut found,
+    } = edges(recording);
+    let off = [0, 1].map(|which: usize| {
+        let values = &channels[which];
+        (0..n)
+            .map(|k| off_the_curve(values, k))
+            .collect::<Vec<f64>>()
+    });
+    for (which, values) in channels.iter().enumerate() {
         let sizes: Vec<f64> = off[which].iter().map(|o| o.abs()).collect();
         let typical = ninth(&sizes);
         // Where the neighbours say that it is: a glitch beyond the others would be alone in its range, and typical there.

@@ -53,6 +53,24 @@ fn step_weights(side: usize, order: i32, but: Option<usize>) -> Vec<f64> {
 
 /// Lays straight lines over samples that do not count.
 fn bridge(values: &mut [f64], weight: &[f64]) {
+    // Before the first two that count, and behind the last two, their line goes on.
+    let counts = |k: &usize| weight[*k] > 0.0;
+    let ends: [Vec<usize>; 2] = [
+        (0..values.len()).filter(counts).take(2).collect(),
+        (0..values.len()).rev().filter(counts).take(2).collect(),
+    ];
+    for ends in ends {
+        let [near, next] = ends[..] else { return };
+        let slope = (values[next] - values[near]) / (next as f64 - near as f64);
+        let outside = if near < next {
+            0..near
+        } else {
+            near + 1..values.len()
+        };
+        for k in outside {
+            values[k] = values[near] + slope * (k as f64 - near as f64);
+        }
+    }
     let mut last = 0;
     for (k, weight) in weight.iter().enumerate().skip(1) {
         if *weight == 0.0 {

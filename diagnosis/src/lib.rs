@@ -17,6 +17,7 @@ mod contender;
 mod context;
 mod diagnose;
 mod doubt;
+mod edges;
 mod exact;
 mod finding;
 mod flicker;

@@ -41,6 +41,27 @@ fn samples() {
     });
 }
 
+/// A logger that shows zeros before its ADC has begun, or after it has ended; the samples beside them are sound.
+#[test]
+fn rows_of_zeros_at_the_ends() {
+    let last = 19_999;
+    for zeros in [
+        0..1,
+        0..2,
+        0..5,
+        1..2,
+        2..3,
+        last..last + 1,
+        last - 1..last + 1,
+    ] {
+        shows("glitches", |rows| {
+            for row in &mut rows[zeros.clone()] {
+                (row[1], row[2]) = (0.0, 0.0);
+            }
+        });
+    }
+}
+
 /// No other sample is near it in value: how large noise is there, only its neighbours can tell.
 #[test]
 fn a_glitch_beyond_every_other_value() {

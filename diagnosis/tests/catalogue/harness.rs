@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use nonius_diagnosis::{Diagnosis, Finding, diagnose};
+use nonius_diagnosis::{ContextError, Diagnosis, Finding, diagnose};
 use nonius_recording::{Overrides, Recording};
 use rand::{Rng, SeedableRng, rngs::StdRng};
 use rand_distr::{Distribution, StandardNormal};
@@ -194,6 +194,20 @@ fn recording(case: &Case, rows: &Rows) -> Recording {
 pub(crate) fn long(case: &Case) -> Diagnosis {
     let mut random = StdRng::seed_from_u64(13);
     of_rows(case, &simulated(case, &Drive::known(), LONG, &mut random))
+}
+
+/// A recording of that many samples, motion and parameters known; the faster, the shorter it is.
+pub(crate) fn diagnosed_of(case: &Case, samples: usize) -> Result<Diagnosis, ContextError> {
+    let mut random = StdRng::seed_from_u64(17);
+    let share = (SAMPLES as f64 / samples as f64).min(20.0);
+    let drive = Drive {
+        turns: Drive::known().turns * share,
+        ..Drive::known()
+    };
+    diagnose(&recording(
+        case,
+        &simulated(case, &drive, samples, &mut random),
+    ))
 }
 
 fn of_rows(case: &Case, rows: &Rows) -> Diagnosis {

@@ -5,6 +5,7 @@
 
 mod data;
 mod harness;
+mod lengths;
 mod long;
 mod motion;
 mod revolution;
