@@ -1,6 +1,5 @@
 //! The whole diagnosis of a recording.
 
-use nonius_calibration::Ellipse;
 use nonius_recording::Recording;
 use serde::Serialize;
 
@@ -11,8 +10,9 @@ use crate::contender::is_drift;
 use crate::context::{Context, ContextError};
 use crate::doubt;
 use crate::exact;
-use crate::finding::{Finding, Gain, Parameter};
+use crate::finding::{Finding, Gain};
 use crate::flicker::{self, Flicker};
+use crate::left;
 use crate::library::Row;
 use crate::model::System;
 use crate::noise;
@@ -20,32 +20,11 @@ use crate::repair::{Repaired, repair};
 use crate::score::KINDS;
 use crate::select::select;
 use crate::selection::{Accepted, Selection, Unnamed};
+use crate::simulation::{Simulation, simulation};
 use crate::statistics;
 
 /// Most times that a recording is looked at anew.
 const ROUNDS: usize = 10;
-
-/// The sensor with its five fitted parameters and white noise.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Simulation {
-    /// What it holds.
-    pub causes: Vec<SimulatedCause>,
-    /// Rms of radial and tangential residual, in fractions of the amplitude.
-    pub residual_rms: f64,
-    /// The same on data that was not fitted.
-    pub held_out_residual_rms: f64,
-    /// Against the reference, radians.
-    pub position_error_rms_rad: Option<f64>,
-}
-
-/// A cause that every simulation has.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct SimulatedCause {
-    /// Its name.
-    pub cause: &'static str,
-    /// Its parameters.
-    pub parameters: Vec<Parameter>,
-}
 
 /// What no cause explains.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -286,6 +265,10 @@ fn conclude(
         .map(|u| u.gain)
         .fold(0.0, f64::max);
     let flicker = flicker.filter(|f| !f.is_part_of(unknown));
+    let silent = selection.unnamed.is_empty() && rest.is_empty() && noisy.is_empty();
+    if silent && strange.is_empty() && flicker.is_none() {
+        strange = left::no_noise(context, &system.residual(&extended.fit).radial);
+    }
     match flicker.as_ref().map(Flicker::finding) {
         Some(Ok(finding)) => noisy.push(finding),
         Some(Err(unnamed)) => strange.push(unnamed),
@@ -322,7 +305,7 @@ fn conclude(
     let residuals = [(was.radial, was.tangential), (left.radial, left.tangential)];
     let left_motion = left.motion;
     let simulation = simulation(
-        exact::ellipse(&context.ellipse, &selection.base.solution.x),
+        &selection.base,
         system,
         held_before,
         halves.rms(&selection.base),
@@ -356,48 +339,5 @@ fn conclude(
             left_motion,
             notes,
         }
-    }
-}
-
-fn simulation(
-    e: Ellipse,
-    system: &System,
-    held_out: f64,
-    rms: f64,
-    position: Option<f64>,
-) -> Simulation {
-    let n = system.context.samples() as f64;
-    let noise = system.noise();
-    // Of an average over that many samples with that noise.
-    let amplitude = noise * (2.0 / n).sqrt() * e.amplitude();
-    let p = Parameter::measured;
-    Simulation {
-        causes: vec![
-            SimulatedCause {
-                cause: "offset",
-                parameters: vec![
-                    p("b_c", e.b_c, amplitude, "column"),
-                    p("b_s", e.b_s, amplitude, "column"),
-                ],
-            },
-            SimulatedCause {
-                cause: "gain_mismatch",
-                parameters: vec![
-                    p("a_c", e.a_c, amplitude, "column"),
-                    p("a_s", e.a_s, amplitude, "column"),
-                ],
-            },
-            SimulatedCause {
-                cause: "quadrature_error",
-                parameters: vec![p("beta", e.beta, noise * (4.0 / n).sqrt(), "rad")],
-            },
-            SimulatedCause {
-                cause: "white_noise",
-                parameters: vec![p("rms", noise, noise / (2.0 * n).sqrt(), "amplitude")],
-            },
-        ],
-        residual_rms: rms,
-        held_out_residual_rms: held_out,
-        position_error_rms_rad: position,
     }
 }

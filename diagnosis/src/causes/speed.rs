@@ -153,7 +153,6 @@ fn latency(speed: &Speed) -> Candidate {
     let angle = [Trig::constant(0.0), Trig::constant(1.0)];
     let shape = speed.by.shape(ODD, &angle).scaled(-speed.top);
     Candidate {
-        chip: Chip::Corrects,
         evidence: Rc::new(|p| {
             let d = p[0].value;
             format!("both channels are late against the reference by {d:.3e} s")

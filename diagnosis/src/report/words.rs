@@ -79,10 +79,10 @@ pub(super) fn chip(finding: &Finding) -> &'static str {
         (Chip::Corrects, "offset_drift" | "gain_drift") => {
             "The chip corrects it: the calibration on line follows it."
         }
-        (Chip::Corrects, "latency") => {
-            "Behind the chip: add the speed times this delay to the position. The emitted design does not do so."
-        }
         (Chip::Corrects, _) => "The chip corrects it.",
+        (Chip::CannotCorrect, "latency") => {
+            "The chip cannot correct it. Behind the chip: add the speed times this delay to the position."
+        }
         (Chip::CannotCorrect, _) => "The chip cannot correct it; mend it in front of the ADC.",
         (Chip::NotASensorError, _) => {
             "It is real motion, not an error of the sensor: the position shows it, and should."

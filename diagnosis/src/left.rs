@@ -1,0 +1,151 @@
+//! Whether what everything leaves of the radius is white noise: what is not, lives there without a name.
+
+use rustfft::FftPlanner;
+use rustfft::num_complex::Complex;
+
+use crate::context::Context;
+use crate::score::SHOWN;
+use crate::selection::Unnamed;
+use crate::statistics::after_trials;
+
+/// Questions that are asked of it.
+const TRIALS: f64 = 2.0;
+/// Noise of less than so many codes is the ADC's, which follows the signal.
+const CODES: f64 = 0.5;
+/// Standard deviations from which on a sample stands out: not one in 10⁸ of noise does.
+const FAR: f64 = 6.0;
+/// Fewest samples that stand out and are no chance.
+const FEWEST: usize = 3;
+
+/// Bartlett's test of a cumulated spectrum: for white noise it rises evenly.
+pub(crate) struct Bartlett {
+    /// Share of the power up to each line.
+    pub(crate) shares: Vec<f64>,
+    /// Largest distance from the even rise.
+    pub(crate) distance: f64,
+    /// Of a distance as large as this in white noise.
+    pub(crate) p_value: f64,
+}
+
+impl Bartlett {
+    /// Of these values.
+    pub(crate) fn of(values: &[f64]) -> Self {
+        let n = values.len();
+        let mut buffer: Vec<Complex<f64>> = values.iter().map(|v| Complex::new(*v, 0.0)).collect();
+        if n > 0 {
+            FftPlanner::new().plan_fft_forward(n).process(&mut buffer);
+        }
+        let mut sum = 0.0;
+        let mut shares: Vec<f64> = buffer
+            .get(1..n.div_ceil(2))
+            .unwrap_or_default()
+            .iter()
+            .map(|z| {
+                sum += z.norm_sqr();
+                sum
+            })
+            .collect();
+        shares
+            .iter_mut()
+            .for_each(|s| *s /= sum.max(f64::MIN_POSITIVE));
+        let m = shares.len().max(1) as f64;
+        let even = (1..).map(|i| f64::from(i) / m);
+        let off = shares.iter().zip(even).map(|(s, e)| (s - e).abs());
+        let distance = off.fold(0.0, f64::max);
+        Self {
+            shares,
+            distance,
+            p_value: kolmogorov(distance * m.sqrt()),
+        }
+    }
+}
+
+/// Probability that the supremum of a Brownian bridge exceeds x (Kolmogorov).
+fn kolmogorov(x: f64) -> f64 {
+    if x < 0.2 {
+        return 1.0;
+    }
+    let term = |j: i32| {
+        let sign = if j % 2 == 1 { 1.0 } else { -1.0 };
+        sign * (-2.0 * f64::from(j * j) * x * x).exp()
+    };
+    (2.0 * (1..=20).map(term).sum::<f64>()).clamp(0.0, 1.0)
+}
+
+/// A code of the ADC, in amplitudes: that of the coarser channel.
+fn code(context: &Context) -> f64 {
+    let span = |values: &mut dyn Iterator<Item = f64>| {
+        let start = (f64::MAX, f64::MIN);
+        let (low, high) = values.fold(start, |(a, b), v| (a.min(v), b.max(v)));
+        high - low
+    };
+    let of = |(raw, codes): (&Vec<f64>, &Vec<i64>)| {
+        let codes = span(&mut codes.iter().map(|c| *c as f64));
+        span(&mut raw.iter().copied()) / codes.max(1.0)
+    };
+    let channels = context.raw.iter().zip(&context.codes).map(of);
+    channels.fold(0.0, f64::max) / context.ellipse.amplitude()
+}
+
+/// What of a radial residual, in amplitudes, is no white noise; nothing where the ADC is coarser than the noise.
+pub(crate) fn no_noise(context: &Context, radial: &[f64]) -> Vec<Unnamed> {
+    let mut sizes: Vec<f64> = (radial.iter().zip(&context.weight))
+        .filter(|(_, w)| **w > 0.0)
+        .map(|(r, _)| r.abs())
+        .collect();
+    let middle = sizes.len() / 2;
+    if sizes.is_empty() {
+        return vec![];
+    }
+    let (_, median, _) = sizes.select_nth_unstable_by(middle, f64::total_cmp);
+    let sigma = *median / 0.674_489_75;
+    if sigma.is_nan() || sigma <= CODES * code(context) {
+        return vec![];
+    }
+    let mut found = vec![];
+    let mut tell = |p_value: f64, signature: String| {
+        let log_p = after_trials(p_value.max(f64::MIN_POSITIVE).ln(), TRIALS);
+        if log_p < SHOWN.ln() {
+            found.push(Unnamed {
+                log_p,
+                gain: 0.0,
+                signature,
+            });
+        }
+    };
+    let far = |k: &usize| radial[*k].abs() > FAR * sigma && context.weight[*k] > 0.0;
+    let far: Vec<usize> = (0..radial.len()).filter(far).collect();
+    if let Some(first) = far.first().filter(|_| far.len() >= FEWEST) {
+        // Each is less likely than one in 10⁸.
+        let expected = 2e-9 * radial.len() as f64;
+        let p_value = expected.min(1.0).powi(FEWEST as i32);
+        tell(
+            p_value,
+            format!(
+                "{} samples stand out of the noise of the radius by more than {FAR} standard deviations, the first is sample {first}; nearest likeness: glitches, but they do not stand alone",
+                far.len()
+            ),
+        );
+    }
+    let bartlett = Bartlett::of(radial);
+    tell(
+        bartlett.p_value,
+        format!(
+            "what is left along the radius is not white: its cumulated spectrum is off an even rise by {:.3} (Bartlett's test)",
+            bartlett.distance
+        ),
+    );
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn kolmogorovs_distribution_agrees_with_tables() {
+        assert!((kolmogorov(1.358_1) - 0.05).abs() < 1e-4);
+        assert!((kolmogorov(1.949_5) - 0.001).abs() < 1e-5);
+        assert!((kolmogorov(0.5) - 0.963_9).abs() < 1e-4);
+    }
+}
