@@ -126,7 +126,7 @@ fn positions(recording: &Recording, found: &Diagnosis) -> String {
 
 fn summary(found: &Diagnosis, output: &Path) {
     if found.findings.is_empty() {
-        say!("nothing but the five parameters and white noise was found");
+        say!("{}", found.nothing_named());
     }
     for finding in &found.findings {
         let with = match finding.confounded_with.first() {

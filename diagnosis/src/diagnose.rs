@@ -94,6 +94,16 @@ pub struct Diagnosis {
 }
 
 impl Diagnosis {
+    /// What is said where no cause is named.
+    #[must_use]
+    pub fn nothing_named(&self) -> &'static str {
+        if self.unexplained.significant {
+            "no cause of the catalogue was found, but something is left"
+        } else {
+            "nothing but the five parameters and white noise was found"
+        }
+    }
+
     /// The gain of what takes nothing off the signals.
     pub(crate) fn unchanged(&self) -> Gain {
         let model = &self.extended;
