@@ -7,6 +7,7 @@
 
 use nalgebra::{SMatrix, Vector2};
 use nonius_recording::Ellipse;
+use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use crate::curve::{Curve, Parameters, invert};
 use crate::noise::{self, Residual, Shape};
@@ -31,6 +32,8 @@ pub struct Fit {
     /// How much further consecutive parts of the recording differ than the standard errors say, for the parameter where
     /// that is worst; 1 is what white noise does.
     pub scatter: Option<f64>,
+    /// White noise does not do that.
+    pub changes: bool,
     /// The iteration has come to rest.
     pub converged: bool,
 }
@@ -40,6 +43,10 @@ const ITERATIONS: usize = 80;
 const VAGUE: f64 = 0.35;
 /// Consecutive parts of a recording, to see whether their differences are noise.
 const PARTS: usize = 20;
+/// Scatter of the parts, in standard errors, that is worth a word.
+const SCATTER: f64 = 1.8;
+/// Probability below which a parameter's scatter is not noise; there are five.
+const CHANCE: f64 = 1e-4;
 /// Samples in a part that make its share of the score nearly Gaussian.
 const PART: usize = 20;
 
@@ -93,8 +100,10 @@ pub fn fit(cos: &[f64], sin: &[f64], start: &Ellipse, ratio: Option<f64>) -> Fit
         _ => [white, white * metric],
     };
     let covariance = round.covariance(&ellipse);
+    let scatter = covariance.and_then(|c| round.scatter(&residuals, &c));
     Fit {
-        scatter: covariance.and_then(|c| round.scatter(&residuals, &c)),
+        scatter: scatter.map(|(factor, _)| factor),
+        changes: scatter.is_some_and(|(_, changes)| changes),
         covariance: covariance.unwrap_or_else(|| SMatrix::repeat(f64::NAN)),
         noise,
         log_ratio_error: match (ratio, found) {
@@ -179,25 +188,51 @@ impl Round {
         }
     }
 
-    /// How the scores of the recording's parts scatter, beside what white noise of that size does. `residuals` are
-    /// those without what repeats with the angle: within less than a turn that would look like a change in time.
-    fn scatter(&self, residuals: &[Residual], covariance: &SMatrix<f64, 5, 5>) -> Option<f64> {
+    /// How the scores of the recording's parts scatter, beside what white noise of that size does, and whether noise
+    /// scatters that far. `residuals` are those without what repeats with the angle: within less than a turn that would
+    /// look like a change in time.
+    fn scatter(
+        &self,
+        residuals: &[Residual],
+        covariance: &SMatrix<f64, 5, 5>,
+    ) -> Option<(f64, bool)> {
         let n = residuals.len();
         let white = residuals.iter().map(|r| r.white * r.white).sum::<f64>() / n as f64;
         if n < PARTS * PART || white <= 0.0 {
             return None;
         }
-        let mut parts = [Parameters::zeros(); PARTS];
-        for (k, (r, by)) in residuals.iter().zip(&self.by).enumerate() {
-            parts[k * PARTS / n] += by * r.white;
-        }
         let inverse = covariance / self.sigma2;
-        let shifts = parts.iter().map(|part| inverse * part);
-        let sum = shifts.fold(Parameters::zeros(), |sum, shift| {
-            sum + shift.component_mul(&shift)
-        });
-        let ratio = (0..5).map(|i| sum[i] / (inverse[(i, i)] * white));
-        ratio.reduce(f64::max).map(f64::sqrt)
+        // Parts that tell equally much, not equally long ones: of a long standstill all but a few would tell nothing,
+        // and the mean of those few would be taken for that of all.
+        let told = |by: &Parameters| by.dot(&(inverse * by));
+        let all: f64 = self.by.iter().map(told).sum();
+        let mut parts = [(Parameters::zeros(), SMatrix::<f64, 5, 5>::zeros()); PARTS];
+        let mut sum = 0.0;
+        for (r, by) in residuals.iter().zip(&self.by) {
+            let part = &mut parts[((sum / all * PARTS as f64) as usize).min(PARTS - 1)];
+            part.0 += by * r.white;
+            part.1 += by * by.transpose();
+            sum += told(by);
+        }
+        let mut worst = (false, 0.0);
+        for i in 0..5 {
+            let (mut square, mut mean, mut spread) = (0.0, 0.0, 0.0);
+            for (score, information) in &parts {
+                square += (inverse * score)[i].powi(2) / white;
+                let own = (inverse * information * inverse)[(i, i)];
+                mean += own;
+                spread += own * own;
+            }
+            // A sum of squares of unequal sizes is nearly chi square with this freedom.
+            let freedom = mean * mean / spread;
+            let p = ChiSquared::new(freedom).ok()?.sf(square / mean * freedom);
+            let one = (p < CHANCE, (square / mean).sqrt());
+            if one > worst {
+                worst = one;
+            }
+        }
+        let (changes, factor) = worst;
+        Some((factor, changes && factor > SCATTER))
     }
 }
 

@@ -12,8 +12,6 @@ const VAGUE: f64 = 0.1;
 pub(crate) const GAP: f64 = 0.25;
 /// Loss by a short arc that is worth a name.
 const WORSE: f64 = 3.0;
-/// Scatter of the recording's parts, in standard errors, that white noise reaches once in thousands.
-const SCATTER: f64 = 1.8;
 /// Residual below which it is rounding, in fractions of the amplitude.
 pub(crate) const ROUNDING: f64 = 1e-8;
 
@@ -128,7 +126,7 @@ pub(crate) fn of_residuals(method: Method, fit: &Fit, residual_rms: f64) -> Vec<
         ));
     }
     if let Some(scatter) = fit.scatter
-        && scatter > SCATTER
+        && fit.changes
     {
         out.push(format!(
             "consecutive parts of the recording differ {scatter:.1} times as much as the error bars say: something \
