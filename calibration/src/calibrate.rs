@@ -19,6 +19,8 @@ struct Estimate {
     theta: Vec<f64>,
     theta_covariance: Option<DMatrix<f64>>,
     cannot_tell: Vec<String>,
+    /// It stands somewhere, but not where the samples would have it.
+    adrift: bool,
     /// Of the amplitudes by the noise, in amplitudes.
     bias: Option<[f64; 2]>,
 }
@@ -34,6 +36,7 @@ impl Estimate {
             ellipse,
             covariance: sound.map(dynamic),
             cannot_tell: vec![],
+            adrift: false,
             bias: None,
         }
     }
@@ -113,12 +116,15 @@ pub fn calibrate(
         cannot_tell.extend(words::of_arc(method, gap, &fit, whole(&fit, c.len())));
         untold = words::vague(&fit);
     }
-    if method == Method::Extremes && gap > words::GAP {
+    if method == Method::Extremes {
         let unseen = extremes::unseen(&fit.ellipse, &radians, fit.noise);
-        cannot_tell.extend(words::of_extremes(unseen));
+        cannot_tell.extend(words::of_extremes(unseen, gap > words::GAP));
         for (i, untold) in untold[..4].iter_mut().enumerate() {
             *untold |= unseen[i / 2];
         }
+    }
+    if estimate.adrift {
+        untold = [true; 5];
     }
     // The geometric fit says itself how little it knows.
     let told = Told::of(
@@ -136,6 +142,9 @@ pub fn calibrate(
     let mut remarks = vec![];
     if let Some(bias) = estimate.bias {
         remarks.push(words::of_bias(bias, !untold.contains(&true)));
+    }
+    if gap > words::GAP && untold.contains(&false) {
+        remarks.extend(words::of_bias_on_an_arc(method));
     }
     if samples.outliers > 0 {
         let (n, s) = (
@@ -292,6 +301,7 @@ fn estimate(method: Method, cos: &[f64], sin: &[f64], fit: &Fit) -> Option<Estim
             let minimum = gradient::minimise(method.set(), cos, sin, &fit.ellipse);
             Some(Estimate {
                 cannot_tell: words::of_minimum(method, &minimum),
+                adrift: minimum.faint > 0 || !minimum.converged,
                 ellipse: minimum.ellipse.unwrap_or(fit.ellipse),
                 covariance: minimum.ellipse_covariance,
                 theta: minimum.theta,

@@ -37,8 +37,20 @@ pub(crate) fn vague(fit: &Fit) -> [bool; 5] {
     })
 }
 
-/// Of extremes that no sample reached, of cosine and sine.
-pub(crate) fn of_extremes(unseen: [bool; 2]) -> Vec<String> {
+/// Of a short arc: what noise does to the methods that minimise no distance.
+pub(crate) fn of_bias_on_an_arc(method: Method) -> Option<String> {
+    (!matches!(method, Method::Unbiased | Method::Extremes)).then(|| {
+        format!(
+            "noise biases {} the more the shorter the arc is, on this one perhaps by many of its error bars, which do not \
+             hold the bias; unbiased has none",
+            method.name()
+        )
+    })
+}
+
+/// Of extremes that no sample reached, of cosine and sine; `arc`: an arc is missing, and not only the places between few
+/// samples.
+pub(crate) fn of_extremes(unseen: [bool; 2], arc: bool) -> Vec<String> {
     let channels = [("cos", "a_c and b_c"), ("sin", "a_s and b_s")];
     let without = channels
         .into_iter()
@@ -46,8 +58,9 @@ pub(crate) fn of_extremes(unseen: [bool; 2]) -> Vec<String> {
         .filter(|(_, unseen)| *unseen);
     without
         .map(|((channel, both), _)| {
+            let reach = if arc { "the arc does" } else { "the samples do" };
             format!(
-                "{both} cannot be told by extremes: the arc does not reach both ends of {channel}; unbiased takes the whole \
+                "{both} cannot be told by extremes: {reach} not reach both ends of {channel}; unbiased takes the whole \
                  curve"
             )
         })

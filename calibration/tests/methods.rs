@@ -2,6 +2,8 @@
 
 use nonius_calibration::conic::closed_form;
 use nonius_calibration::{Curve, Ellipse, Error, Method, Options, calibrate, undetermined};
+use rand::{SeedableRng, rngs::StdRng};
+use rand_distr::{Distribution, StandardNormal};
 
 const ALL: [Method; 7] = Method::ALL;
 
@@ -143,6 +145,60 @@ fn what_is_no_pair_is_refused() {
         let refused = calibrate(&wave, &wave, Method::Unbiased, &options);
         assert!(matches!(refused, Err(Error::Ratio(_))));
     }
+}
+
+fn noisy(angle: impl Fn(f64) -> f64) -> (Vec<f64>, Vec<f64>) {
+    let mut random = StdRng::seed_from_u64(1);
+    let mut draw = || -> f64 { 0.001 * Distribution::<f64>::sample(&StandardNormal, &mut random) };
+    let ellipse = crooked(0.08);
+    let points = (0..4000).map(|k| ellipse.point(angle(f64::from(k))));
+    points.map(|p| (p.x + draw(), p.y + draw())).unzip()
+}
+
+/// Short arcs with noise: a search that comes to no rest, or has a direction open, stands anywhere.
+#[test]
+fn a_search_that_found_nothing_has_no_error_bars() {
+    let to_and_fro = noisy(|k| 0.63 * (k / 100.0).sin());
+    let quarter = noisy(|k| k * std::f64::consts::FRAC_PI_2 / 4000.0);
+    let mut seen = 0;
+    for (cos, sin) in [to_and_fro, quarter] {
+        for method in ALL {
+            let found = calibrate(&cos, &sin, method, &Options::default()).expect("a calibration");
+            let said = found.cannot_tell.join(" ");
+            if said.contains("did not come to rest") || said.contains("of Theta cannot be told") {
+                seen += 1;
+                assert!(found.parameters.iter().all(|p| p.std_error.is_none()));
+                let of = found.correlations.iter().chain(&found.theta_correlations);
+                assert!(of.flatten().flatten().all(Option::is_none));
+            }
+            let bias = found.remarks.iter().any(|r| r.starts_with("noise biases"));
+            let biased = !matches!(method, Method::Unbiased | Method::Extremes);
+            let bars = found.parameters.iter().any(|p| p.std_error.is_some());
+            assert_eq!(bias, biased && bars, "{method:?}");
+        }
+    }
+    assert!(seen > 1);
+}
+
+/// Five samples a period all round, but none at an end of the cosine.
+#[test]
+fn extremes_that_no_sample_reached_have_no_error_bar() {
+    let (cos, sin) = noisy(|k| 0.6 + k * std::f64::consts::TAU / 5.0);
+    let found =
+        calibrate(&cos, &sin, Method::Extremes, &Options::default()).expect("a calibration");
+    for p in &found.parameters[..4] {
+        assert_eq!(p.std_error, None, "{}", p.name);
+    }
+    let said = found.cannot_tell.join(" ");
+    for channel in ["cos", "sin"] {
+        let words = format!("the samples do not reach both ends of {channel}");
+        assert!(said.contains(&words), "{said}");
+    }
+    // Two hundred samples a period are at all ends within their noise.
+    let (cos, sin) = noisy(|k| k * std::f64::consts::TAU / 200.0);
+    let found =
+        calibrate(&cos, &sin, Method::Extremes, &Options::default()).expect("a calibration");
+    assert!(found.parameters[..4].iter().all(|p| p.std_error.is_some()));
 }
 
 /// A straight line: both channels alike.
