@@ -33,7 +33,7 @@ struct Slack {
 }
 
 /// Cell by cell; a cell without a number says the same.
-fn compare(kept: &str, found: &str, slack: impl Fn(&str) -> Slack) {
+fn compare(kept: &str, found: &str, slack: impl Fn(&str, &str) -> Slack) {
     assert_eq!(kept.lines().count(), found.lines().count(), "{COMMAND}");
     let header: Vec<&str> = kept.lines().next().expect("a header").split(',').collect();
     for (kept_row, row) in kept.lines().zip(found.lines()) {
@@ -42,7 +42,7 @@ fn compare(kept: &str, found: &str, slack: impl Fn(&str) -> Slack) {
         for ((was, is), column) in was.zip(is).zip(header.iter().rev()) {
             let near = match (was.parse::<f64>(), is.parse::<f64>()) {
                 (Ok(was), Ok(is)) => {
-                    let Slack { share, more } = slack(column);
+                    let Slack { share, more } = slack(column, kept_row);
                     (was - is).abs() <= share * was.abs() + more
                 }
                 _ => was == is,
@@ -67,25 +67,29 @@ fn the_kept_table_is_fresh() {
     let costs = costs::Costs::read(&kept("on-line-costs.csv"));
     let found = table::methods(&design, &Scenario::ALL, &costs);
     let whole = kept("convergence/methods.csv");
-    compare(whole.trim_end(), found.trim_end(), |column| match column {
-        "products" | "clocks" | "lut4" => Slack {
-            share: 0.0,
-            more: 0.0,
+    compare(
+        whole.trim_end(),
+        found.trim_end(),
+        |column, row| match column {
+            "products" | "clocks" | "lut4" => Slack {
+                share: 0.0,
+                more: 0.0,
+            },
+            // With much noise they hang on single samples. Else a millionth of the noise moves none, a thousandth few.
+            "periods" => Slack {
+                share: 0.3,
+                more: if row.contains(",noisy,") { 20.0 } else { 2.0 },
+            },
+            "parameter_error" => Slack {
+                share: 0.3,
+                more: 1e-5,
+            },
+            _ => Slack {
+                share: 0.1,
+                more: 1e-3,
+            },
         },
-        // They hang on single samples.
-        "periods" => Slack {
-            share: 0.3,
-            more: 20.0,
-        },
-        "parameter_error" => Slack {
-            share: 0.3,
-            more: 1e-5,
-        },
-        _ => Slack {
-            share: 0.1,
-            more: 1e-3,
-        },
-    });
+    );
 }
 
 #[test]
@@ -94,7 +98,7 @@ fn the_kept_figure_7_is_fresh() {
     compare(
         kept("convergence/figure_7.csv").trim_end(),
         figure_7::csv(&course).trim_end(),
-        |_| Slack {
+        |_, _| Slack {
             share: 0.0,
             more: 2e-6,
         },
