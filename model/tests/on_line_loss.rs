@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 use std::fmt::Write as _;
 use std::path::Path;
 
-use chip_support::loss::{Loss, PERIOD, Seen, Settled, each_settled, watch};
+use chip_support::loss::{Loss, PERIOD, Seen, Settled, each_settled, watch, watch_for};
 use chip_support::shipped::variants::{Variant, searches};
 use rayon::prelude::*;
 
@@ -122,6 +122,65 @@ fn a_slow_return_is_followed() {
         &left.join("; "),
         "model/tests/on_line_loss.rs",
     );
+}
+
+/// Shares of cosine and sine that are lost, periods of travel in which they go and come back, and in between.
+const DIPS: [([f64; 2], u32, u32); 5] = [
+    ([0.1, 0.0], 33, 0),
+    ([0.0, 0.1], 33, 0),
+    ([0.1, 0.1], 33, 0),
+    ([0.0, 0.3], 33, 300),
+    ([0.0, 0.3], 0, 300),
+];
+
+/// Periods of travel after which a sensor that changes suddenly, as a weak channel that is back at once, has been learned again.
+const LEARNED: u32 = 400;
+
+/// A signal that becomes weaker and is not lost is a sensor that changes, and followed; off, against the sensor as it is when whole, at most
+/// by what that takes along and by the search from new. What lags at the return goes away.
+#[test]
+fn a_dip_is_followed() {
+    let all = searches();
+    let kept: Vec<&Variant> = all
+        .iter()
+        .filter(|v| v.spec.calibration.parameters == 5)
+        .collect();
+    let seen = kept.par_iter().map(|variant| {
+        let settled = each_settled(&variant.spec);
+        let dip = |(lost, fade, away): ([f64; 2], u32, u32)| {
+            worst_of(settled.iter().map(|from| {
+                let loss = Loss {
+                    lost,
+                    level: 0.0,
+                    fade: [fade * PERIOD; 2],
+                    away: away * PERIOD,
+                    moves: true,
+                };
+                watch_for(from, loss, LEARNED)
+            }))
+        };
+        (variant.what.as_str(), DIPS.map(dip))
+    });
+    let seen: Vec<(&str, [Seen; 5])> = seen.collect();
+    for (what, seen) in seen {
+        let mrad = |of: fn(&Seen) -> f64| {
+            let all: Vec<String> = seen.iter().map(|s| format!("{:.1}", 1e3 * of(s))).collect();
+            all.join(", ")
+        };
+        let said = [mrad(|s| s.worst), mrad(|s| s.after), mrad(|s| s.end)].join("; ");
+        println!("{what}: {said}");
+        for seen in seen {
+            let gone = seen.end < 2.0 * seen.before + 1e-4;
+            assert!(gone && seen.worst < 0.3, "{what}: {seen:?}");
+        }
+        if what == "final form" {
+            nonius_kept::figure(
+                "five parameters, the cosine, the sine, both fall to 90 % within 33 periods and come back as slowly, the sine is at 70 % for 300 periods after as slow a way there and back, and at once: at most on the way; at most from the return on; 400 periods later, mrad",
+                &said,
+                "model/tests/on_line_loss.rs",
+            );
+        }
+    }
 }
 
 /// A search's row of the page, and whether it holds.

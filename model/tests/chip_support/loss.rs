@@ -168,9 +168,18 @@ impl<F: Fn(f64) -> (f64, f64) + Clone> Settled<F> {
 ///
 /// Where the chip does not lock again.
 pub(crate) fn watch<F: Fn(f64) -> (f64, f64) + Clone>(settled: &Settled<F>, loss: Loss) -> Seen {
+    watch_for(settled, loss, AFTER)
+}
+
+/// The same, for so many periods of travel after the signal is back.
+pub(crate) fn watch_for<F: Fn(f64) -> (f64, f64) + Clone>(
+    settled: &Settled<F>,
+    loss: Loss,
+    after: u32,
+) -> Seen {
     let mut all = settled.clone();
     let back = all.samples + loss.samples();
-    let end = back + AFTER * PERIOD;
+    let end = back + after * PERIOD;
     let mut seen = Seen {
         before: all.before,
         worst: 0.0,
