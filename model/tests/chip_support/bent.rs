@@ -1,6 +1,10 @@
 //! A sensor with bends that most searches do not calibrate, at a machine's speeds.
 
-use nonius_model::spec::Spec;
+use nonius_model::bits::Bits;
+use nonius_model::design::Design;
+use nonius_model::kernel::State;
+use nonius_model::kernel::step::Equaliser;
+use nonius_model::spec::{Calibration, Spec};
 
 /// Samples per second.
 pub(crate) const RATE: u32 = 5000;
@@ -29,4 +33,37 @@ pub(crate) fn bent_sensor(spec: &Spec, signs: u32) -> impl Fn(f64) -> (f64, f64)
         let (c, s) = (alpha.cos() + sign(0), (alpha - phase).sin() + sign(1));
         (bent(c), bent(s))
     }
+}
+
+/// Deviations of θ1 … θ9, every bit of them.
+pub(crate) fn parameters(s: &State<Bits>) -> [f64; 9] {
+    [
+        s.theta_1_deviation,
+        s.theta_2_deviation,
+        s.theta_3_deviation,
+        s.theta_4_deviation,
+        s.theta_5_deviation,
+        s.theta_6_deviation,
+        s.theta_7_deviation,
+        s.theta_8_deviation,
+        s.theta_9_deviation,
+    ]
+    .map(Bits::to_f64)
+}
+
+/// σ √(γ/2) of θ1 … θ9, γ that of the parameter: the last one times the equaliser's power of two, and what is
+/// left of the phase's once γ has settled.
+pub(crate) fn noise(design: &Design) -> [f64; 9] {
+    let (k, by) = (&design.spec.calibration, Equaliser::of(&design.structure));
+    let (gain, offset, bend) = (by.gain, by.offset, by.bend);
+    let less = if k.phase_settles() {
+        Calibration::PHASE_HALVINGS
+    } else {
+        0
+    };
+    let phase = by.phase - less as i32;
+    let powers = [gain, offset, gain, offset, phase, bend, bend, bend, 0];
+    let mut gamma = powers.map(|power| 2f64.powi(power - k.gamma_last as i32));
+    gamma[8] = 2f64.powi(-(k.completion_gamma as i32));
+    gamma.map(|gamma| design.spec.sensor.noise_rms * (gamma / 2.0).sqrt())
 }
