@@ -21,7 +21,7 @@ pub(crate) struct Calibrate {
     #[arg(long, value_enum, default_value_t = Estimator::Unbiased)]
     method: Estimator,
     /// Noise of the sine channel over that of the cosine channel; estimated if not given (`unbiased` only).
-    #[arg(long, value_name = "RATIO")]
+    #[arg(long, value_name = "RATIO", allow_negative_numbers = true)]
     noise_ratio: Option<f64>,
     /// Prints the result for programs.
     #[arg(long)]

@@ -132,6 +132,7 @@ fn a_noise_ratio_is_estimated_or_given() {
             &[&format!("--noise-ratio={wrong}")],
             &["--noise-ratio", "0.01 to 100"],
         );
+        refused(&text, &["--noise-ratio", wrong], &["0.01 to 100"]);
     }
 }
 
