@@ -246,12 +246,16 @@ fn rivals(beside: &Beside, best: &Scored, others: &[&Scored]) -> Vec<String> {
     names
 }
 
-/// A cause of the same domain that has more parameters and is this one for some of their values, as a harmonic of the scale
+/// A cause of the same place that has more parameters and is this one for some of their values, as a harmonic of the scale
 /// is a bend of the channels at one phase: the simpler one goes first, but nothing in a recording tells them apart.
 fn wider(beside: &Beside, best: &Scored, others: &[&Scored]) -> Option<String> {
     let holds = |other: &&&Scored| {
         let c = &other.candidate;
-        let wider = c.domain == best.candidate.domain && other.freedom > best.freedom;
+        let own = best.candidate.domain;
+        // What repeats with the revolution or really moves may be one order of the scale period, too.
+        let domain = c.domain == own
+            || c.domain == Domain::Angle && matches!(own, Domain::Revolution | Domain::Motion);
+        let wider = domain && other.freedom > best.freedom;
         wider && c.name != best.candidate.name && beside.holds(&c.shapes, &best.candidate.shapes)
     };
     others

@@ -155,6 +155,26 @@ fn cogging(
 ) -> Option<Candidate> {
     let per = context.periods_per_revolution.unwrap_or(1);
     let order = strongest_order(per, phi, fast)?;
+    Some(of_order(order, top_order(per) as f64, library))
+}
+
+/// Real motion at orders of the scale period: an error of the sensor there shows in the radius as much as along the circle, but for
+/// two harmonics that make up for each other.
+pub(super) fn cogging_with_the_period(context: &Context, library: &mut Library) -> Vec<Candidate> {
+    /// Orders of the scale period.
+    const ORDERS: usize = 8;
+    let turning = context.phi.as_ref().is_some_and(|phi| turns(phi) >= 0.9);
+    let per = context
+        .periods_per_revolution
+        .filter(|per| turning && *per > 1);
+    let Some(per) = per else { return vec![] };
+    (1..=ORDERS)
+        .map(|order| of_order(order * per as usize, ORDERS as f64, library))
+        .collect()
+}
+
+/// Cogging of an order of the revolution.
+fn of_order(order: usize, trials: f64, library: &mut Library) -> Candidate {
     let make: Make = Rc::new(move |_, library| {
         let place = library.add(
             2,
@@ -170,8 +190,8 @@ fn cogging(
     });
     let order = order as u32;
     let shapes = make(&[], library);
-    Some(Candidate {
-        trials: top_order(per) as f64,
+    Candidate {
+        trials,
         motion: true,
         exact: Some(Exact {
             make,
@@ -188,7 +208,7 @@ fn cogging(
             )
         }),
         ..Candidate::new(COGGING, Domain::Motion, shapes)
-    })
+    }
 }
 
 /// A dip of a centre and a width, in radians of the revolution.

@@ -63,6 +63,9 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
             ..Candidate::new("runout", Domain::Revolution, shapes)
         });
     }
+    let cogging = super::place::cogging_with_the_period(context, &mut catalogue.library);
+    let list = &mut catalogue.candidates;
+    list.extend(cogging);
     if against {
         for order in 1..=ORDERS as u32 {
             let first = 2 * order as usize - 2;

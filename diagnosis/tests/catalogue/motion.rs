@@ -234,3 +234,27 @@ fn large() {
     );
     within_errors(&found, "amplitude", 0.1);
 }
+
+/// Cogging that goes with the scale period as well: an error of the sensor would show in the radius, too. Of one order of the period
+/// it may be a harmonic of the same size in both channels, which is said.
+#[test]
+fn cogging_at_orders_of_the_scale_period() {
+    let motions: [fn(f64, f64) -> f64; 3] = [
+        |_, alpha| 0.004 * alpha.sin(),
+        |_, alpha| 0.004 * (2.0 * alpha).sin(),
+        |_, alpha| 0.004 * (3.0 * alpha).sin(),
+    ];
+    for reference in [false, true] {
+        for motion in motions {
+            let found = finds(
+                "cogging",
+                &Case {
+                    motion,
+                    reference,
+                    ..REVOLVING
+                },
+            );
+            assert_eq!(found.findings[0].cause, "cogging");
+        }
+    }
+}
