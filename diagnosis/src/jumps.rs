@@ -5,6 +5,7 @@ use nonius_recording::Recording;
 
 use crate::checks::{Checked, ninth, repeats};
 use crate::context::{against, unwrapped};
+use crate::solve::dot;
 
 /// Samples on either side of a jump that are compared, and the order of the curve through them; on slow axes more of them
 /// show it, and on axes that shake a curve that bends more.
@@ -31,24 +32,59 @@ struct Jump {
     sigma: f64,
 }
 
+/// A function of the place among `side` samples on either side, which are the places from −1 to 1.
+fn column(side: usize, f: impl Fn(f64) -> f64) -> Vec<f64> {
+    let middle = side as f64 - 0.5;
+    (0..2 * side)
+        .map(|i| f((i as f64 - middle) / middle))
+        .collect()
+}
+
 /// What a step between two samples in the middle adds to a curve of that order through `side` samples on either side: the
 /// weights of the samples that give its size, free of that curve, and of one of the samples.
 fn step_weights(side: usize, order: i32, but: Option<usize>) -> Vec<f64> {
-    let middle = side as f64 - 0.5;
-    let column = |f: &dyn Fn(f64) -> f64| -> Vec<f64> {
-        (0..2 * side)
-            .map(|i| f((i as f64 - middle) / middle))
-            .collect()
-    };
     let single = |one: usize| (0..2 * side).map(|i| f64::from(i == one)).collect();
     let curve: Vec<Vec<f64>> = (0..=order)
-        .map(|degree| column(&|x| x.powi(degree)))
+        .map(|degree| column(side, |x| x.powi(degree)))
         .chain(but.map(single))
         .collect();
-    let step = column(&|x| 0.5 * x.signum());
+    let step = column(side, |x| 0.5 * x.signum());
     let free = crate::solve::without(&step, &curve);
     let square: f64 = free.iter().map(|v| v * v).sum();
     free.iter().map(|v| v / square).collect()
+}
+
+/// Corners of a drive: places where the speed, the acceleration or its change is another at once. A curve does not follow
+/// them, and what it leaves looks like a step.
+struct Corners(Vec<Vec<f64>>);
+
+impl Corners {
+    /// What they add to a curve of that order through `side` samples on either side: of unit square, free of that curve.
+    fn new(side: usize, order: i32) -> Self {
+        /// Steps of a sixteenth of a side by which they may stand beside the middle.
+        const BESIDE: i32 = 4;
+        let curve: Vec<Vec<f64>> = (0..=order)
+            .map(|degree| column(side, |x| x.powi(degree)))
+            .collect();
+        let corner = |(degree, place): (i32, i32)| -> Vec<f64> {
+            let from = f64::from(place) / 16.0;
+            let bent = column(side, |x| (x - from).max(0.0).powi(degree));
+            let free = crate::solve::without(&bent, &curve);
+            let size = free.iter().map(|v| v * v).sum::<f64>().sqrt();
+            free.iter().map(|v| v / size).collect()
+        };
+        let places = -BESIDE..=BESIDE;
+        let all = places.flat_map(|place| (1..=3).map(move |degree| (degree, place)));
+        Self(all.map(corner).collect())
+    }
+
+    /// Whether one of them explains as much of an angle as the jump does.
+    fn explain(&self, look: &Look, jump: &Jump) -> bool {
+        let near = &look.angle[jump.before - look.side..jump.before + look.side];
+        let step: f64 = look.weights.iter().map(|w| w * w).sum();
+        let most = jump.size * jump.size / step;
+        self.0.iter().any(|corner| dot(near, corner).powi(2) > most)
+    }
 }
 
 /// Lays straight lines over samples that do not count.
@@ -105,6 +141,8 @@ struct Look<'a> {
     angle: &'a [f64],
     side: usize,
     order: i32,
+    /// Of the samples about a place: see [`step_weights`].
+    weights: Vec<f64>,
     /// How far it jumps before each sample, by those curves.
     sizes: Vec<f64>,
 }
@@ -124,6 +162,7 @@ impl<'a> Look<'a> {
             side,
             order,
             sizes: sizes.collect(),
+            weights,
         }
     }
 
@@ -208,13 +247,15 @@ pub(crate) fn jumps(recording: &Recording, checked: &Checked) -> Vec<(usize, usi
         if angle.len() < 32 * side {
             break;
         }
+        let corners = Corners::new(side, order);
+        let other = |look: &Look, j: &Jump| replaced(look, j) || corners.explain(look, j);
         let look = Look::new(&angle, side, order);
-        let far = look.far().into_iter().filter(|j| !replaced(&look, j));
+        let far = look.far().into_iter().filter(|j| !other(&look, j));
         found.extend(whole(&look, far.collect(), checked, &found));
         if let Some((reference, apart)) = reference.as_ref().zip(apart.as_ref()) {
             let exact = Look::new(reference, side, order);
             let far = exact.far().into_iter();
-            let far = far.filter(|j| together(apart, j) && !replaced(&exact, j));
+            let far = far.filter(|j| together(apart, j) && !other(&exact, j));
             found.extend(whole(&exact, far.collect(), checked, &found));
         }
     }

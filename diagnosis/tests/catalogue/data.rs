@@ -1,6 +1,8 @@
 //! Causes in the data: samples that are off, lost or doubled, and noise with the signal.
 
-use crate::harness::{Case, LSB, NOISE, PLAIN, Rows, damaged, finds, names, near, shows, shows_in};
+use crate::harness::{
+    Case, LSB, NOISE, PLAIN, Rows, damaged, finds, finds_nothing, names, near, shows, shows_in,
+};
 
 /// Four times as noisy.
 const NOISY: Case = Case {
@@ -208,6 +210,37 @@ fn a_lost_sample_that_a_reference_shows() {
         ..NOISY
     };
     shows_in(&with_reference, "dropped_samples", lost_in_noise);
+}
+
+/// Angle of a drive that goes to and fro at an even speed, speeding up and slowing down evenly in between.
+fn ramps(t: f64) -> f64 {
+    const TURN: f64 = 0.1;
+    const RAMP: f64 = 0.00804;
+    const SPEED: f64 = 2500.0;
+    let after = |corner: f64| 0.5 * SPEED / RAMP * (t - corner).max(0.0).powi(2);
+    let turn = |k: i32| {
+        let at = TURN * f64::from(k);
+        let sense = if k % 2 == 0 { 1.0 } else { -1.0 };
+        sense * (after(at - RAMP) - after(at + RAMP))
+    };
+    after(0.0) - after(RAMP) + (1..=4).map(turn).sum::<f64>()
+}
+
+/// Where the acceleration is another at once, no sample is lost; one that is lost there is found.
+#[test]
+fn corners_of_a_drive_are_no_lost_samples() {
+    let cornered = Case {
+        motion: |t, smooth| ramps(t) - smooth,
+        ..PLAIN
+    };
+    for seed in 0..3 {
+        finds_nothing(&cornered, seed);
+    }
+    shows_in(&cornered, "dropped_samples", |rows| {
+        rows.remove(17_000);
+        rows.remove(15_402);
+        at_even_times(rows);
+    });
 }
 
 /// What jumps in the reference alone is no sample that was lost.
