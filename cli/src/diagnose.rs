@@ -67,7 +67,7 @@ pub(crate) fn run(args: &Diagnose) -> Result<bool> {
             samples: recording.samples(),
             sample_rate_hz: recording.metadata.sample_rate_hz,
             periods_travelled: found.periods_travelled,
-            has_reference: recording.reference_rad.is_some(),
+            has_reference: found.context.against_reference.is_some(),
         },
         simulation: &found.simulation,
         findings: &found.findings,

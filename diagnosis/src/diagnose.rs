@@ -16,6 +16,7 @@ use crate::left;
 use crate::library::Row;
 use crate::model::System;
 use crate::noise;
+use crate::reference;
 use crate::repair::{Repaired, repair};
 use crate::score::KINDS;
 use crate::select::select;
@@ -121,6 +122,7 @@ impl Diagnosis {
 /// # Errors
 /// Where the signals draw no ellipse.
 pub fn diagnose(recording: &Recording) -> Result<Diagnosis, ContextError> {
+    let recording = &*reference::checked(recording);
     let checked = checks::check(recording);
     let repaired = repair(recording, &checked);
     let context = || Context::new(&repaired.recording, repaired.weight.clone());

@@ -121,7 +121,7 @@ fn bridge(values: &mut [f64], weight: &[f64]) {
 }
 
 /// The angle of a recording that draws an ellipse, continuous, radians.
-fn angle(recording: &Recording, weight: &[f64]) -> Option<Vec<f64>> {
+pub(crate) fn angle(recording: &Recording, weight: &[f64]) -> Option<Vec<f64>> {
     let every = recording.samples().div_ceil(ENOUGH).max(1);
     let kept = |values: &[f64]| -> Vec<f64> { values.iter().copied().step_by(every).collect() };
     let (cos, sin) = (kept(&recording.cos), kept(&recording.sin));

@@ -34,6 +34,7 @@ mod one_over_f;
 mod pair;
 mod part;
 mod polygon;
+mod reference;
 mod repair;
 mod report;
 mod score;

@@ -8,6 +8,7 @@ mod harness;
 mod lengths;
 mod long;
 mod motion;
+mod reference;
 mod revolution;
 mod speed;
 mod statics;
