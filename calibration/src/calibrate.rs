@@ -140,6 +140,10 @@ pub fn calibrate(
     }
     cannot_tell.extend(words::of_residuals(method, &fit, own_residual));
     let mut remarks = vec![];
+    if let Some(given) = options.noise_ratio {
+        let own = unbiased::fit(c, s, &samples.start, None);
+        remarks.extend(words::of_given_ratio(given, &own));
+    }
     if let Some(bias) = estimate.bias {
         remarks.push(words::of_bias(bias, !untold.contains(&true)));
     }

@@ -157,6 +157,20 @@ pub(crate) fn of_ratio(fit: &Fit) -> Option<String> {
     })
 }
 
+/// Of a ratio of the channels' noise that was given, where the samples say another one.
+pub(crate) fn of_given_ratio(given: f64, own: &Fit) -> Option<String> {
+    /// Standard errors.
+    const ANOTHER: f64 = 4.0;
+    let ratio = own.noise[1] / own.noise[0];
+    let off = (given / ratio).ln().abs() / own.log_ratio_error;
+    (own.converged && !own.ratio_assumed && off > ANOTHER).then(|| {
+        format!(
+            "--noise-ratio {given}: the samples say {ratio:.2} ± {:.2}; error bars and bounds are those of the ratio that was given",
+            ratio * own.log_ratio_error
+        )
+    })
+}
+
 pub(crate) fn of_method(method: Method) -> Vec<String> {
     let mut out = vec![];
     let name = method.name();
@@ -237,12 +251,16 @@ fn slimness(centred: &[nalgebra::Vector2<f64>]) -> f64 {
 }
 
 /// At how many places of the period the samples stand, seen from their mean: clusters that are a gap of 20° and more apart. A cloud
-/// about its mean, and an arc, have one.
+/// about its mean, and an arc, have one. Near the mean noise alone makes the angle; places of a ring stand away from it.
 fn places(centred: &[nalgebra::Vector2<f64>]) -> usize {
     /// Degrees.
     const GAP: f64 = 20.0;
+    /// Share of the rms distance.
+    const AWAY: f64 = 0.5;
+    let rms = (centred.iter().map(|y| y.norm_squared()).sum::<f64>() / centred.len() as f64).sqrt();
     let mut angles: Vec<f64> = centred
         .iter()
+        .filter(|y| y.norm() > AWAY * rms)
         .map(|y| y.y.atan2(y.x).to_degrees())
         .collect();
     angles.sort_by(f64::total_cmp);
@@ -266,17 +284,17 @@ pub(crate) fn of_nothing(cos: &[f64], sin: &[f64], why: &Error) -> String {
     let centred = centred(cos, sin);
     let (slimness, places) = (slimness(&centred), places(&centred));
     let (seen, advice) = match why {
+        Error::NoEllipse if slimness < LINE => (
+            "the samples lie on a line within their noise: the arc is too short, or both channels carry one signal"
+                .into(),
+            MOVE,
+        ),
         Error::NoEllipse if places > 2 => (
             format!(
                 "the samples stand at {places} places of the period only, which is too few: the speed was exactly {places} \
                  samples a period"
             ),
             "record at another speed",
-        ),
-        Error::NoEllipse if slimness < LINE => (
-            "the samples lie on a line within their noise: the arc is too short, or both channels carry one signal"
-                .into(),
-            MOVE,
         ),
         Error::NoEllipse => (
             "the samples are a cloud and no ring: the scale stands still, or the signals are no sin/cos pair".into(),

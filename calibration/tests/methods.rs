@@ -217,3 +217,44 @@ fn a_line_is_no_ellipse() {
         assert!(said.cannot_tell[0].contains("a_c, b_c, a_s, b_s, beta"));
     }
 }
+
+/// One signal on both channels, with noise: a line, however the noise in its middle is spread around the circle.
+#[test]
+fn a_noisy_line_is_no_places_of_the_period() {
+    for seed in 0..20 {
+        let mut random = StdRng::seed_from_u64(seed);
+        let mut noisy = |k: i32| {
+            let noise: f64 = StandardNormal.sample(&mut random);
+            (f64::from(k) * 0.1).sin() + 0.003 * noise
+        };
+        let (cos, sin): (Vec<f64>, Vec<f64>) = (0..400).map(|k| (noisy(k), noisy(k))).unzip();
+        let error = calibrate(&cos, &sin, Method::Unbiased, &Options::default());
+        let said = undetermined(Method::Unbiased, &cos, &sin, &error.expect_err("a line"));
+        assert!(
+            said.cannot_tell[0].contains("both channels carry one signal"),
+            "{}",
+            said.cannot_tell[0]
+        );
+    }
+}
+
+/// A ratio of the channels' noise that the samples contradict is said.
+#[test]
+fn a_noise_ratio_that_is_not_theirs_is_said() {
+    let mut random = StdRng::seed_from_u64(7);
+    let mut noise = || {
+        let noise: f64 = StandardNormal.sample(&mut random);
+        0.01 * noise
+    };
+    let pairs = (0..4000).map(|k| {
+        let alpha = 0.0123 * f64::from(k);
+        (alpha.cos() + noise(), alpha.sin() + noise())
+    });
+    let (cos, sin): (Vec<f64>, Vec<f64>) = pairs.unzip();
+    for (given, said) in [(None, false), (Some(1.0), false), (Some(3.0), true)] {
+        let options = Options { noise_ratio: given };
+        let found = calibrate(&cos, &sin, Method::Unbiased, &options).expect("an ellipse");
+        let told = found.remarks.iter().any(|r| r.contains("the samples say"));
+        assert_eq!(told, said, "{given:?}: {:?}", found.remarks);
+    }
+}

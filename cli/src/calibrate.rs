@@ -20,7 +20,8 @@ pub(crate) struct Calibrate {
     /// The estimator.
     #[arg(long, value_enum, default_value_t = Estimator::Unbiased)]
     method: Estimator,
-    /// Noise of the sine channel over that of the cosine channel; estimated if not given (`unbiased` only).
+    /// Noise of the sine channel over that of the cosine channel; estimated if not given. `unbiased` weighs the channels by it,
+    /// and the bound beside every method is made of it.
     #[arg(long, value_name = "RATIO", allow_negative_numbers = true)]
     noise_ratio: Option<f64>,
     /// Prints the result for programs.
