@@ -261,13 +261,31 @@ pub(crate) fn forgetful() -> Vec<Variant> {
     [5, 9].map(of).into()
 }
 
+/// Chips whose residual is the paper's projection, which does not allow for what the loop lags.
+pub(crate) fn lagging() -> Vec<Variant> {
+    let of = |(what, method, parameters): (&str, CalibrationMethod, u32)| {
+        Variant::of(what, |spec| {
+            spec.calibration.lag = Some(false);
+            spec.calibration.method = method;
+            spec.calibration.parameters = parameters;
+        })
+    };
+    [
+        ("final form, no lag", Final, 4),
+        ("final form, no lag", Final, 5),
+        ("exact, no lag", Exact, 5),
+    ]
+    .map(of)
+    .into()
+}
+
 /// Few periods between the gears and held, so that the last one, where there is recall, is soon reached, and again; with each parameter set.
 pub(crate) fn recalls() -> Vec<Variant> {
     let one = Multipliers::Count(1);
     let of = |(parameters, method, multipliers): (u32, CalibrationMethod, Multipliers)| {
         Variant::of("recall", |spec| {
             spec.calibration.parameters = parameters;
-            spec.calibration.gear_periods = Some(1);
+            spec.calibration.gear_periods = Some(2);
             spec.calibration.hold_periods = Some(40);
             spec.calibration.method = method;
             spec.chip.multipliers = multipliers;
@@ -324,6 +342,7 @@ pub(crate) fn everything() -> Vec<Variant> {
         harmonics(),
         recalls(),
         forgetful(),
+        lagging(),
         gears(),
     ] {
         list.extend(part);

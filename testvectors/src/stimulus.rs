@@ -204,10 +204,10 @@ pub fn named(design: &Design, rows: usize) -> Vec<Stimulus> {
                 )
             }
         }),
-        // The parameters are led to their bounds and beyond before gamma has settled, then come codes that the correction
+        // The parameters are led to their bounds and beyond before a gear has ended calm, then come codes that the correction
         // cannot hold.
         motion("bounds", &|k| {
-            let t = ((k as f64 / n - 0.12) * 8.0).clamp(0.0, 1.0);
+            let t = ((k as f64 / n - 0.03) * 8.0).clamp(0.0, 1.0);
             let alpha = std::f64::consts::TAU * k as f64 * top.min(1.0 / 20.0);
             if 3 * k < 2 * rows {
                 let cos = a * (1.0 - 0.5 * t) * alpha.cos() + o * 6.0 * t;

@@ -292,6 +292,8 @@ pub fn gtkw(name: &str, design: &Design, columns: &[Column], clocks: usize) -> S
                 "fresh",
                 "whole_period",
                 "disturbed",
+                "rough",
+                "calm",
                 "risen",
                 "held",
                 "ahead_used",

@@ -1,7 +1,7 @@
 // How to instantiate optical: an ADC with a strobe on one side, a motion controller on the other.
 //
-// optical needs 19 clocks per sample; at 1000000 samples per second that is a clock of at least
-// 19000000 Hz (see optical.sdc).
+// optical needs 20 clocks per sample; at 1000000 samples per second that is a clock of at least
+// 20000000 Hz (see optical.sdc).
 
 `default_nettype none
 `timescale 1ns / 1ps

@@ -1,9 +1,9 @@
 # Timing constraints of optical (design 0b990403d2f8), for Vivado, Quartus and every tool that reads SDC.
 #
-# 19 clocks per sample at 1000000 samples per second: the clock needs at least 19000000 Hz.
-# For nextpnr: --freq 19.000
+# 20 clocks per sample at 1000000 samples per second: the clock needs at least 20000000 Hz.
+# For nextpnr: --freq 20.000
 
-create_clock -name clk -period 52.631 [get_ports clk]
+create_clock -name clk -period 50.000 [get_ports clk]
 
 # rst_n may fall at any time. It must rise in step with clk: drive it from a synchroniser of two registers. The path to
 # the pin is then false; recovery is met by the synchroniser's own registers.

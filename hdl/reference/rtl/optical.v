@@ -6,7 +6,7 @@
 // far, is 2^-4 at first and 2^-9 after 5 gears.
 // After S. Balemi, "Automatic calibration of sinusoidal encoder signals", IFAC 2005; equation numbers are the paper's.
 //
-// Design 0b990403d2f8: 16 products on 1 multiplier, 19 clocks per sample.
+// Design 0b990403d2f8: 17 products on 1 multiplier, 20 clocks per sample.
 //
 // Formats: sW.F is a two's complement number of W bits, F of them behind the point; uW.F has no sign and is kept here
 // with a zero in front, so that every number is signed. Angles are in turns of a scale period. A signal that saturates
@@ -26,41 +26,44 @@
 //      |                          | gamma_settled periods_modulo_4 sector sector_relative period_ahead period_behind
 //      |                          | a_period_away reach_ahead reach_behind unseen_ahead used_ahead_counts may_add_ahead
 //      |                          | sector_ahead unseen_behind used_behind_counts may_add_behind sector_behind
-//      |                          | search_begun proven_stand held_and_lost nominal held_some_periods held_unknown
-//      |                          | held_long rises_again restart_cause last_gamma_gear returned_lately
+//      |                          | sector_added search_begun proven_stand held_and_lost nominal held_some_periods
+//      |                          | held_unknown held_long rises_again restart_cause last_gamma_gear returned_lately
 //      |                          | gear_periods_done quiet gear_done periods_count_ends parameters_follow held_before
 //      |                          | gain_c_inside gain_c_rests gain_s_inside gain_s_rests gains_steady proves
 //      |                          | nothing_proven_yet
-//    1 | loop_ab * error_previous | sin_value sin_slope y_c y_s counting whole_period travel_clear sector_added
-//      |                          | new_sector still_used_ahead used_up_ahead still_used_behind used_up_behind y_5
-//      |                          | known_in_lock held_or_known period_breaks_off lost_before
-//    2 | theta_1 * y_c            | cos_value cos_slope drift
-//    3 | cos_slope * cos_inside   | c_exact c
-//    4 | theta_3 * y_s            | cos_magnitude cos_hat c_weak
-//    5 | sin_slope * sin_inside   |
-//    6 | theta_5 * y_c            | sin_magnitude sin_hat
-//    7 | c * cos_hat              | s_exact s
-//    8 | s * sin_hat              | s_weak signal_present may_flip
-//    9 | s * cos_hat              | rho_exact rho rho_in_window flip half_turn rho_high rho_large rho_not_small
-//      |                          | rho_rises proven_better may_recall rho_limited
-//   10 | c * sin_hat              | rho_too_large
-//   11 | cos_hat * rho_limited    | e_exact e_seen e
-//   12 | sin_hat * rho_limited    | e_in_window in_window level_step e_change sample_counts counted residual_large
-//      |                          | disturbed_lately disturbed_or_held radius_large rho_c period_tick gradient_2
-//      |                          | disturbed_period gamma_restart gear_passed gamma_shift gear_periods_up periods_end
-//      |                          | held_periods_up free_period within_period still_held first_gear_period
-//      |                          | last_gear_passed
-//   13 | loop_a * e_change        | level_moved level_full level_empty narrower loop_gear_up full_in_last_gear
-//      |                          | hold_cause hold recall fresh rho_s step_2 gradient_4 gamma_gear_up
-//      |                          | gear_periods_again held_periods_step held_periods_stay holding restart_risen
-//      |                          | recall_again recall_any quiet_periods_pass quiet_periods_end proved gain_moved
-//      |                          | remember search_improves remember_better return_ends return_goes_on signal_changed
-//      |                          | still_known fades fade_ends period_taught lock_falls
-//   14 | y_c * rho_c              | kick step_4 remember_recent together_again travel_ends search_ends theta_applies
-//   15 | y_s * rho_s              | speed alpha_hat_turned alpha_hat_sum carry backwards not_forwards gradient_1 step_1
-//   16 | y_5 * rho_s              | count_before gradient_3 step_3
-//   17 | -                        | gradient_5 step_5
-//   18 | -                        |
+//    1 | loop_ab * error_previous | sin_value sin_slope y_c y_s counting whole_period travel_clear new_sector
+//      |                          | still_used_ahead used_up_ahead still_used_behind used_up_behind y_5 known_in_lock
+//      |                          | held_or_known period_breaks_off lost_before
+//    2 | theta_3 * y_s            | cos_value cos_slope drift
+//    3 | sin_slope * sin_inside   |
+//    4 | cos_slope * cos_inside   | sin_magnitude sin_hat
+//    5 | theta_5 * y_c            | cos_magnitude cos_hat
+//    6 | theta_1 * y_c            | s_exact s s_weak
+//    7 | s * cos_hat              | c_exact c c_weak
+//    8 | c * sin_hat              | signal_present may_flip
+//    9 | c * cos_hat              | e_exact e_seen e
+//   10 | s * sin_hat              | e_in_window e_change
+//   11 | e * e                    | rho_exact rho rho_in_window in_window flip level_step half_turn sample_counts
+//      |                          | counted rho_high rho_large rho_not_small rho_too_large rho_rises proven_better
+//      |                          | may_recall residual_rough radius_large
+//   12 | loop_a * e_change        | level_moved level_full level_empty narrower loop_gear_up full_in_last_gear
+//      |                          | residual_large disturbed_lately disturbed_or_held disturbed_or_astray hold_cause
+//      |                          | hold recall fresh rho_limited period_tick disturbed_period gamma_restart
+//      |                          | gear_passed gamma_shift gamma_gear_up gear_periods_up periods_end
+//      |                          | gear_periods_again held_periods_up free_period held_periods_step held_periods_stay
+//      |                          | within_period gear_ends_calm stays_calm still_held holding first_gear_period
+//      |                          | restart_risen recall_again known_to_be_calm last_gear_passed quiet_periods_pass
+//      |                          | quiet_periods_end proved gain_moved remember search_improves remember_better
+//      |                          | return_ends return_goes_on signal_changed still_known fades fade_ends
+//   13 | cos_hat * rho_limited    | kick recall_any remember_recent together_again period_taught travel_ends
+//      |                          | search_ends theta_applies lock_falls
+//   14 | sin_hat * rho_limited    | speed alpha_hat_turned alpha_hat_sum carry backwards not_forwards rho_c gradient_2
+//      |                          | step_2
+//   15 | y_c * rho_c              | count_before rho_s gradient_4 step_4
+//   16 | y_s * rho_s              | gradient_1 step_1
+//   17 | y_5 * rho_s              | gradient_3 step_3
+//   18 | -                        | gradient_5 step_5
+//   19 | -                        |
 //
 // Coefficients, by name in the comments below:
 //     loop_a                 0.014132976531982422    Loop coefficient a, turns per radian.
@@ -73,7 +76,8 @@
 //     lock_error             0.4375                  Largest |e| in lock, radians.
 //     weak_signal            0.25                    Corrected signals below this are lost.
 //     restart_residual       0.25                    |ρ| above this begins the search again.
-//     hold_residual          0.0625                  |ρ| above this holds the parameters once γ has settled.
+//     hold_residual          0.0625                  |ρ| above this is not small: it holds the parameters once a gear
+//                                                    has ended without.
 //     steady_gain            0.001953125             A gain that moves by more between two times that it is remembered
 //                                                    is of a signal that fades.
 //     gain_near_bound        0.46875                 A gain's deviation from which it is near its bound.
@@ -102,8 +106,8 @@
 //                                                    change, turns per sample.
 //     minus_quarter          -0.25                   −¼.
 //     minus_restart_residual -0.25                   Minus restart_residual: |ρ| above this begins the search again.
-//     minus_hold_residual    -0.0625                 Minus hold_residual: |ρ| above this holds the parameters once γ
-//                                                    has settled.
+//     minus_hold_residual    -0.0625                 Minus hold_residual: |ρ| above this is not small: it holds the
+//                                                    parameters once a gear has ended without.
 //     minus_steady_gain      -0.001953125            Minus steady_gain: A gain that moves by more between two times
 //                                                    that it is remembered is of a signal that fades.
 
@@ -113,7 +117,7 @@
 module optical (
     input  wire clk, // every register changes at the rising edge
     input  wire rst_n, // asynchronous reset, active low
-    input  wire sample_valid, // one clock per sample, 19 clocks apart or more; the inputs below are valid
+    input  wire sample_valid, // one clock per sample, 20 clocks apart or more; the inputs below are valid
     input  wire [11:0] adc_cos, // code of the cosine channel, two's complement
     input  wire [11:0] adc_sin, // code of the sine channel, two's complement
     input  wire preset, // this sample's period becomes number 0; clears lock_lost
@@ -168,6 +172,8 @@ module optical (
     reg ahead_used; // The sectors ahead of the origin were used right before the map was cleared.
     reg behind_used; // The sectors behind the origin were used right before the map was cleared.
     reg disturbed; // The residual was large in this period of travel.
+    reg rough; // The residual was not small in this period of travel.
+    reg calm; // A gear of γ has ended with a small residual since the search began.
     reg risen; // The radius was too large in this period of travel.
     reg held; // The residual was large in the period before: the parameters are held.
     reg returning; // What was recalled is held until some periods have passed quietly (recall).
@@ -190,32 +196,35 @@ module optical (
     reg signed [16:0] cos_address;
     reg signed [9:0] cos_inside;
     reg signed [18:0] cos_value;
+    reg signed [8:0] cos_slope;
     reg signed [17:0] sin_hat;
     reg cos_negative;
     reg signed [17:0] cos_hat;
     reg signed [26:0] s_exact_sum;
     reg signed [17:0] c;
     reg signed [17:0] s;
-    reg c_below_weak_signal;
-    reg not_c_below_minus_weak_signal;
     reg c_weak;
-    reg s_below_weak_signal;
-    reg not_s_below_minus_weak_signal;
+    reg s_weak;
     reg signal_lost_next;
     reg signed [34:0] rho_exact_difference;
     reg signed [17:0] rho;
     reg signed [34:0] s_times_cos_hat;
     reg signed [17:0] e;
-    reg rho_in_window;
+    reg e_below_lock_error;
+    reg e_below_minus_lock_error;
+    reg e_in_window;
     reg signal_present;
     reg in_window;
     reg may_flip;
-    reg signed [7:0] level_moved_sum;
+    reg signed [3:0] level_step;
+    reg level_empty;
     reg loop_gear_below_loop_gear_last;
     reg last_gear;
-    reg signed [2:0] loop_gear_next_chosen;
+    reg signed [2:0] loop_gear_next_bits;
+    reg signed [6:0] lock_level_next_chosen;
     reg locked_next;
-    reg signed [6:0] lock_level_next;
+    reg signed [2:0] loop_gear_next;
+    reg signed [17:0] e_change;
     reg signed [26:0] speed_sum_2;
     reg signed [27:0] speed_sum;
     reg signed [1:0] half_turn;
@@ -227,7 +236,6 @@ module optical (
     reg gamma_gear_below_gamma_gear_settled;
     reg gamma_settled;
     reg signed [7:0] sector;
-    reg signed [7:0] sector_relative;
     reg period_ahead;
     reg period_behind;
     reg a_period_away;
@@ -236,17 +244,15 @@ module optical (
     reg sector_behind;
     reg not_counting;
     reg travel_clear;
+    reg sector_added;
     reg new_sector;
-    reg signed [7:0] travel_low_next;
+    reg signed [7:0] travel_low_next_chosen;
+    reg signed [7:0] travel_high_next_chosen;
     reg ahead_used_next;
     reg behind_used_next;
+    reg sample_counts;
     reg counted;
-    reg rho_high;
-    reg rho_large;
-    reg gamma_settled_and_rho_not_small;
     reg rho_too_large;
-    reg residual_large;
-    reg disturbed_or_held;
     reg gamma_gear_below_one;
     reg search_begun;
     reg not_fading;
@@ -254,6 +260,7 @@ module optical (
     reg held_and_lost;
     reg not_apart;
     reg may_recall;
+    reg residual_rough;
     reg radius_large;
     reg fresh;
     reg signed [14:0] rho_limited;
@@ -261,46 +268,38 @@ module optical (
     reg signed [17:0] rho_s;
     reg signed [13:0] y_5;
     reg nominal;
-    reg signed [24:0] step_5;
+    reg signed [25:0] running_5_next_difference;
     reg signed [21:0] step_1;
-    reg signed [24:0] step_2_geared;
     reg signed [20:0] step_2;
     reg signed [21:0] step_3;
-    reg signed [24:0] step_4_geared;
+    reg signed [20:0] step_4;
     reg held_long;
     reg restart_cause;
-    reg disturbed_period;
-    reg gamma_restart;
     reg gamma_gear_below_gamma_gear_last;
     reg last_gamma_gear;
     reg quiet;
     reg gear_done;
-    reg gear_passed;
-    reg gamma_shift;
-    reg signed [1:0] gear_periods_up;
     reg periods_count_ends;
-    reg periods_end;
-    reg signed [1:0] held_periods_up;
     reg not_returning;
     reg parameters_follow;
     reg held_before;
-    reg free_period;
     reg held_or_known;
     reg signed [8:0] held_periods_next;
-    reg within_period;
-    reg still_held;
+    reg not_rough;
     reg signed [6:0] gear_periods_next;
-    reg first_gear_period;
     reg disturbed_next;
+    reg rough_next;
     reg risen_next;
     reg held_next;
+    reg recall_again;
+    reg recall_or_recall_again;
     reg recall_any;
     reg signed [24:0] running_1_next;
     reg signed [23:0] running_2_next;
     reg signed [24:0] running_3_next;
     reg signed [23:0] running_4_next;
+    reg known_to_be_calm;
     reg signed [3:0] gamma_gear_next;
-    reg last_gear_passed;
     reg proves;
     reg proved;
     reg not_gains_steady;
@@ -308,7 +307,11 @@ module optical (
     reg remember;
     reg remember_better;
     reg remember_recent;
+    reg return_goes_on;
+    reg signed [17:0] recent_1_next;
     reg signed [16:0] recent_2_next;
+    reg signed [17:0] recent_3_next;
+    reg signed [16:0] recent_4_next;
     reg returning_next;
     reg fading_next;
     reg either_halfway_or_quiet_periods_pass;
@@ -316,11 +319,10 @@ module optical (
     reg known_next;
     reg gain_moved_or_apart;
     reg apart_next;
-    reg period_taught;
     reg period_breaks_off;
     reg theta_applies;
     reg lost_before;
-    reg lock_falls;
+    reg not_locked_next;
     reg lock_lost_next;
 
     // Operands and products
@@ -328,10 +330,10 @@ module optical (
     reg signed [17:0] operand_b_0;
     reg signed [35:0] product_0;
 
-    // Step counter: a sample starts in step 0 and takes 19 steps
+    // Step counter: a sample starts in step 0 and takes 20 steps
     reg [4:0] step;
     wire start = (step == 5'd0) & sample_valid;
-    wire last = step == 5'd18;
+    wire last = step == 5'd19;
 
     always @(posedge clk or negedge rst_n)
         if (!rst_n) begin
@@ -383,25 +385,25 @@ module optical (
     wire signed [9:0] sin_inside_now = sin_inside_sum[9:0] - 10'sh200; // s10.19, step 0, with half_segment
     wire signed [18:0] sin_value_now = {1'b0, sine_table_row[25:8]}; // u18.17, step 1
     wire signed [8:0] sin_slope_now = {1'b0, sine_table_row[7:0]}; // u8.5, step 1
-    wire signed [17:0] sin_slope_times_sin_inside = product_0[17:0]; // s18.24, step 6
-    wire signed [25:0] sin_magnitude_sum = // s26.24, step 6
+    wire signed [17:0] sin_slope_times_sin_inside = product_0[17:0]; // s18.24, step 4
+    wire signed [25:0] sin_magnitude_sum = // s26.24, step 4
         {{8{sin_slope_times_sin_inside[17]}}, sin_slope_times_sin_inside} + {sin_value, 7'b0};
-    wire signed [17:0] sin_magnitude = sin_magnitude_sum[25:8]; // s18.16, step 6
+    wire signed [17:0] sin_magnitude = sin_magnitude_sum[25:8]; // s18.16, step 4
     wire signed [16:0] cos_address_now = odd_quadrant ? quarter_phase : quarter_phase_mirrored; // s17.18, step 0
     wire signed [9:0] cos_inside_bits = {1'b0, cos_address_now[8:0]}; // u9.18, step 0
     wire signed [10:0] cos_inside_sum = {cos_inside_bits, 1'h1}; // s11.19, step 0, with half_bit
     wire signed [9:0] cos_inside_now = cos_inside_sum[9:0] - 10'sh200; // s10.19, step 0, with half_segment
     wire signed [18:0] cos_value_now = {1'b0, sine_table_row[25:8]}; // u18.17, step 2
-    wire signed [8:0] cos_slope = {1'b0, sine_table_row[7:0]}; // u8.5, step 2
-    wire signed [17:0] cos_slope_times_cos_inside = product_0[17:0]; // s18.24, step 4
-    wire signed [25:0] cos_magnitude_sum = // s26.24, step 4
+    wire signed [8:0] cos_slope_now = {1'b0, sine_table_row[7:0]}; // u8.5, step 2
+    wire signed [17:0] cos_slope_times_cos_inside = product_0[17:0]; // s18.24, step 5
+    wire signed [25:0] cos_magnitude_sum = // s26.24, step 5
         {{8{cos_slope_times_cos_inside[17]}}, cos_slope_times_cos_inside} + {cos_value, 7'b0};
-    wire signed [17:0] cos_magnitude = cos_magnitude_sum[25:8]; // s18.16, step 4
-    wire signed [17:0] sin_hat_negated = -sin_magnitude; // s18.16, step 6
-    wire signed [17:0] sin_hat_now = upper_half ? sin_hat_negated : sin_magnitude; // s18.16, step 6
+    wire signed [17:0] cos_magnitude = cos_magnitude_sum[25:8]; // s18.16, step 5
+    wire signed [17:0] sin_hat_negated = -sin_magnitude; // s18.16, step 4
+    wire signed [17:0] sin_hat_now = upper_half ? sin_hat_negated : sin_magnitude; // s18.16, step 4
     wire cos_negative_now = upper_half_now ^ odd_quadrant; // step 0
-    wire signed [17:0] cos_hat_negated = -cos_magnitude; // s18.16, step 4
-    wire signed [17:0] cos_hat_now = cos_negative ? cos_hat_negated : cos_magnitude; // s18.16, step 4
+    wire signed [17:0] cos_hat_negated = -cos_magnitude; // s18.16, step 5
+    wire signed [17:0] cos_hat_now = cos_negative ? cos_hat_negated : cos_magnitude; // s18.16, step 5
 
     // ADC codes
     //   y = code, as a fraction of the range that the nominal amplitude needs
@@ -426,105 +428,103 @@ module optical (
     // Correction
     //   c = theta_1 y_c + theta_2, s = theta_3 y_s + theta_4 + theta_5 y_c
     //   (paper section 5.3)
-    wire signed [26:0] theta_1_times_y_c = product_0[26:0]; // s27.25, step 3
-    wire signed [26:0] c_exact = theta_1_times_y_c + {{3{theta_2_deviation[23]}}, theta_2_deviation}; // s27.25, step 3
-    wire signed [26:0] theta_3_times_y_s = product_0[26:0]; // s27.25, step 5
-    wire signed [26:0] s_exact_sum_now = // s27.25, step 5
+    wire signed [26:0] theta_1_times_y_c = product_0[26:0]; // s27.25, step 7
+    wire signed [26:0] c_exact = theta_1_times_y_c + {{3{theta_2_deviation[23]}}, theta_2_deviation}; // s27.25, step 7
+    wire signed [26:0] theta_3_times_y_s = product_0[26:0]; // s27.25, step 3
+    wire signed [26:0] s_exact_sum_now = // s27.25, step 3
         theta_3_times_y_s + {{3{theta_4_deviation[23]}}, theta_4_deviation};
-    wire signed [25:0] theta_5_times_y_c = product_0[25:0]; // s26.26, step 7
-    wire signed [28:0] s_exact = // s29.26, step 7
+    wire signed [25:0] theta_5_times_y_c = product_0[25:0]; // s26.26, step 6
+    wire signed [28:0] s_exact = // s29.26, step 6
         {s_exact_sum[26], s_exact_sum, 1'b0} + {{3{theta_5_times_y_c[25]}}, theta_5_times_y_c};
     wire signed [17:0] c_rounded = c_exact[26:9] + {17'b0, c_exact[8]};
-    wire signed [17:0] c_now = c_rounded; // s18.16, step 3
+    wire signed [17:0] c_now = c_rounded; // s18.16, step 7
     wire signed [18:0] s_rounded = s_exact[28:10] + {18'b0, s_exact[9]};
-    wire signed [17:0] s_now = // s18.16, step 7
+    wire signed [17:0] s_now = // s18.16, step 6
         ((&s_rounded[18:17]) | ~(|s_rounded[18:17])) ? s_rounded[17:0] : {s_rounded[18], {17{~s_rounded[18]}}};
 
     // Loss of signal
     //   |c| and |s| both below the threshold
-    wire c_below_weak_signal_now = $signed(c_now[17:14]) < 4'sd1; // step 3, with weak_signal
-    wire not_c_below_minus_weak_signal_now = $signed(~c_now[17:14]) < 4'sd1; // step 3, with minus_weak_signal
-    wire c_weak_now = c_below_weak_signal & not_c_below_minus_weak_signal; // step 4
-    wire s_below_weak_signal_now = $signed(s_now[17:14]) < 4'sd1; // step 7, with weak_signal
-    wire not_s_below_minus_weak_signal_now = $signed(~s_now[17:14]) < 4'sd1; // step 7, with minus_weak_signal
-    wire s_weak = s_below_weak_signal & not_s_below_minus_weak_signal; // step 8
+    wire c_weak_now = // step 7, with weak_signal, minus_weak_signal
+        ($signed(c_now[17:14]) < 4'sd1) & ($signed(~c_now[17:14]) < 4'sd1);
+    wire s_weak_now = // step 6, with weak_signal, minus_weak_signal
+        ($signed(s_now[17:14]) < 4'sd1) & ($signed(~s_now[17:14]) < 4'sd1);
     wire signal_lost_next_now = c_weak & s_weak; // step 8
 
     // Radial residual
     //   rho = c cos(alpha_hat) + s sin(alpha_hat) - 1, the half bit of rounding in the 1
     //   (paper section 5.5.1, n^T r)
-    wire signed [34:0] c_times_cos_hat = product_0[34:0]; // s35.32, step 8
-    wire signed [34:0] rho_exact_difference_now = c_times_cos_hat - 35'shffff8000; // s35.32, step 8, with unit_radius
-    wire signed [34:0] s_times_sin_hat = product_0[34:0]; // s35.32, step 9
-    wire signed [35:0] rho_exact = // s36.32, step 9
+    wire signed [34:0] c_times_cos_hat = product_0[34:0]; // s35.32, step 10
+    wire signed [34:0] rho_exact_difference_now = c_times_cos_hat - 35'shffff8000; // s35.32, step 10, with unit_radius
+    wire signed [34:0] s_times_sin_hat = product_0[34:0]; // s35.32, step 11
+    wire signed [35:0] rho_exact = // s36.32, step 11
         {rho_exact_difference[34], rho_exact_difference} + {s_times_sin_hat[34], s_times_sin_hat};
-    wire signed [17:0] rho_now = // s18.16, step 9
+    wire signed [17:0] rho_now = // s18.16, step 11
         ((&rho_exact[35:33]) | ~(|rho_exact[35:33])) ? rho_exact[33:16] : {rho_exact[35], {17{~rho_exact[35]}}};
 
     // Phase detector
     //   e = s cos(alpha_hat) - c sin(alpha_hat)
     //   (paper section 3)
-    wire signed [34:0] s_times_cos_hat_now = product_0[34:0]; // s35.32, step 10
-    wire signed [34:0] c_times_sin_hat = product_0[34:0]; // s35.32, step 11
-    wire signed [35:0] e_exact = // s36.32, step 11
+    wire signed [34:0] s_times_cos_hat_now = product_0[34:0]; // s35.32, step 8
+    wire signed [34:0] c_times_sin_hat = product_0[34:0]; // s35.32, step 9
+    wire signed [35:0] e_exact = // s36.32, step 9
         {s_times_cos_hat[34], s_times_cos_hat} - {c_times_sin_hat[34], c_times_sin_hat};
     wire signed [19:0] e_seen_rounded = e_exact[35:16] + {19'b0, e_exact[15]};
-    wire signed [17:0] e_seen = // s18.16, step 11
+    wire signed [17:0] e_seen = // s18.16, step 9
         ((&e_seen_rounded[19:17]) | ~(|e_seen_rounded[19:17]))
             ? e_seen_rounded[17:0]
             : {e_seen_rounded[19], {17{~e_seen_rounded[19]}}};
-    wire signed [17:0] e_now = signal_lost_next ? 18'sd0 : e_seen; // s18.16, step 11
+    wire signed [17:0] e_now = signal_lost_next ? 18'sd0 : e_seen; // s18.16, step 9
 
     // Lock window
     //   |e| and -rho below their limits, signal present
     //   (calibration needs lock: the update would otherwise drive the gains to zero)
-    wire e_in_window = // step 12, with lock_error, minus_lock_error
-        ($signed(e[17:12]) < 6'sd7) & ($signed(~e[17:12]) < 6'sd7);
-    wire rho_in_window_now = $signed(~rho_now[17:15]) < 3'sd1; // step 9, with minus_lock_residual
+    wire e_below_lock_error_now = $signed(e_now[17:12]) < 6'sd7; // step 9, with lock_error
+    wire e_below_minus_lock_error_now = ~($signed(~e_now[17:12]) < 6'sd7); // step 9, with minus_lock_error
+    wire e_in_window_now = e_below_lock_error & ~e_below_minus_lock_error; // step 10
+    wire rho_in_window = $signed(~rho_now[17:15]) < 3'sd1; // step 11, with minus_lock_residual
     wire signal_present_now = ~signal_lost_next_now; // step 8
-    wire in_window_now = (e_in_window & rho_in_window) & signal_present; // step 12
+    wire in_window_now = (e_in_window & rho_in_window) & signal_present; // step 11
     wire may_flip_now = ~(locked | signal_lost_next_now); // step 8
-    wire flip = ~($signed(~rho_now[17:16]) < 2'sd1) & may_flip; // step 9
+    wire flip = ~($signed(~rho_now[17:16]) < 2'sd1) & may_flip; // step 11
 
     // Lock level and loop gear
     //   level' = level + 1 if good, else level - 8; full: narrower loop, in the last gear locked; empty: widest loop,
     //   lock is lost
-    wire signed [3:0] level_step = in_window_now ? 4'sd1 : 4'sh8; // s4.0, step 12, with lock_down
-    wire signed [7:0] level_moved_sum_now = // s8.0, step 12
-        {lock_level[6], lock_level} + {{4{level_step[3]}}, level_step};
-    wire signed [6:0] level_moved = // u6.0, step 13
+    wire signed [3:0] level_step_now = in_window_now ? 4'sd1 : 4'sh8; // s4.0, step 11, with lock_down
+    wire signed [7:0] level_moved_sum = {lock_level[6], lock_level} + {{4{level_step[3]}}, level_step}; // s8.0, step 12
+    wire signed [6:0] level_moved = // u6.0, step 12
         level_moved_sum[7] ? 7'sd0 : (level_moved_sum[6] ? {1'b0, {6{1'b1}}} : {1'b0, level_moved_sum[5:0]});
-    wire level_moved_below_lock_full = level_moved < 7'sh3f; // step 13, with lock_full
-    wire level_full = ~level_moved_below_lock_full; // step 13
-    wire level_empty = level_moved < 7'sd1; // step 13
+    wire level_moved_below_lock_full = level_moved < 7'sh3f; // step 12, with lock_full
+    wire level_full = ~level_moved_below_lock_full; // step 12
+    wire level_empty_now = level_moved < 7'sd1; // step 12
     wire loop_gear_below_loop_gear_last_now = loop_gear < 3'sd3; // step 0, with loop_gear_last
     wire last_gear_now = ~loop_gear_below_loop_gear_last_now; // step 0
-    wire narrower = level_full & loop_gear_below_loop_gear_last; // step 13
-    wire signed [1:0] loop_gear_up = narrower ? 2'sd1 : 2'sd0; // s2.0, step 13
-    wire signed [3:0] loop_gear_next_sum = // s4.0, step 13
+    wire narrower = level_full & loop_gear_below_loop_gear_last; // step 12
+    wire signed [1:0] loop_gear_up = narrower ? 2'sd1 : 2'sd0; // s2.0, step 12
+    wire signed [3:0] loop_gear_next_sum = // s4.0, step 12
         {loop_gear[2], loop_gear} + {{2{loop_gear_up[1]}}, loop_gear_up};
-    wire signed [2:0] loop_gear_next_bits = {1'b0, loop_gear_next_sum[1:0]}; // u2.0, step 13
-    wire signed [2:0] loop_gear_next_chosen_now = level_empty ? 3'sd0 : loop_gear_next_bits; // s3.0, step 13
-    wire signed [6:0] lock_level_next_chosen = narrower ? 7'sh1f : level_moved; // s7.0, step 13, with lock_restart
-    wire full_in_last_gear = level_full & last_gear; // step 13
-    wire locked_next_now = (locked | full_in_last_gear) & ~level_empty; // step 13
-    wire signed [6:0] lock_level_next_now = lock_level_next_chosen; // u6.0, step 13
-    wire signed [2:0] loop_gear_next = loop_gear_next_chosen; // u2.0, step 18
+    wire signed [2:0] loop_gear_next_bits_now = {1'b0, loop_gear_next_sum[1:0]}; // u2.0, step 12
+    wire signed [2:0] loop_gear_next_chosen = level_empty ? 3'sd0 : loop_gear_next_bits; // s3.0, step 13
+    wire signed [6:0] lock_level_next_chosen_now = narrower ? 7'sh1f : level_moved; // s7.0, step 12, with lock_restart
+    wire full_in_last_gear = level_full & last_gear; // step 12
+    wire locked_next_now = (locked | full_in_last_gear) & ~level_empty_now; // step 12
+    wire signed [6:0] lock_level_next = lock_level_next_chosen; // u6.0, step 19
+    wire signed [2:0] loop_gear_next_now = loop_gear_next_chosen; // u2.0, step 13
 
     // Loop filter
     //   rate' = rate + a (e - e_1) + (a + b) e_1; a times 2^n, a + b times 4^n in acquisition
     //   (paper section 4.3: Method 1's a and b, c = -2, d = 1; the rate is kept, it is the speed)
-    wire signed [18:0] e_change_difference = {e[17], e} - {error_previous[17], error_previous}; // s19.16, step 12
-    wire signed [17:0] e_change = // s18.16, step 12
+    wire signed [18:0] e_change_difference = {e[17], e} - {error_previous[17], error_previous}; // s19.16, step 10
+    wire signed [17:0] e_change_now = // s18.16, step 10
         ((&e_change_difference[18:17]) | ~(|e_change_difference[18:17]))
             ? e_change_difference[17:0]
             : {e_change_difference[18], {17{~e_change_difference[18]}}};
-    wire signed [33:0] loop_a_times_e_change = product_0[33:0]; // s34.38, step 14
-    wire signed [33:0] kick_scaled = loop_a_times_e_change; // s34.35, step 14
+    wire signed [33:0] loop_a_times_e_change = product_0[33:0]; // s34.38, step 13
+    wire signed [33:0] kick_scaled = loop_a_times_e_change; // s34.35, step 13
     wire signed [26:0] kick_unshifted = kick_scaled[33:7];
     wire signed [26:0] kick_shifted = kick_unshifted >>> loop_gear[1:0];
     wire signed [25:0] kick_rounded = kick_shifted[26:1] + {25'b0, kick_shifted[0]};
-    wire signed [25:0] kick = kick_rounded; // s26.27, step 14
+    wire signed [25:0] kick = kick_rounded; // s26.27, step 13
     wire signed [33:0] loop_ab_times_error_previous = product_0[33:0]; // s34.42, step 2
     wire signed [33:0] drift_scaled = loop_ab_times_error_previous; // s34.36, step 2
     wire signed [25:0] drift_unshifted = drift_scaled[33:8];
@@ -532,30 +532,30 @@ module optical (
     wire signed [24:0] drift_rounded = drift_shifted[25:1] + {24'b0, drift_shifted[0]};
     wire signed [25:0] drift = {drift_rounded[24], drift_rounded}; // s26.27, step 2
     wire signed [26:0] speed_sum_2_now = {rate[25], rate} + {drift[25], drift}; // s27.27, step 2
-    wire signed [27:0] speed_sum_now = {speed_sum_2[26], speed_sum_2} + {{2{kick[25]}}, kick}; // s28.27, step 14
-    wire signed [25:0] speed_now = // s26.27, step 15
+    wire signed [27:0] speed_sum_now = {speed_sum_2[26], speed_sum_2} + {{2{kick[25]}}, kick}; // s28.27, step 13
+    wire signed [25:0] speed_now = // s26.27, step 14
         ((&speed_sum[27:25]) | ~(|speed_sum[27:25])) ? speed_sum[25:0] : {speed_sum[27], {25{~speed_sum[27]}}};
 
     // Position
     //   alpha_hat' = alpha_hat + rate' (mod 1), count' = count + carry
     //   (paper equation (9))
-    wire signed [1:0] half_turn_now = flip ? 2'sd1 : 2'sd0; // s2.1, step 9
-    wire signed [28:0] alpha_hat_turned = // s29.27, step 15
+    wire signed [1:0] half_turn_now = flip ? 2'sd1 : 2'sd0; // s2.1, step 11
+    wire signed [28:0] alpha_hat_turned = // s29.27, step 14
         {alpha_hat[27], alpha_hat} + {half_turn[1], half_turn, 26'b0};
-    wire signed [28:0] alpha_hat_sum = alpha_hat_turned + {{3{speed_now[25]}}, speed_now}; // s29.27, step 15
-    wire signed [27:0] alpha_hat_next_now = {1'b0, alpha_hat_sum[26:0]}; // u27.27, step 15
-    wire signed [2:0] carry = {alpha_hat_sum[28], alpha_hat_sum[28:27]}; // s3.0, step 15
-    wire signed [31:0] count_before = preset_held ? 32'sd0 : count; // s32.32, step 16
-    wire signed [1:0] count_next_scaled_now = carry[1:0]; // s2.32, step 15
-    wire signed [32:0] count_next_sum = // s33.32, step 16
+    wire signed [28:0] alpha_hat_sum = alpha_hat_turned + {{3{speed_now[25]}}, speed_now}; // s29.27, step 14
+    wire signed [27:0] alpha_hat_next_now = {1'b0, alpha_hat_sum[26:0]}; // u27.27, step 14
+    wire signed [2:0] carry = {alpha_hat_sum[28], alpha_hat_sum[28:27]}; // s3.0, step 14
+    wire signed [31:0] count_before = preset_held ? 32'sd0 : count; // s32.32, step 15
+    wire signed [1:0] count_next_scaled_now = carry[1:0]; // s2.32, step 14
+    wire signed [32:0] count_next_sum = // s33.32, step 15
         {count_before[31], count_before} + {{31{count_next_scaled[1]}}, count_next_scaled};
-    wire signed [31:0] count_next_now = count_next_sum[31:0]; // s32.32, step 16
+    wire signed [31:0] count_next_now = count_next_sum[31:0]; // s32.32, step 15
 
     // Direction
     //   sign of the rate, with a dead band
-    wire backwards = ~($signed(~speed_now[25:11]) < 15'sd1); // step 15, with minus_direction_rate
-    wire not_forwards = $signed(speed_now[25:11]) < 15'sd1; // step 15, with direction_rate
-    wire direction_next_now = backwards | (direction & not_forwards); // step 15
+    wire backwards = ~($signed(~speed_now[25:11]) < 15'sd1); // step 14, with minus_direction_rate
+    wire not_forwards = $signed(speed_now[25:11]) < 15'sd1; // step 14, with direction_rate
+    wire direction_next_now = backwards | (direction & not_forwards); // step 14
 
     // Travel
     //   a sector of the period is fresh until it was used once since the last whole period
@@ -569,82 +569,92 @@ module optical (
     wire signed [7:0] sector_now = {periods_modulo_4, 6'b0} + {sector_bits[6], sector_bits}; // s8.6, step 0
     wire signed [8:0] sector_relative_difference = // s9.6, step 0
         {sector_now[7], sector_now} - {travel_origin[7], travel_origin};
-    wire signed [7:0] sector_relative_now = sector_relative_difference[7:0]; // s8.6, step 0
-    wire period_ahead_now = ~($signed(sector_relative_now[7:6]) < 2'sd1); // step 0
-    wire period_behind_now = ~(~sector_relative_now < 8'sh3f); // step 0
+    wire signed [7:0] sector_relative = sector_relative_difference[7:0]; // s8.6, step 0
+    wire period_ahead_now = ~($signed(sector_relative[7:6]) < 2'sd1); // step 0
+    wire period_behind_now = ~(~sector_relative < 8'sh3f); // step 0
     wire a_period_away_now = period_ahead_now | period_behind_now; // step 0
     wire whole_period_now = a_period_away & counting_now; // step 1
     wire signed [8:0] reach_ahead = {travel_low[7], travel_low} + 9'sh40; // s9.6, step 0
     wire signed [8:0] reach_behind = {travel_high[7], travel_high} - 9'sh40; // s9.6, step 0
     wire unseen_ahead = // step 0
-        (travel_high < sector_relative_now) & ($signed({sector_relative_now[7], sector_relative_now}) < reach_ahead);
+        (travel_high < sector_relative) & ($signed({sector_relative[7], sector_relative}) < reach_ahead);
     wire used_ahead_counts = ahead_used & gamma_gear_below_gamma_gear_settled_now; // step 0
-    wire may_add_ahead = ~(($signed(sector_relative_now[7:4]) < 4'sd1) & used_ahead_counts); // step 0
+    wire may_add_ahead = ~(($signed(sector_relative[7:4]) < 4'sd1) & used_ahead_counts); // step 0
     wire sector_ahead_now = unseen_ahead & may_add_ahead; // step 0
     wire unseen_behind = // step 0
-        (sector_relative_now < travel_low) & (reach_behind < $signed({sector_relative_now[7], sector_relative_now}));
+        (sector_relative < travel_low) & (reach_behind < $signed({sector_relative[7], sector_relative}));
     wire used_behind_counts = behind_used & gamma_gear_below_gamma_gear_settled_now; // step 0
     wire may_add_behind = // step 0, with minus_quarter
-        ~(($signed(~sector_relative_now[7:4]) < 4'sd1) & used_behind_counts);
+        ~(($signed(~sector_relative[7:4]) < 4'sd1) & used_behind_counts);
     wire sector_behind_now = unseen_behind & may_add_behind; // step 0
     wire not_counting_now = ~counting_now; // step 1
     wire travel_clear_now = whole_period_now | not_counting_now; // step 1
-    wire sector_added = sector_ahead | sector_behind; // step 1
+    wire sector_added_now = sector_ahead_now | sector_behind_now; // step 0
     wire new_sector_now = sector_added | travel_clear_now; // step 1
-    wire signed [7:0] travel_origin_next = travel_clear ? sector : travel_origin; // s8.6, step 18
-    wire signed [7:0] travel_low_next_chosen = sector_behind ? sector_relative : travel_low; // s8.6, step 1
-    wire signed [7:0] travel_low_next_now = travel_clear_now ? 8'sd0 : travel_low_next_chosen; // s8.6, step 1
-    wire signed [7:0] travel_high_next_chosen = sector_ahead ? sector_relative : travel_high; // s8.6, step 18
-    wire signed [7:0] travel_high_next = travel_clear ? 8'sd0 : travel_high_next_chosen; // s8.6, step 18
+    wire signed [7:0] travel_origin_next = travel_clear ? sector : travel_origin; // s8.6, step 19
+    wire signed [7:0] travel_low_next_chosen_now = sector_behind_now ? sector_relative : travel_low; // s8.6, step 0
+    wire signed [7:0] travel_low_next = travel_clear ? 8'sd0 : travel_low_next_chosen; // s8.6, step 19
+    wire signed [7:0] travel_high_next_chosen_now = sector_ahead_now ? sector_relative : travel_high; // s8.6, step 0
+    wire signed [7:0] travel_high_next = travel_clear ? 8'sd0 : travel_high_next_chosen; // s8.6, step 19
     wire still_used_ahead = ahead_used & ~(whole_period_now | sector_ahead); // step 1
     wire used_up_ahead = period_behind | still_used_ahead; // step 1
     wire ahead_used_next_now = counting_now & used_up_ahead; // step 1
     wire still_used_behind = behind_used & ~(whole_period_now | sector_behind); // step 1
     wire used_up_behind = period_ahead | still_used_behind; // step 1
     wire behind_used_next_now = counting_now & used_up_behind; // step 1
-    wire sample_counts = counting & in_window_now; // step 12
-    wire counted_now = sample_counts & new_sector; // step 12
+    wire sample_counts_now = counting & in_window_now; // step 11
+    wire counted_now = sample_counts_now & new_sector; // step 11
 
     // Hold
-    //   from the first quiet period on a large residual, once gamma has settled one that is not small, and all until
-    //   the end of a period without one, moves no parameter
-    wire rho_high_now = ~($signed(rho_now[17:14]) < 4'sd1); // step 9, with restart_residual
-    wire rho_large_now = rho_high_now | ~($signed(~rho_now[17:14]) < 4'sd1); // step 9, with minus_restart_residual
-    wire rho_below_hold_residual = $signed(rho_now[17:12]) < 6'sd1; // step 9, with hold_residual
-    wire rho_not_small = // step 9, with minus_hold_residual
+    //   from the first quiet period on a large residual, once a gear has ended calm one that is not small, and all
+    //   until the end of a period without one, moves no parameter
+    wire rho_high = ~($signed(rho_now[17:14]) < 4'sd1); // step 11, with restart_residual
+    wire rho_large = rho_high | ~($signed(~rho_now[17:14]) < 4'sd1); // step 11, with minus_restart_residual
+    wire rho_below_hold_residual = $signed(rho_now[17:12]) < 6'sd1; // step 11, with hold_residual
+    wire rho_not_small = // step 11, with minus_hold_residual
         ~(rho_below_hold_residual & ($signed(~rho_now[17:12]) < 6'sd1));
-    wire gamma_settled_and_rho_not_small_now = gamma_settled & rho_not_small; // step 9
-    wire rho_too_large_now = rho_large | gamma_settled_and_rho_not_small; // step 10
-    wire residual_large_now = rho_too_large & sample_counts; // step 12
-    wire disturbed_lately = residual_large_now | disturbed; // step 12
-    wire disturbed_or_held_now = disturbed_lately | held; // step 12
-    wire hold_cause = (disturbed_or_held | level_moved_below_lock_full) | returning; // step 13
+    wire rho_too_large_now = rho_large | (calm & rho_not_small); // step 11
+    wire residual_large = rho_too_large & sample_counts; // step 12
+    wire disturbed_lately = residual_large | disturbed; // step 12
+    wire disturbed_or_held = disturbed_lately | held; // step 12
+    wire disturbed_or_astray = disturbed_or_held | level_moved_below_lock_full; // step 12
+    wire hold_cause = disturbed_or_astray | returning; // step 12
     wire gamma_gear_below_one_now = gamma_gear < 4'sd1; // step 0
     wire search_begun_now = ~gamma_gear_below_one_now | ~(gear_periods < 7'sd1); // step 0
-    wire hold = hold_cause & search_begun; // step 13
+    wire hold = hold_cause & search_begun; // step 12
     wire not_fading_now = ~fading; // step 0
     wire proven_stand_now = known & not_fading_now; // step 0
-    wire rho_rises = ~rho_below_hold_residual; // step 9
+    wire rho_rises = ~rho_below_hold_residual; // step 11
     wire held_and_lost_now = ~($signed(held_periods[8:2]) < 7'sd1) & ~locked; // step 0, with held_and_lost_constant
     wire not_apart_now = ~apart; // step 0
-    wire proven_better = (not_apart | rho_rises) | held_and_lost; // step 9
-    wire may_recall_now = proven_stand & proven_better; // step 9
-    wire recall = hold & may_recall; // step 13
-    wire radius_large_now = rho_high & sample_counts; // step 12
-    wire fresh_now = counted & ~hold; // step 13
+    wire proven_better = (not_apart | rho_rises) | held_and_lost; // step 11
+    wire may_recall_now = proven_stand & proven_better; // step 11
+    wire recall = hold & may_recall; // step 12
+    wire residual_rough_now = rho_not_small & sample_counts_now; // step 11
+    wire radius_large_now = rho_high & sample_counts_now; // step 11
+    wire fresh_now = counted & ~hold; // step 12
+
+    // Radius, whatever the loop lags behind
+    //   radius - 1 = rho + e^2/2
+    //   (rho is a projection on the estimate, which is e off the pair: cos(e) - 1 is no error of the sensor)
+    wire signed [35:0] e_times_e = product_0[35:0]; // s36.32, step 12
+    wire signed [35:0] rho_limited_scaled = e_times_e; // s36.33, step 12
 
     // Gradient along the radius
     //   rho_c = cos(alpha_hat) rho, rho_s = sin(alpha_hat) rho
     //   (paper section 5.5.1: r + (sin, -cos) e = n (n^T r))
-    wire signed [14:0] rho_limited_now = // s15.16, step 9
-        ((&rho_now[17:14]) | ~(|rho_now[17:14])) ? rho_now[14:0] : {rho_now[17], {14{~rho_now[17]}}};
-    wire signed [31:0] cos_hat_times_rho_limited = product_0[31:0]; // s32.32, step 12
+    wire signed [35:0] rho_limited_rounded = {rho[17], rho, 17'h10000} + rho_limited_scaled;
+    wire signed [14:0] rho_limited_now = // s15.16, step 12
+        ((&rho_limited_rounded[35:31]) | ~(|rho_limited_rounded[35:31]))
+            ? rho_limited_rounded[31:17]
+            : {rho_limited_rounded[35], {14{~rho_limited_rounded[35]}}};
+    wire signed [31:0] cos_hat_times_rho_limited = product_0[31:0]; // s32.32, step 14
     wire signed [17:0] rho_c_rounded = cos_hat_times_rho_limited[31:14] + {17'b0, cos_hat_times_rho_limited[13]};
-    wire signed [17:0] rho_c_now = rho_c_rounded; // s18.18, step 12
-    wire signed [31:0] sin_hat_times_rho_limited = product_0[31:0]; // s32.32, step 13
+    wire signed [17:0] rho_c_now = rho_c_rounded; // s18.18, step 14
+    wire signed [31:0] sin_hat_times_rho_limited = product_0[31:0]; // s32.32, step 15
     wire signed [17:0] rho_s_rounded = sin_hat_times_rho_limited[31:14] + {17'b0, sin_hat_times_rho_limited[13]};
-    wire signed [17:0] rho_s_now = rho_s_rounded; // s18.18, step 13
-    wire period_tick = counted_now & whole_period; // step 12
+    wire signed [17:0] rho_s_now = rho_s_rounded; // s18.18, step 15
+    wire period_tick = counted & whole_period; // step 12
 
     // Parameter update
     //   theta -= gamma gradient, each component times a power of two that lets all parameters converge alike; once
@@ -652,51 +662,51 @@ module optical (
     //   (paper section 5.5.1, M of equation (7))
     wire signed [11:0] y_5_scaled = y_c; // s12.13, step 1
     wire signed [13:0] y_5_now = gamma_settled ? {{2{y_5_scaled[11]}}, y_5_scaled} : {y_c, 2'b0}; // s14.13, step 1
-    wire signed [30:0] gradient_5 = product_0[30:0]; // s31.31, step 17
-    wire signed [28:0] y_c_times_rho_c = product_0[28:0]; // s29.29, step 15
-    wire signed [28:0] y_s_times_rho_s = product_0[28:0]; // s29.29, step 16
+    wire signed [30:0] gradient_5 = product_0[30:0]; // s31.31, step 18
+    wire signed [28:0] y_c_times_rho_c = product_0[28:0]; // s29.29, step 16
+    wire signed [28:0] y_s_times_rho_s = product_0[28:0]; // s29.29, step 17
     wire nominal_now = gamma_gear_below_one_now & (signal_lost & ~locked); // step 0
-    wire signed [24:0] step_5_geared = shifted_1; // s25.25, step 17
-    wire signed [24:0] step_5_now = fresh ? step_5_geared : 25'sd0; // s25.25, step 17
-    wire signed [25:0] running_5_next_difference = // s26.25, step 18
+    wire signed [24:0] step_5_geared = shifted_2; // s25.25, step 18
+    wire signed [24:0] step_5 = fresh ? step_5_geared : 25'sd0; // s25.25, step 18
+    wire signed [25:0] running_5_next_difference_now = // s26.25, step 18
         {{2{running_5[23]}}, running_5} - {step_5[24], step_5};
-    wire signed [23:0] running_5_next_bits = // s24.25, step 18
+    wire signed [23:0] running_5_next_bits = // s24.25, step 19
         ((&running_5_next_difference[25:23]) | ~(|running_5_next_difference[25:23]))
             ? running_5_next_difference[23:0]
             : {running_5_next_difference[25], {23{~running_5_next_difference[25]}}};
-    wire signed [28:0] gradient_1 = y_c_times_rho_c; // s29.32, step 15
-    wire signed [24:0] step_1_geared = shifted_1; // s25.25, step 15
-    wire signed [21:0] step_1_now = fresh ? step_1_geared[21:0] : 22'sd0; // s22.25, step 15
-    wire signed [25:0] running_1_next_difference = // s26.25, step 16
+    wire signed [28:0] gradient_1 = y_c_times_rho_c; // s29.32, step 16
+    wire signed [24:0] step_1_geared = shifted_2; // s25.25, step 16
+    wire signed [21:0] step_1_now = fresh ? step_1_geared[21:0] : 22'sd0; // s22.25, step 16
+    wire signed [25:0] running_1_next_difference = // s26.25, step 17
         {running_1[24], running_1} - {{4{step_1[21]}}, step_1};
-    wire signed [24:0] running_1_next_bits = // s25.25, step 16
+    wire signed [24:0] running_1_next_bits = // s25.25, step 17
         ((&running_1_next_difference[25:24]) | ~(|running_1_next_difference[25:24]))
             ? running_1_next_difference[24:0]
             : {running_1_next_difference[25], {24{~running_1_next_difference[25]}}};
-    wire signed [17:0] gradient_2 = rho_c_now; // s18.22, step 12
-    wire signed [24:0] step_2_geared_now = shifted_1; // s25.25, step 12
-    wire signed [20:0] step_2_now = fresh_now ? step_2_geared[20:0] : 21'sd0; // s21.25, step 13
-    wire signed [24:0] running_2_next_difference = // s25.25, step 14
+    wire signed [17:0] gradient_2 = rho_c_now; // s18.22, step 14
+    wire signed [24:0] step_2_geared = shifted_2; // s25.25, step 14
+    wire signed [20:0] step_2_now = fresh ? step_2_geared[20:0] : 21'sd0; // s21.25, step 14
+    wire signed [24:0] running_2_next_difference = // s25.25, step 15
         {running_2[23], running_2} - {{4{step_2[20]}}, step_2};
-    wire signed [23:0] running_2_next_bits = // s24.25, step 14
+    wire signed [23:0] running_2_next_bits = // s24.25, step 15
         ((&running_2_next_difference[24:23]) | ~(|running_2_next_difference[24:23]))
             ? running_2_next_difference[23:0]
             : {running_2_next_difference[24], {23{~running_2_next_difference[24]}}};
-    wire signed [28:0] gradient_3 = y_s_times_rho_s; // s29.32, step 16
-    wire signed [24:0] step_3_geared = shifted_1; // s25.25, step 16
-    wire signed [21:0] step_3_now = fresh ? step_3_geared[21:0] : 22'sd0; // s22.25, step 16
-    wire signed [25:0] running_3_next_difference = // s26.25, step 17
+    wire signed [28:0] gradient_3 = y_s_times_rho_s; // s29.32, step 17
+    wire signed [24:0] step_3_geared = shifted_2; // s25.25, step 17
+    wire signed [21:0] step_3_now = fresh ? step_3_geared[21:0] : 22'sd0; // s22.25, step 17
+    wire signed [25:0] running_3_next_difference = // s26.25, step 18
         {running_3[24], running_3} - {{4{step_3[21]}}, step_3};
-    wire signed [24:0] running_3_next_bits = // s25.25, step 17
+    wire signed [24:0] running_3_next_bits = // s25.25, step 18
         ((&running_3_next_difference[25:24]) | ~(|running_3_next_difference[25:24]))
             ? running_3_next_difference[24:0]
             : {running_3_next_difference[25], {24{~running_3_next_difference[25]}}};
-    wire signed [17:0] gradient_4 = rho_s_now; // s18.22, step 13
-    wire signed [24:0] step_4_geared_now = shifted_1; // s25.25, step 13
-    wire signed [20:0] step_4 = fresh ? step_4_geared[20:0] : 21'sd0; // s21.25, step 14
-    wire signed [24:0] running_4_next_difference = // s25.25, step 14
+    wire signed [17:0] gradient_4 = rho_s_now; // s18.22, step 15
+    wire signed [24:0] step_4_geared = shifted_2; // s25.25, step 15
+    wire signed [20:0] step_4_now = fresh ? step_4_geared[20:0] : 21'sd0; // s21.25, step 15
+    wire signed [24:0] running_4_next_difference = // s25.25, step 16
         {running_4[23], running_4} - {{4{step_4[20]}}, step_4};
-    wire signed [23:0] running_4_next_bits = // s24.25, step 14
+    wire signed [23:0] running_4_next_bits = // s24.25, step 16
         ((&running_4_next_difference[24:23]) | ~(|running_4_next_difference[24:23]))
             ? running_4_next_difference[23:0]
             : {running_4_next_difference[24], {23{~running_4_next_difference[24]}}};
@@ -707,9 +717,9 @@ module optical (
     wire held_unknown = held_some_periods & ~proven_stand_now; // step 0
     wire held_long_now = ~(held_periods < 9'shff) | held_unknown; // step 0, with hold_periods_last
     wire rises_again = risen & fading; // step 0
-    wire restart_cause_now = (gamma_gear_below_gamma_gear_settled_now | held_long_now) | rises_again; // step 0
-    wire disturbed_period_now = period_tick & disturbed; // step 12
-    wire gamma_restart_now = disturbed_period_now & restart_cause; // step 12
+    wire restart_cause_now = (~calm | held_long_now) | rises_again; // step 0
+    wire disturbed_period = period_tick & disturbed; // step 12
+    wire gamma_restart = disturbed_period & restart_cause; // step 12
     wire gamma_gear_below_gamma_gear_last_now = gamma_gear < 4'sd5; // step 0, with gamma_gear_last
     wire last_gamma_gear_now = ~gamma_gear_below_gamma_gear_last_now; // step 0
     wire returned_lately = returning & ($signed(gear_periods[6:5]) < 2'sd1); // step 0, with returning_periods
@@ -717,62 +727,68 @@ module optical (
     wire disturbed_or_held_2 = disturbed | held; // step 0
     wire quiet_now = ~disturbed_or_held_2; // step 0
     wire gear_done_now = gear_periods_done & quiet_now; // step 0
-    wire gear_passed_now = period_tick & gear_done; // step 12
-    wire gamma_shift_now = gear_passed_now & gamma_gear_below_gamma_gear_last; // step 12
-    wire signed [1:0] gamma_gear_up = gamma_shift ? 2'sd1 : 2'sd0; // s2.0, step 13
-    wire signed [4:0] gamma_gear_next_sum = // s5.0, step 13
+    wire gear_passed = period_tick & gear_done; // step 12
+    wire gamma_shift = gear_passed & gamma_gear_below_gamma_gear_last; // step 12
+    wire signed [1:0] gamma_gear_up = gamma_shift ? 2'sd1 : 2'sd0; // s2.0, step 12
+    wire signed [4:0] gamma_gear_next_sum = // s5.0, step 12
         {gamma_gear[3], gamma_gear} + {{3{gamma_gear_up[1]}}, gamma_gear_up};
-    wire signed [3:0] gamma_gear_next_bits_2 = {1'b0, gamma_gear_next_sum[2:0]}; // u3.0, step 13
-    wire signed [1:0] gear_periods_up_now = period_tick ? 2'sd1 : 2'sd0; // s2.0, step 12
-    wire signed [7:0] gear_periods_next_sum = // s8.0, step 13
+    wire signed [3:0] gamma_gear_next_bits_2 = {1'b0, gamma_gear_next_sum[2:0]}; // u3.0, step 12
+    wire signed [1:0] gear_periods_up = period_tick ? 2'sd1 : 2'sd0; // s2.0, step 12
+    wire signed [7:0] gear_periods_next_sum = // s8.0, step 12
         {gear_periods[6], gear_periods} + {{6{gear_periods_up[1]}}, gear_periods_up};
-    wire signed [6:0] gear_periods_next_bits = {1'b0, gear_periods_next_sum[5:0]}; // u6.0, step 13
+    wire signed [6:0] gear_periods_next_bits = {1'b0, gear_periods_next_sum[5:0]}; // u6.0, step 12
     wire periods_count_ends_now = gear_done_now | disturbed_or_held_2; // step 0
-    wire periods_end_now = period_tick & periods_count_ends; // step 12
-    wire gear_periods_again = (periods_end | gamma_restart) | not_counting; // step 13
-    wire signed [1:0] held_periods_up_now = disturbed_period_now ? 2'sd1 : 2'sd0; // s2.0, step 12
+    wire periods_end = period_tick & periods_count_ends; // step 12
+    wire gear_periods_again = (periods_end | gamma_restart) | not_counting; // step 12
+    wire signed [1:0] held_periods_up = disturbed_period ? 2'sd1 : 2'sd0; // s2.0, step 12
     wire not_returning_now = ~returning; // step 0
     wire parameters_follow_now = quiet_now & not_returning_now; // step 0
     wire held_before_now = ~(held_periods < 9'sd1); // step 0
-    wire free_period_now = (period_tick & parameters_follow) & held_before; // step 12
-    wire signed [1:0] held_periods_step = free_period ? 2'sh3 : held_periods_up; // s2.0, step 13
+    wire free_period = (period_tick & parameters_follow) & held_before; // step 12
+    wire signed [1:0] held_periods_step = free_period ? 2'sh3 : held_periods_up; // s2.0, step 12
     wire known_in_lock = known & counting_now; // step 1
     wire held_or_known_now = held | known_in_lock; // step 1
-    wire held_periods_stay = held_or_known & ~gamma_restart; // step 13
-    wire signed [9:0] held_periods_next_sum = // s10.0, step 13
+    wire held_periods_stay = held_or_known & ~gamma_restart; // step 12
+    wire signed [9:0] held_periods_next_sum = // s10.0, step 12
         {held_periods[8], held_periods} + {{8{held_periods_step[1]}}, held_periods_step};
-    wire signed [8:0] held_periods_next_bits = {1'b0, held_periods_next_sum[7:0]}; // u8.0, step 13
-    wire signed [8:0] held_periods_next_chosen = held_periods_stay ? held_periods_next_bits : 9'sd0; // s9.0, step 13
-    wire signed [8:0] held_periods_next_now = held_periods_next_chosen; // u8.0, step 13
-    wire within_period_now = ~period_tick & counting; // step 12
-    wire still_held_now = held & ~period_tick; // step 12
-    wire holding = (disturbed_period & ~gamma_restart) | still_held; // step 13
-    wire signed [3:0] gamma_gear_next_chosen_2 = gamma_restart ? 4'sd0 : gamma_gear_next_bits_2; // s4.0, step 13
-    wire signed [3:0] gamma_gear_next_bits = gamma_gear_next_chosen_2; // u3.0, step 13
-    wire signed [6:0] gear_periods_next_chosen = gear_periods_again ? 7'sd0 : gear_periods_next_bits; // s7.0, step 13
-    wire signed [6:0] gear_periods_next_now = gear_periods_next_chosen; // u6.0, step 13
-    wire first_gear_period_now = (period_tick & quiet) & gamma_gear_below_one; // step 12
-    wire disturbed_next_now = residual_large | (disturbed & within_period); // step 13
-    wire risen_next_now = radius_large | (risen & within_period); // step 13
-    wire held_next_now = holding & counting; // step 13
+    wire signed [8:0] held_periods_next_bits = {1'b0, held_periods_next_sum[7:0]}; // u8.0, step 12
+    wire signed [8:0] held_periods_next_chosen = held_periods_stay ? held_periods_next_bits : 9'sd0; // s9.0, step 12
+    wire signed [8:0] held_periods_next_now = held_periods_next_chosen; // u8.0, step 12
+    wire within_period = ~period_tick & counting; // step 12
+    wire not_rough_now = ~rough; // step 0
+    wire gear_ends_calm = gear_passed & not_rough; // step 12
+    wire stays_calm = (gear_ends_calm | calm) & ~gamma_restart; // step 12
+    wire still_held = held & ~period_tick; // step 12
+    wire holding = (disturbed_period & ~gamma_restart) | still_held; // step 12
+    wire signed [3:0] gamma_gear_next_chosen_2 = gamma_restart ? 4'sd0 : gamma_gear_next_bits_2; // s4.0, step 12
+    wire signed [3:0] gamma_gear_next_bits = gamma_gear_next_chosen_2; // u3.0, step 12
+    wire signed [6:0] gear_periods_next_chosen = gear_periods_again ? 7'sd0 : gear_periods_next_bits; // s7.0, step 12
+    wire signed [6:0] gear_periods_next_now = gear_periods_next_chosen; // u6.0, step 12
+    wire first_gear_period = (period_tick & quiet) & gamma_gear_below_one; // step 12
+    wire disturbed_next_now = residual_large | (disturbed & within_period); // step 12
+    wire rough_next_now = residual_rough | (rough & within_period); // step 12
+    wire risen_next_now = radius_large | (risen & within_period); // step 12
+    wire held_next_now = holding & counting; // step 12
 
     // Recall
     //   held where it is known, or back: theta = proven; after twice gear_periods quiet periods in the last gear:
     //   recent' = theta, proven' = recent if no gain moves
-    wire restart_risen = gamma_restart & risen; // step 13
-    wire recall_again = ((restart_risen & fading) | nominal) & known; // step 13
-    wire recall_any_now = (recall | recall_again) | nominal; // step 13
-    wire signed [24:0] running_1_next_now = recall_any ? {proven_1, 7'b0} : running_1_next_bits; // s25.25, step 16
-    wire signed [23:0] running_2_next_now = recall_any ? {proven_2, 7'b0} : running_2_next_bits; // s24.25, step 14
-    wire signed [24:0] running_3_next_now = recall_any ? {proven_3, 7'b0} : running_3_next_bits; // s25.25, step 17
-    wire signed [23:0] running_4_next_now = recall_any ? {proven_4, 7'b0} : running_4_next_bits; // s24.25, step 14
-    wire signed [23:0] running_5_next = recall_any ? {proven_5, 7'b0} : running_5_next_bits; // s24.25, step 18
-    wire signed [3:0] gamma_gear_next_chosen = // s4.0, step 13, with gamma_gear_last
-        recall_again ? 4'sd5 : gamma_gear_next_bits;
-    wire signed [3:0] gamma_gear_next_now = gamma_gear_next_chosen; // u3.0, step 13
-    wire last_gear_passed_now = gear_passed_now & last_gamma_gear; // step 12
-    wire quiet_periods_pass = last_gear_passed & not_returning; // step 13
-    wire quiet_periods_end = quiet_periods_pass & halfway; // step 13
+    wire restart_risen = gamma_restart & risen; // step 12
+    wire recall_again_now = ((restart_risen & fading) | nominal) & known; // step 12
+    wire recall_or_recall_again_now = recall | recall_again_now; // step 12
+    wire recall_any_now = recall_or_recall_again | nominal; // step 13
+    wire signed [24:0] running_1_next_now = recall_any ? {proven_1, 7'b0} : running_1_next_bits; // s25.25, step 17
+    wire signed [23:0] running_2_next_now = recall_any ? {proven_2, 7'b0} : running_2_next_bits; // s24.25, step 15
+    wire signed [24:0] running_3_next_now = recall_any ? {proven_3, 7'b0} : running_3_next_bits; // s25.25, step 18
+    wire signed [23:0] running_4_next_now = recall_any ? {proven_4, 7'b0} : running_4_next_bits; // s24.25, step 16
+    wire signed [23:0] running_5_next = recall_any ? {proven_5, 7'b0} : running_5_next_bits; // s24.25, step 19
+    wire known_to_be_calm_now = stays_calm | recall_again_now; // step 12
+    wire signed [3:0] gamma_gear_next_chosen = // s4.0, step 12, with gamma_gear_last
+        recall_again_now ? 4'sd5 : gamma_gear_next_bits;
+    wire signed [3:0] gamma_gear_next_now = gamma_gear_next_chosen; // u3.0, step 12
+    wire last_gear_passed = gear_passed & last_gamma_gear; // step 12
+    wire quiet_periods_pass = last_gear_passed & not_returning; // step 12
+    wire quiet_periods_end = quiet_periods_pass & halfway; // step 12
     wire signed [10:0] gain_c_inside_bits = theta_1_deviation[24:14]; // s11.11, step 0
     wire signed [10:0] gain_c_rests_bits = recent_1[17:7]; // s11.11, step 0
     wire gain_c_inside = $signed(gain_c_inside_bits[10:6]) < 5'shf; // step 0, with gain_near_bound
@@ -789,77 +805,78 @@ module optical (
         ($signed(gain_s_rests_difference[11:2]) < 10'sd1) & ($signed(~gain_s_rests_difference[11:2]) < 10'sd1);
     wire gains_steady = (gain_c_rests & gain_c_inside) & (gain_s_rests & gain_s_inside); // step 0
     wire proves_now = gains_steady | ~known; // step 0
-    wire proved_now = quiet_periods_end & proves; // step 13
+    wire proved_now = quiet_periods_end & proves; // step 12
     wire not_gains_steady_now = ~gains_steady; // step 0
-    wire gain_moved = quiet_periods_end & not_gains_steady; // step 13
+    wire gain_moved = quiet_periods_end & not_gains_steady; // step 12
     wire nothing_proven_yet_now = ~(known | last_gamma_gear_now); // step 0
-    wire remember_now = proved_now | nothing_proven_yet; // step 13
-    wire search_improves = (gear_passed | first_gear_period) & gamma_gear_below_gamma_gear_last; // step 13
-    wire remember_better_now = search_improves | quiet_periods_end; // step 13
-    wire remember_recent_now = remember_better | recall_any; // step 14
-    wire return_ends = gear_passed | gamma_restart; // step 13
-    wire return_goes_on = recall & ~return_ends; // step 13
-    wire signal_changed = restart_risen & not_fading; // step 13
-    wire still_known = known & ~signal_changed; // step 13
-    wire fades = (gamma_restart & held_long) | fading; // step 13
-    wire fade_ends = (recall_again | proved_now) | signal_changed; // step 13
-    wire together_again = proved | recall_any; // step 14
-    wire signed [17:0] recent_1_next_bits = running_1_next[24:7]; // s18.18, step 18
-    wire signed [17:0] recent_1_next = remember_recent ? recent_1_next_bits : recent_1; // s18.18, step 18
-    wire signed [16:0] recent_2_next_bits = running_2_next_now[23:7]; // s17.18, step 14
-    wire signed [16:0] recent_2_next_now = remember_recent_now ? recent_2_next_bits : recent_2; // s17.18, step 14
-    wire signed [17:0] recent_3_next_bits = running_3_next[24:7]; // s18.18, step 18
-    wire signed [17:0] recent_3_next = remember_recent ? recent_3_next_bits : recent_3; // s18.18, step 18
-    wire signed [16:0] recent_4_next_bits = running_4_next[23:7]; // s17.18, step 18
-    wire signed [16:0] recent_4_next = remember_recent ? recent_4_next_bits : recent_4; // s17.18, step 18
-    wire signed [16:0] recent_5_next_bits = running_5_next[23:7]; // s17.18, step 18
-    wire signed [16:0] recent_5_next = remember_recent ? recent_5_next_bits : recent_5; // s17.18, step 18
-    wire signed [17:0] proven_1_next = remember ? recent_1 : proven_1; // s18.18, step 18
-    wire signed [16:0] proven_2_next = remember ? recent_2 : proven_2; // s17.18, step 18
-    wire signed [17:0] proven_3_next = remember ? recent_3 : proven_3; // s18.18, step 18
-    wire signed [16:0] proven_4_next = remember ? recent_4 : proven_4; // s17.18, step 18
-    wire signed [16:0] proven_5_next = remember ? recent_5 : proven_5; // s17.18, step 18
+    wire remember_now = proved_now | nothing_proven_yet; // step 12
+    wire search_improves = (gear_passed | first_gear_period) & gamma_gear_below_gamma_gear_last; // step 12
+    wire remember_better_now = search_improves | quiet_periods_end; // step 12
+    wire remember_recent_now = remember_better | recall_any_now; // step 13
+    wire return_ends = gear_passed | gamma_restart; // step 12
+    wire return_goes_on_now = recall & ~return_ends; // step 12
+    wire signal_changed = restart_risen & not_fading; // step 12
+    wire still_known = known & ~signal_changed; // step 12
+    wire fades = (gamma_restart & held_long) | fading; // step 12
+    wire fade_ends = (recall_again_now | proved_now) | signal_changed; // step 12
+    wire together_again = proved | recall_any_now; // step 13
+    wire signed [17:0] recent_1_next_bits = running_1_next_now[24:7]; // s18.18, step 17
+    wire signed [17:0] recent_1_next_now = remember_recent ? recent_1_next_bits : recent_1; // s18.18, step 17
+    wire signed [16:0] recent_2_next_bits = running_2_next_now[23:7]; // s17.18, step 15
+    wire signed [16:0] recent_2_next_now = remember_recent ? recent_2_next_bits : recent_2; // s17.18, step 15
+    wire signed [17:0] recent_3_next_bits = running_3_next_now[24:7]; // s18.18, step 18
+    wire signed [17:0] recent_3_next_now = remember_recent ? recent_3_next_bits : recent_3; // s18.18, step 18
+    wire signed [16:0] recent_4_next_bits = running_4_next_now[23:7]; // s17.18, step 16
+    wire signed [16:0] recent_4_next_now = remember_recent ? recent_4_next_bits : recent_4; // s17.18, step 16
+    wire signed [16:0] recent_5_next_bits = running_5_next[23:7]; // s17.18, step 19
+    wire signed [16:0] recent_5_next = remember_recent ? recent_5_next_bits : recent_5; // s17.18, step 19
+    wire signed [17:0] proven_1_next = remember ? recent_1 : proven_1; // s18.18, step 19
+    wire signed [16:0] proven_2_next = remember ? recent_2 : proven_2; // s17.18, step 19
+    wire signed [17:0] proven_3_next = remember ? recent_3 : proven_3; // s18.18, step 19
+    wire signed [16:0] proven_4_next = remember ? recent_4 : proven_4; // s17.18, step 19
+    wire signed [16:0] proven_5_next = remember ? recent_5 : proven_5; // s17.18, step 19
     wire returning_next_now = return_goes_on | recall_again; // step 13
-    wire fading_next_now = fades & ~fade_ends; // step 13
-    wire either_halfway_or_quiet_periods_pass_now = halfway ^ quiet_periods_pass; // step 13
-    wire halfway_next_now = either_halfway_or_quiet_periods_pass & ~recall_any; // step 14
-    wire known_next_now = still_known | proved_now; // step 13
-    wire gain_moved_or_apart_now = gain_moved | apart; // step 13
-    wire apart_next_now = gain_moved_or_apart & ~together_again; // step 14
+    wire fading_next_now = fades & ~fade_ends; // step 12
+    wire either_halfway_or_quiet_periods_pass_now = halfway ^ quiet_periods_pass; // step 12
+    wire halfway_next_now = either_halfway_or_quiet_periods_pass & ~recall_any_now; // step 13
+    wire known_next_now = still_known | proved_now; // step 12
+    wire gain_moved_or_apart_now = gain_moved | apart; // step 12
+    wire apart_next_now = gain_moved_or_apart & ~together_again; // step 13
 
     // Parameters as they are applied
     //   theta = what the search has found, once gamma has settled where a period of travel ends
     //   (paper section 5.5: static measurements may bias the estimates)
-    wire period_taught_now = fresh_now & whole_period; // step 13
+    wire period_taught = fresh & whole_period; // step 13
     wire period_breaks_off_now = travel_clear_now & ~whole_period_now; // step 1
-    wire travel_ends = period_taught | period_breaks_off; // step 14
-    wire search_ends = gamma_gear_below_gamma_gear_settled | travel_ends; // step 14
-    wire theta_applies_now = search_ends | recall_any; // step 14
-    wire signed [24:0] theta_1_deviation_next = theta_applies ? running_1_next : theta_1_deviation; // s25.25, step 18
-    wire signed [23:0] theta_2_deviation_next = theta_applies ? running_2_next : theta_2_deviation; // s24.25, step 18
-    wire signed [24:0] theta_3_deviation_next = theta_applies ? running_3_next : theta_3_deviation; // s25.25, step 18
-    wire signed [23:0] theta_4_deviation_next = theta_applies ? running_4_next : theta_4_deviation; // s24.25, step 18
-    wire signed [23:0] theta_5_deviation_next = theta_applies ? running_5_next : theta_5_deviation; // s24.25, step 18
+    wire travel_ends = period_taught | period_breaks_off; // step 13
+    wire search_ends = gamma_gear_below_gamma_gear_settled | travel_ends; // step 13
+    wire theta_applies_now = search_ends | recall_any_now; // step 13
+    wire signed [24:0] theta_1_deviation_next = theta_applies ? running_1_next : theta_1_deviation; // s25.25, step 19
+    wire signed [23:0] theta_2_deviation_next = theta_applies ? running_2_next : theta_2_deviation; // s24.25, step 19
+    wire signed [24:0] theta_3_deviation_next = theta_applies ? running_3_next : theta_3_deviation; // s25.25, step 19
+    wire signed [23:0] theta_4_deviation_next = theta_applies ? running_4_next : theta_4_deviation; // s24.25, step 19
+    wire signed [23:0] theta_5_deviation_next = theta_applies ? running_5_next : theta_5_deviation; // s24.25, step 19
 
     // Flags
     //   what the machine control needs to know
     wire lost_before_now = lock_lost & ~preset_held; // step 1
-    wire lock_falls_now = locked & ~locked_next_now; // step 13
-    wire lock_lost_next_now = lost_before | lock_falls; // step 14
+    wire not_locked_next_now = ~locked_next_now; // step 12
+    wire lock_falls = locked & not_locked_next; // step 13
+    wire lock_lost_next_now = lost_before | lock_falls; // step 13
 
-    // Shifter 1, shared: gamma is a power of two
-    reg signed [25:0] unshifted_1;
+    // Shifter 2, shared: gamma is a power of two
+    reg signed [25:0] unshifted_2;
     always @*
         case (step)
-            5'd12: unshifted_1 = {{4{gradient_2[17]}}, gradient_2, 4'b0}; // step_2_geared
-            5'd13: unshifted_1 = {{4{gradient_4[17]}}, gradient_4, 4'b0}; // step_4_geared
-            5'd15: unshifted_1 = {{3{gradient_1[28]}}, gradient_1[28:6]}; // step_1_geared
-            5'd16: unshifted_1 = {{3{gradient_3[28]}}, gradient_3[28:6]}; // step_3_geared
-            default: unshifted_1 = gradient_5[30:5];
+            5'd14: unshifted_2 = {{4{gradient_2[17]}}, gradient_2, 4'b0}; // step_2_geared
+            5'd15: unshifted_2 = {{4{gradient_4[17]}}, gradient_4, 4'b0}; // step_4_geared
+            5'd16: unshifted_2 = {{3{gradient_1[28]}}, gradient_1[28:6]}; // step_1_geared
+            5'd17: unshifted_2 = {{3{gradient_3[28]}}, gradient_3[28:6]}; // step_3_geared
+            default: unshifted_2 = gradient_5[30:5];
         endcase
-    wire signed [25:0] shift_1 = unshifted_1 >>> gamma_gear[2:0];
-    wire signed [24:0] shifted_1_rounded = shift_1[25:1] + {24'b0, shift_1[0]};
-    wire signed [24:0] shifted_1 = shifted_1_rounded;
+    wire signed [25:0] shift_2 = unshifted_2 >>> gamma_gear[2:0];
+    wire signed [24:0] shifted_2_rounded = shift_2[25:1] + {24'b0, shift_2[0]};
+    wire signed [24:0] shifted_2 = shifted_2_rounded;
 
     // Multiplier 0
     always @(posedge clk)
@@ -868,31 +885,36 @@ module optical (
     always @(posedge clk)
         case (step)
             5'd0: operand_a_0 <= error_previous;
-            5'd1, 5'd5, 5'd13: operand_a_0 <= {{6{y_c[11]}}, y_c};
-            5'd2: operand_a_0 <= {{8{cos_inside[9]}}, cos_inside};
-            5'd3: operand_a_0 <= {{2{theta_3[15]}}, theta_3};
-            5'd4: operand_a_0 <= {{9{sin_slope[8]}}, sin_slope};
-            5'd6, 5'd9: operand_a_0 <= c;
-            5'd7: operand_a_0 <= s_now;
-            5'd8: operand_a_0 <= s;
-            5'd10, 5'd11: operand_a_0 <= {{3{rho_limited[14]}}, rho_limited};
-            5'd12: operand_a_0 <= 18'she78e; // loop_a
-            default: operand_a_0 <= rho_s;
+            5'd1: operand_a_0 <= {{2{theta_3[15]}}, theta_3};
+            5'd2: operand_a_0 <= {{8{sin_inside[9]}}, sin_inside};
+            5'd3: operand_a_0 <= {{8{cos_inside[9]}}, cos_inside};
+            5'd4: operand_a_0 <= {{4{theta_5[13]}}, theta_5};
+            5'd5: operand_a_0 <= {{2{theta_1[15]}}, theta_1};
+            5'd6: operand_a_0 <= s_now;
+            5'd7: operand_a_0 <= c_now;
+            5'd8: operand_a_0 <= c;
+            5'd9: operand_a_0 <= s;
+            5'd10: operand_a_0 <= e;
+            5'd11: operand_a_0 <= 18'she78e; // loop_a
+            5'd12: operand_a_0 <= {{3{rho_limited_now[14]}}, rho_limited_now};
+            5'd13: operand_a_0 <= {{3{rho_limited[14]}}, rho_limited};
+            5'd14: operand_a_0 <= rho_c_now;
+            5'd15: operand_a_0 <= rho_s_now;
+            default: operand_a_0 <= {{4{y_5[13]}}, y_5};
         endcase
 
     always @(posedge clk)
         case (step)
             5'd0: operand_b_0 <= 18'sh9d8d; // loop_ab
-            5'd1: operand_b_0 <= {{2{theta_1[15]}}, theta_1};
-            5'd2: operand_b_0 <= {{9{cos_slope[8]}}, cos_slope};
-            5'd3, 5'd14: operand_b_0 <= {{6{y_s[11]}}, y_s};
-            5'd4: operand_b_0 <= {{8{sin_inside[9]}}, sin_inside};
-            5'd5: operand_b_0 <= {{4{theta_5[13]}}, theta_5};
-            5'd6, 5'd8, 5'd10: operand_b_0 <= cos_hat;
-            5'd7, 5'd9, 5'd11: operand_b_0 <= sin_hat;
-            5'd12: operand_b_0 <= e_change;
-            5'd13: operand_b_0 <= rho_c;
-            default: operand_b_0 <= {{4{y_5[13]}}, y_5};
+            5'd1, 5'd15: operand_b_0 <= {{6{y_s[11]}}, y_s};
+            5'd2: operand_b_0 <= {{9{sin_slope[8]}}, sin_slope};
+            5'd3: operand_b_0 <= {{9{cos_slope[8]}}, cos_slope};
+            5'd4, 5'd5, 5'd14: operand_b_0 <= {{6{y_c[11]}}, y_c};
+            5'd6, 5'd8, 5'd12: operand_b_0 <= cos_hat;
+            5'd7, 5'd9, 5'd13: operand_b_0 <= sin_hat;
+            5'd10: operand_b_0 <= e;
+            5'd11: operand_b_0 <= e_change;
+            default: operand_b_0 <= rho_s;
         endcase
 
     // Values that later steps or the testbench read, at the end of the step that computes them
@@ -911,12 +933,14 @@ module optical (
             gamma_gear_below_gamma_gear_settled <= gamma_gear_below_gamma_gear_settled_now;
             gamma_settled <= gamma_settled_now;
             sector <= sector_now;
-            sector_relative <= sector_relative_now;
             period_ahead <= period_ahead_now;
             period_behind <= period_behind_now;
             a_period_away <= a_period_away_now;
             sector_ahead <= sector_ahead_now;
             sector_behind <= sector_behind_now;
+            sector_added <= sector_added_now;
+            travel_low_next_chosen <= travel_low_next_chosen_now;
+            travel_high_next_chosen <= travel_high_next_chosen_now;
             gamma_gear_below_one <= gamma_gear_below_one_now;
             search_begun <= search_begun_now;
             not_fading <= not_fading_now;
@@ -934,6 +958,7 @@ module optical (
             not_returning <= not_returning_now;
             parameters_follow <= parameters_follow_now;
             held_before <= held_before_now;
+            not_rough <= not_rough_now;
             proves <= proves_now;
             not_gains_steady <= not_gains_steady_now;
             nothing_proven_yet <= nothing_proven_yet_now;
@@ -948,7 +973,6 @@ module optical (
             not_counting <= not_counting_now;
             travel_clear <= travel_clear_now;
             new_sector <= new_sector_now;
-            travel_low_next <= travel_low_next_now;
             ahead_used_next <= ahead_used_next_now;
             behind_used_next <= behind_used_next_now;
             y_5 <= y_5_now;
@@ -958,125 +982,121 @@ module optical (
         end
         if (step == 5'd2) begin
             cos_value <= cos_value_now;
+            cos_slope <= cos_slope_now;
             speed_sum_2 <= speed_sum_2_now;
         end
         if (step == 5'd3) begin
-            c <= c_now;
-            c_below_weak_signal <= c_below_weak_signal_now;
-            not_c_below_minus_weak_signal <= not_c_below_minus_weak_signal_now;
-        end
-        if (step == 5'd4) begin
-            cos_hat <= cos_hat_now;
-            c_weak <= c_weak_now;
-        end
-        if (step == 5'd5) begin
             s_exact_sum <= s_exact_sum_now;
         end
-        if (step == 5'd6) begin
+        if (step == 5'd4) begin
             sin_hat <= sin_hat_now;
         end
-        if (step == 5'd7) begin
+        if (step == 5'd5) begin
+            cos_hat <= cos_hat_now;
+        end
+        if (step == 5'd6) begin
             s <= s_now;
-            s_below_weak_signal <= s_below_weak_signal_now;
-            not_s_below_minus_weak_signal <= not_s_below_minus_weak_signal_now;
+            s_weak <= s_weak_now;
+        end
+        if (step == 5'd7) begin
+            c <= c_now;
+            c_weak <= c_weak_now;
         end
         if (step == 5'd8) begin
             signal_lost_next <= signal_lost_next_now;
-            rho_exact_difference <= rho_exact_difference_now;
+            s_times_cos_hat <= s_times_cos_hat_now;
             signal_present <= signal_present_now;
             may_flip <= may_flip_now;
         end
         if (step == 5'd9) begin
-            rho <= rho_now;
-            rho_in_window <= rho_in_window_now;
-            half_turn <= half_turn_now;
-            rho_high <= rho_high_now;
-            rho_large <= rho_large_now;
-            gamma_settled_and_rho_not_small <= gamma_settled_and_rho_not_small_now;
-            may_recall <= may_recall_now;
-            rho_limited <= rho_limited_now;
+            e <= e_now;
+            e_below_lock_error <= e_below_lock_error_now;
+            e_below_minus_lock_error <= e_below_minus_lock_error_now;
         end
         if (step == 5'd10) begin
-            s_times_cos_hat <= s_times_cos_hat_now;
-            rho_too_large <= rho_too_large_now;
+            rho_exact_difference <= rho_exact_difference_now;
+            e_in_window <= e_in_window_now;
+            e_change <= e_change_now;
         end
         if (step == 5'd11) begin
-            e <= e_now;
+            rho <= rho_now;
+            in_window <= in_window_now;
+            level_step <= level_step_now;
+            half_turn <= half_turn_now;
+            sample_counts <= sample_counts_now;
+            counted <= counted_now;
+            rho_too_large <= rho_too_large_now;
+            may_recall <= may_recall_now;
+            residual_rough <= residual_rough_now;
+            radius_large <= radius_large_now;
         end
         if (step == 5'd12) begin
-            in_window <= in_window_now;
-            level_moved_sum <= level_moved_sum_now;
-            counted <= counted_now;
-            residual_large <= residual_large_now;
-            disturbed_or_held <= disturbed_or_held_now;
-            radius_large <= radius_large_now;
-            rho_c <= rho_c_now;
-            step_2_geared <= step_2_geared_now;
-            disturbed_period <= disturbed_period_now;
-            gamma_restart <= gamma_restart_now;
-            gear_passed <= gear_passed_now;
-            gamma_shift <= gamma_shift_now;
-            gear_periods_up <= gear_periods_up_now;
-            periods_end <= periods_end_now;
-            held_periods_up <= held_periods_up_now;
-            free_period <= free_period_now;
-            within_period <= within_period_now;
-            still_held <= still_held_now;
-            first_gear_period <= first_gear_period_now;
-            last_gear_passed <= last_gear_passed_now;
-        end
-        if (step == 5'd13) begin
-            loop_gear_next_chosen <= loop_gear_next_chosen_now;
+            level_empty <= level_empty_now;
+            loop_gear_next_bits <= loop_gear_next_bits_now;
+            lock_level_next_chosen <= lock_level_next_chosen_now;
             locked_next <= locked_next_now;
-            lock_level_next <= lock_level_next_now;
             fresh <= fresh_now;
-            rho_s <= rho_s_now;
-            step_2 <= step_2_now;
-            step_4_geared <= step_4_geared_now;
+            rho_limited <= rho_limited_now;
             held_periods_next <= held_periods_next_now;
             gear_periods_next <= gear_periods_next_now;
             disturbed_next <= disturbed_next_now;
+            rough_next <= rough_next_now;
             risen_next <= risen_next_now;
             held_next <= held_next_now;
-            recall_any <= recall_any_now;
+            recall_again <= recall_again_now;
+            recall_or_recall_again <= recall_or_recall_again_now;
+            known_to_be_calm <= known_to_be_calm_now;
             gamma_gear_next <= gamma_gear_next_now;
             proved <= proved_now;
             remember <= remember_now;
             remember_better <= remember_better_now;
-            returning_next <= returning_next_now;
+            return_goes_on <= return_goes_on_now;
             fading_next <= fading_next_now;
             either_halfway_or_quiet_periods_pass <= either_halfway_or_quiet_periods_pass_now;
             known_next <= known_next_now;
             gain_moved_or_apart <= gain_moved_or_apart_now;
-            period_taught <= period_taught_now;
-            lock_falls <= lock_falls_now;
+            not_locked_next <= not_locked_next_now;
         end
-        if (step == 5'd14) begin
+        if (step == 5'd13) begin
+            loop_gear_next <= loop_gear_next_now;
             speed_sum <= speed_sum_now;
-            running_2_next <= running_2_next_now;
-            running_4_next <= running_4_next_now;
+            recall_any <= recall_any_now;
             remember_recent <= remember_recent_now;
-            recent_2_next <= recent_2_next_now;
+            returning_next <= returning_next_now;
             halfway_next <= halfway_next_now;
             apart_next <= apart_next_now;
             theta_applies <= theta_applies_now;
             lock_lost_next <= lock_lost_next_now;
         end
-        if (step == 5'd15) begin
+        if (step == 5'd14) begin
             speed <= speed_now;
             alpha_hat_next <= alpha_hat_next_now;
             count_next_scaled <= count_next_scaled_now;
             direction_next <= direction_next_now;
-            step_1 <= step_1_now;
+            rho_c <= rho_c_now;
+            step_2 <= step_2_now;
+        end
+        if (step == 5'd15) begin
+            count_next <= count_next_now;
+            rho_s <= rho_s_now;
+            step_4 <= step_4_now;
+            running_2_next <= running_2_next_now;
+            recent_2_next <= recent_2_next_now;
         end
         if (step == 5'd16) begin
-            count_next <= count_next_now;
-            step_3 <= step_3_now;
-            running_1_next <= running_1_next_now;
+            step_1 <= step_1_now;
+            running_4_next <= running_4_next_now;
+            recent_4_next <= recent_4_next_now;
         end
         if (step == 5'd17) begin
-            step_5 <= step_5_now;
+            step_3 <= step_3_now;
+            running_1_next <= running_1_next_now;
+            recent_1_next <= recent_1_next_now;
+        end
+        if (step == 5'd18) begin
+            running_5_next_difference <= running_5_next_difference_now;
             running_3_next <= running_3_next_now;
+            recent_3_next <= recent_3_next_now;
         end
     end
 
@@ -1122,6 +1142,8 @@ module optical (
             ahead_used <= 0;
             behind_used <= 0;
             disturbed <= 0;
+            rough <= 0;
+            calm <= 0;
             risen <= 0;
             held <= 0;
             returning <= 0;
@@ -1169,6 +1191,8 @@ module optical (
             ahead_used <= ahead_used_next;
             behind_used <= behind_used_next;
             disturbed <= disturbed_next;
+            rough <= rough_next;
+            calm <= known_to_be_calm;
             risen <= risen_next;
             held <= held_next;
             returning <= returning_next;
@@ -1196,7 +1220,6 @@ module optical (
         c_exact[7:0],
         s_exact[8:0],
         rho_exact[15:0],
-        rho,
         e_exact[14:0],
         in_window,
         loop_gear_next_sum[3:2],
@@ -1205,7 +1228,9 @@ module optical (
         carry[2],
         count_next_sum[32],
         sector_relative_difference[8],
+        rho_limited_rounded[16:0],
         cos_hat_times_rho_limited[12:0],
+        rho_c,
         sin_hat_times_rho_limited[12:0],
         gradient_5[4:0],
         gradient_1[5:0],
@@ -1218,8 +1243,7 @@ module optical (
         gear_periods_next_sum[7:6],
         held_periods_next_sum[9:8],
         gain_c_rests_difference[1:0],
-        gain_s_rests_difference[1:0],
-        product_0[35]
+        gain_s_rests_difference[1:0]
     };
 
 endmodule

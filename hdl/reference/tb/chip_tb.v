@@ -111,6 +111,8 @@ module chip_tb;
     reg expect_ahead_used;
     reg expect_behind_used;
     reg expect_disturbed;
+    reg expect_rough;
+    reg expect_calm;
     reg expect_risen;
     reg expect_held;
     reg expect_returning;
@@ -195,14 +197,16 @@ module chip_tb;
                 got = got + $fscanf(file, "%h %h %h",
                     expect_direction, expect_ahead_used, expect_behind_used);
                 got = got + $fscanf(file, "%h %h %h",
-                    expect_disturbed, expect_risen, expect_held);
+                    expect_disturbed, expect_rough, expect_calm);
                 got = got + $fscanf(file, "%h %h %h",
-                    expect_returning, expect_fading, expect_known);
-                got = got + $fscanf(file, "%h %h",
-                    expect_halfway, expect_apart);
+                    expect_risen, expect_held, expect_returning);
+                got = got + $fscanf(file, "%h %h %h",
+                    expect_fading, expect_known, expect_halfway);
+                got = got + $fscanf(file, "%h",
+                    expect_apart);
                 // No wire: Verilator does not notice what $fscanf changes.
                 expect_position = {expect_count, expect_alpha_hat[26:0]};
-                if (got != 70) begin
+                if (got != 72) begin
                     bad = 1'b1;
                     $display("row %0d of %0s cannot be read", played, name);
                 end else if (sample != played) begin
@@ -219,14 +223,14 @@ module chip_tb;
                     calibrate = ~calibrate;
                     waited = 1;
                     // The watchdog: a chip that hangs is late.
-                    while (!valid && waited <= 19) begin
+                    while (!valid && waited <= 20) begin
                         // A strobe that comes too early must not matter either.
                         sample_valid = sample[2:0] == 3'd5 && waited == 1;
                         @(negedge clk);
                         sample_valid = 1'b0;
                         waited = waited + 1;
                     end
-                    if (waited != 19) check_failed("latency", 19, {96'd0, waited});
+                    if (waited != 20) check_failed("latency", 20, {96'd0, waited});
                     // In the order of the data flow: the first that differs is nearest to the cause.
                     if (theta_2 !== expect_theta_2)
                         check_failed("theta_2",
@@ -336,6 +340,9 @@ module chip_tb;
                     if (chip.disturbed !== expect_disturbed)
                         check_failed("disturbed",
                             {127'd0, expect_disturbed}, {127'd0, chip.disturbed});
+                    if (chip.rough !== expect_rough)
+                        check_failed("rough",
+                            {127'd0, expect_rough}, {127'd0, chip.rough});
                     if (chip.risen !== expect_risen)
                         check_failed("risen",
                             {127'd0, expect_risen}, {127'd0, chip.risen});
@@ -357,6 +364,9 @@ module chip_tb;
                     if (chip.running_5 !== expect_running_5)
                         check_failed("running_5",
                             {104'd0, expect_running_5}, {104'd0, chip.running_5});
+                    if (chip.calm !== expect_calm)
+                        check_failed("calm",
+                            {127'd0, expect_calm}, {127'd0, chip.calm});
                     if (chip.gamma_gear !== expect_gamma_gear)
                         check_failed("gamma_gear",
                             {124'd0, expect_gamma_gear}, {124'd0, chip.gamma_gear});
@@ -427,7 +437,7 @@ module chip_tb;
                         check_failed("position", {69'd0, expect_position}, {69'd0, position});
                     // Some samples come later than they might: until then nothing moves, and valid is one clock long.
                     if (sample[1:0] == 2'd2) begin
-                        repeat (19 + 2) begin
+                        repeat (20 + 2) begin
                             @(negedge clk);
                             if (valid) check_failed("valid", 128'd0, 128'd1);
                         end

@@ -108,7 +108,7 @@ pub(crate) fn faults() -> Vec<Fault> {
         }),
         swap(
             "last bit of the lock limit",
-            &["wire e_in_window ="],
+            &["wire e_below_lock_error ="],
             "6'sd7",
             "6'sd8",
         ),
@@ -123,6 +123,36 @@ pub(crate) fn faults() -> Vec<Fault> {
             &["wire rho_not_small_now ="],
             "~rho_now[17:12]) < 6'sd1)",
             "~rho_now[17:12]) < 6'sd2)",
+        ),
+        swap(
+            "what the loop lags is taken off the radius",
+            &["wire", " rho_limited_rounded ="],
+            "+ rho_limited_scaled",
+            "- rho_limited_scaled",
+        ),
+        swap(
+            "what is not small holds before it was ever small",
+            &["wire rho_too_large ="],
+            "calm & ",
+            "",
+        ),
+        swap(
+            "a search that begins again stays calm",
+            &["wire stays_calm ="],
+            " & ~gamma_restart",
+            "",
+        ),
+        swap(
+            "a gear is calm whatever its last period was",
+            &["wire gear_ends_calm ="],
+            " & not_rough",
+            "",
+        ),
+        swap(
+            "a residual that is not small is forgotten",
+            &["wire rough_next ="],
+            "rough & within_period",
+            "1'b0",
         ),
         swap(
             "direction forwards from twice the speed on",

@@ -52,11 +52,11 @@ impl Correction {
         }
     }
 
-    /// The Θ that corrects this sensor, where the set has one.
+    /// The Θ that corrects this sensor, where the set has one; of the chip's, that with phase.
     pub(crate) fn of(self, sensor: &Sensor) -> Option<Theta> {
         match self {
             Self::Paper(set) => (set.count() % 2 == 1).then(|| set.from_five(sensor.theta())),
-            Self::Bent => None,
+            Self::Bent => Some(on_chip::bent_theta(sensor)),
         }
     }
 }
@@ -140,6 +140,11 @@ impl Method {
         let chips = on_chip::all(&design.spec);
         list.extend(chips.map(|(name, chip)| (name, Self::Chip(Box::new(chip)))));
         list
+    }
+
+    /// No loop and no search: the arctangent of the signals, or of what their extremes make of them.
+    pub(crate) fn is_baseline(&self) -> bool {
+        matches!(self, Self::OpenLoop(_))
     }
 
     /// The design, where it is a chip.

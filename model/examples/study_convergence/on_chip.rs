@@ -6,7 +6,7 @@ use nonius_model::bits::Bits;
 use nonius_model::chip::Chip;
 use nonius_model::design::Design;
 use nonius_model::physical::{self, Converter};
-use nonius_model::reference::{Parameters, Theta};
+use nonius_model::reference::{Parameters, Sensor, Theta};
 use nonius_model::spec::Spec;
 
 use super::method::{Correction, Said};
@@ -78,6 +78,19 @@ impl OnChip {
         self.chip.step_codes(cos, sin, false, true);
         said
     }
+}
+
+/// The chip's nine parameters for a sensor without bends: gain and offset of each channel, then s = s' + tan β c.
+pub(crate) fn bent_theta(sensor: &Sensor) -> Theta {
+    let (gain_c, gain_s) = (1.0 / sensor.a_c, 1.0 / (sensor.a_s * sensor.beta.cos()));
+    let linear = [
+        gain_c,
+        -gain_c * sensor.b_c,
+        gain_s,
+        -gain_s * sensor.b_s,
+        sensor.beta.tan(),
+    ];
+    Theta::from_fn(|i, _| linear.get(i).copied().unwrap_or(0.0))
 }
 
 /// The chip's correction with bends, in plain `f64` (see docs/on-line-calibration.md).

@@ -159,7 +159,7 @@ pub(super) fn check(spec: &Spec) -> Result<(), DesignError> {
         last.into(),
         first.into(),
         18.0,
-        "the last gamma is not larger than the first",
+        "the last gamma is not larger than the first, and 2^-18 averages over half a million sectors",
     )?;
     between(
         "calibration.gear_periods",

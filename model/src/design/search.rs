@@ -90,6 +90,14 @@ fn idle(c: &Calibration) -> Result<(), DesignError> {
             "no other search forgets: this key has no effect",
         );
     }
+    if let (true, Some(lag)) = (c.squares(), c.lag) {
+        return refuse(
+            "calibration.lag",
+            lag,
+            "leave it out, or take the method \"final\" or \"exact\"",
+            "the sum of squares knows no estimate that could lag: this key has no effect",
+        );
+    }
     if let (false, Some(hold_periods)) = (c.recalls(), c.hold_periods) {
         return refuse(
             "calibration.hold_periods",
@@ -117,6 +125,7 @@ fn without(c: &Calibration) -> Result<(), DesignError> {
             gear_periods: Some(c.gear_periods()),
             hold_periods: Some(c.hold_periods.unwrap_or(Calibration::HELD_KNOWN)),
             recall: Some(c.recall.unwrap_or(true)),
+            lag: Some(c.lag.unwrap_or(true)),
             ..c.clone()
         };
         toml::Table::try_from(worked_out).unwrap_or_default()

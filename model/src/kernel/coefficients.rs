@@ -120,7 +120,7 @@ coefficients! {
     weak_signal,
     /// |ρ| above this begins the search again.
     restart_residual,
-    /// |ρ| above this holds the parameters once γ has settled.
+    /// |ρ| above this is not small: it holds the parameters once a gear has ended without.
     hold_residual,
     /// A gain that moves by more between two times that it is remembered is of a signal that fades.
     steady_gain,

@@ -15,6 +15,12 @@ static RADIUS: Formula = Formula {
     source: "paper section 5.5.1, n^T r",
 };
 
+static LAG: Formula = Formula {
+    title: "Radius, whatever the loop lags behind",
+    equation: "radius - 1 = rho + e^2/2",
+    source: "rho is a projection on the estimate, which is e off the pair: cos(e) - 1 is no error of the sensor",
+};
+
 static WEAK: Formula = Formula {
     title: "Loss of signal",
     equation: "|c| and |s| both below the threshold",
@@ -45,6 +51,13 @@ pub fn radial_residual<S: Signal>(
     (c * cos_hat - k.unit_radius.widen() + s * sin_hat)
         .named("rho_exact")
         .quantise(&structure.formats.signal_rounded)
+}
+
+/// Radius of the corrected pair less one, to third order in e.
+#[inline(always)]
+pub fn radius<S: Signal>(rho: S, e: S) -> S::Wide {
+    rho.begin(&LAG);
+    rho.widen() + (e * e).scale(-1)
 }
 
 /// Whether −`limit` ≤ x < `limit`: both comparisons need only the bits above the last one of `limit`.

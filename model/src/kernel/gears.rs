@@ -1,10 +1,9 @@
 //! γ shifts gear: large first, halved after every few periods of travel, large again when the residual shows that the
 //! signal has changed.
 //!
-//! A residual that was small and is no longer may be a signal that fades. So where γ has settled
-//! ([`Calibration::SETTLED`](crate::spec::Calibration::SETTLED) gears) it moves no parameter: they are held to the end of the first
-//! period without it. From the first period on that was quiet a large one does the same, and after a sample out of the lock window
-//! they are held until the lock level is full again. Where it has been large for [`HELD`](crate::spec::Calibration::HELD) periods, or
+//! A residual that was small and is no longer may be a signal that fades. So once a gear has ended with a period in which it was small
+//! throughout (`calm`) it moves no parameter: they are held to the end of the first period without it. From the first period on that was
+//! quiet a large one does the same, and after a sample out of the lock window they are held until the lock level is full again. Where it has been large for [`HELD`](crate::spec::Calibration::HELD) periods, or
 //! where better parameters are known for [`hold_periods`](crate::spec::Calibration::hold_periods) more than not, and lock was not lost,
 //! the signal has changed, and the search begins again; at once where it has followed a signal that faded, and the radius is far too
 //! large now: the signal is back. A signal that is lost in the first gear leaves parameters of which nothing is known: they begin again
@@ -17,7 +16,7 @@ use crate::signal::{Formula, Logic, Signal};
 
 static HOLD: Formula = Formula {
     title: "Hold",
-    equation: "from the first quiet period on a large residual, once gamma has settled one that is not small, and all until the end of a period without one, moves no parameter",
+    equation: "from the first quiet period on a large residual, once a gear has ended calm one that is not small, and all until the end of a period without one, moves no parameter",
     source: "",
 };
 
@@ -45,6 +44,10 @@ pub struct Gears<S: Signal> {
     pub stayed: S::Bool,
     /// The residual was large in the running period.
     pub disturbed: S::Bool,
+    /// The residual was not small in the running period.
+    pub rough: S::Bool,
+    /// A gear has ended with a period in which it was small throughout.
+    pub calm: S::Bool,
     /// The radius was too large in the running period.
     pub risen: S::Bool,
     /// The residual was large in the last period.
@@ -56,7 +59,9 @@ pub struct Gears<S: Signal> {
 pub struct Hold<S: Signal> {
     /// The residual of a sample that counts is large.
     pub large: S::Bool,
-    /// And the radius too large, not too small.
+    /// That of a sample that counts is not small.
+    pub rough: S::Bool,
+    /// The residual is large, and the radius too large, not too small.
     pub risen: S::Bool,
     /// No parameter moves.
     pub held: S::Bool,
@@ -76,20 +81,19 @@ pub fn hold<S: Signal>(
     structure: &Structure,
 ) -> Hold<S> {
     rho.begin(&HOLD);
-    let settled = settled(state, k, structure);
     let risen = rho.less_than(k.restart_residual).not().named("rho_high");
     let large = risen
         .or(rho.less_than(-k.restart_residual))
         .named("rho_large");
     let not_small = within(rho, k.hold_residual).not().named("rho_not_small");
     let large = large
-        .or(settled.and(not_small))
+        .or(calm(state, k, structure).and(not_small))
         .named("rho_too_large")
         .and(counts)
         .named("residual_large");
     let disturbed = large.or(state.disturbed).named("disturbed_lately");
     let disturbed = disturbed.or(state.held).named("disturbed_or_held");
-    let suspect = disturbed.or(follows.not());
+    let suspect = disturbed.or(follows.not()).named("disturbed_or_astray");
     let suspect = if structure.calibration.recalls() {
         suspect.or(state.returning)
     } else {
@@ -113,6 +117,7 @@ pub fn hold<S: Signal>(
     });
     Hold {
         large,
+        rough: not_small.and(counts).named("residual_rough"),
         risen: risen.and(counts).named("radius_large"),
         held,
         recall,
@@ -140,6 +145,16 @@ pub fn settled<S: Signal>(state: &State<S>, k: &Coefficients<S>, structure: &Str
     }
     let early = state.gamma_gear.less_than(k.gamma_gear_settled);
     early.not().named("gamma_settled")
+}
+
+/// A gear of this search has ended with a period in which the residual was small. What never settles has nothing to hold.
+#[inline(always)]
+fn calm<S: Signal>(state: &State<S>, k: &Coefficients<S>, structure: &Structure) -> S::Bool {
+    if structure.calibration.settles() {
+        state.calm
+    } else {
+        k.never()
+    }
 }
 
 /// The signal is lost in the first gear: the parameters are nominal, or recalled.
@@ -201,7 +216,7 @@ fn held_periods<S: Signal>(
     S::select(stays, counted, k.zero).quantise(&structure.formats.held_periods)
 }
 
-/// The search begins again: the residual was large before γ had settled, or for so long that the signal must have changed, or the
+/// The search begins again: the residual was large before it had ever been small, or for so long that the signal must have changed, or the
 /// radius is too large and it had followed a fade.
 #[inline(always)]
 pub fn restart<S: Signal>(
@@ -210,7 +225,7 @@ pub fn restart<S: Signal>(
     k: &Coefficients<S>,
     structure: &Structure,
 ) -> S::Bool {
-    let early = settled(state, k, structure).not();
+    let early = calm(state, k, structure).not();
     let cause = early.or(long(state, k, structure));
     let cause = if structure.calibration.recalls() {
         cause.or(state.risen.and(state.fading).named("rises_again"))
@@ -264,6 +279,8 @@ pub fn gears<S: Signal>(
         .named("gear_periods_again");
     let held_periods = held_periods((gate, quiet), restart, counting, state, k, structure);
     let within = tick.not().and(counting).named("within_period");
+    let smooth = passed.and(state.rough.not()).named("gear_ends_calm");
+    let calm = smooth.or(state.calm).and(restart.not()).named("stays_calm");
     let still_held = state.held.and(tick.not()).named("still_held");
     let held = disturbed_period(gate, state)
         .and(restart.not())
@@ -282,6 +299,8 @@ pub fn gears<S: Signal>(
         stayed: restart.and(long(state, k, structure)),
         // Where nothing counts, a new period begins without suspicion.
         disturbed: hold.large.or(state.disturbed.and(within)),
+        rough: hold.rough.or(state.rough.and(within)),
+        calm,
         risen: hold.risen.or(state.risen.and(within)),
         held: held.and(counting),
     }

@@ -3,7 +3,8 @@
 use super::sensitivity::{self, Sensitivity};
 use super::start::Polar;
 use super::{Coefficients, State, Structure};
-use crate::signal::{Formula, Signal, Wide};
+use super::{detector, gears};
+use crate::signal::{Formula, Logic, Signal, Wide};
 use crate::spec::Calibration;
 
 static DIRECTION: Formula = Formula {
@@ -55,17 +56,38 @@ pub struct Seen<S: Signal> {
     pub start: Option<Polar<S>>,
 }
 
-/// ρ as it moves the parameters. More than a quarter of the radius is no measurement: the word holds it there, and every
-/// step after it is short.
+/// ρ as it moves the parameters; where the design allows for what the loop lags, the radius less 1. More than a quarter of the radius is
+/// no measurement: the word holds it there, and every step after it is short.
 #[inline(always)]
-pub fn limited<S: Signal>(rho: S, structure: &Structure) -> S {
+pub fn limited<S: Signal>(rho: S, e: Option<S>, structure: &Structure) -> S {
+    let residual = e.map_or_else(|| rho.widen(), |e| detector::radius(rho, e));
     rho.begin(if structure.calibration.squares() {
         &ALONG
     } else {
         &DIRECTION
     });
-    rho.quantise(&structure.formats.residual)
+    residual
+        .quantise(&structure.formats.residual)
         .named("rho_limited")
+}
+
+/// e as the exact gradient takes it. Once γ has settled, more than a sensor's error can make is the loop catching up with a stop or a
+/// start, and says nothing about the sensor. A loop of type 1 always lags.
+pub fn followed<S: Signal>(
+    e: S,
+    state: &State<S>,
+    k: &Coefficients<S>,
+    structure: &Structure,
+) -> S {
+    let calibration = &structure.calibration;
+    if structure.filter_type == 1 || !calibration.allows_for_lag() || !calibration.settles() {
+        return e;
+    }
+    let large = detector::within(e, k.completion_error)
+        .not()
+        .named("e_large");
+    let catches_up = gears::settled(state, k, structure).and(large);
+    S::select(catches_up.named("catches_up"), k.zero, e).named("e_followed")
 }
 
 /// n ρ, or for the sum of squares (c, s) ε.

@@ -77,6 +77,8 @@ pub fn recall<S: Signal>(
         updated.start_periods = S::select(again, k.start_periods_last, updated.start_periods)
             .quantise(&structure.formats.start_periods);
     }
+    // And what is larger than small is no error of theirs.
+    gears.calm = gears.calm.or(again).named("known_to_be_calm");
     gears.gear =
         S::select(again, k.gamma_gear_last, gears.gear).quantise(&structure.formats.gamma_gear);
     let quiet = passed.and(last).named("last_gear_passed");

@@ -114,10 +114,11 @@ fn advance_of<S: Signal, const PLAIN: bool>(
     let (mut residual, mut frame) = (rho, estimate);
     let (rho_c, rho_s) = if !PLAIN && structure.calibration.squares() {
         let epsilon = sum_of_squares::half_square(c, s, k.half, structure);
-        (residual, frame) = (gradient::limited(epsilon, structure), (c, s));
+        (residual, frame) = (gradient::limited(epsilon, None, structure), (c, s));
         gradient::along(residual, frame, structure)
     } else {
-        let limited = gradient::limited(rho, structure);
+        let lags = structure.calibration.allows_for_lag().then_some(e);
+        let limited = gradient::limited(rho, lags, structure);
         polar = starting
             .map(|running| start::polar((rho, limited, e), estimate, running, &travel, structure));
         let (rho, along) = match &polar {
@@ -201,6 +202,8 @@ fn advance_of<S: Signal, const PLAIN: bool>(
     registers.signal_lost = weak;
     registers.direction = direction;
     registers.disturbed = gears.disturbed;
+    registers.rough = gears.rough;
+    registers.calm = gears.calm;
     registers.risen = gears.risen;
     registers.held = gears.held;
     applied.keep(registers);

@@ -17,9 +17,9 @@
 
 use super::calibration::Gate;
 use super::gather::over_a_period;
-use super::gears;
 use super::travel::{Measure, SECTOR_BITS, Travel};
 use super::{Coefficients, State, Structure};
+use super::{detector, gears};
 use crate::format::{Format, Quantiser};
 use crate::signal::{Formula, Logic, Signal, Wide};
 
@@ -103,9 +103,9 @@ pub fn polar<S: Signal>(
     travel: &Travel<S>,
     structure: &Structure,
 ) -> Polar<S> {
+    let radius = detector::radius(rho, e);
     rho.begin(&POLAR);
     let signal = &structure.formats.signal;
-    let radius = rho.widen() + (e * e).scale(-1);
     let sectors = travel.advance.scale(SECTORS).quantise(&WEIGHT);
     let weighed = radius.quantise(signal).named("radius_error") * sectors.named("sectors");
     let cos = (cos_hat.widen() - e * sin_hat).quantise(signal);

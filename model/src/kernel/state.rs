@@ -174,6 +174,10 @@ bundle! {
         behind_used,
         /// The residual was large in this period of travel.
         disturbed,
+        /// The residual was not small in this period of travel.
+        rough,
+        /// A gear of γ has ended with a small residual since the search began.
+        calm,
         /// The radius was too large in this period of travel.
         risen,
         /// The residual was large in the period before: the parameters are held.

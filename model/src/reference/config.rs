@@ -61,6 +61,16 @@ impl Gamma {
     }
 }
 
+/// How what the loop lags is kept out of the residual: along the radius that is the radius less 1, not its projection on the estimate;
+/// across it nothing, where the loop catches up.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lag {
+    /// From so many halvings of γ on, where that is known to happen at all.
+    pub settled: Option<u32>,
+    /// |e| from which on it does, radians.
+    pub e: f64,
+}
+
 /// What the reference is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Config {
@@ -76,6 +86,8 @@ pub struct Config {
     pub harmonics: Harmonics,
     /// The search.
     pub search: Search,
+    /// What the loop lags is kept out of the residual; never in the paper.
+    pub lag: Option<Lag>,
     /// γ.
     pub gamma: Gamma,
     /// When Θ may move.
@@ -101,6 +113,7 @@ impl Config {
             skew: 0.0,
             harmonics: Harmonics::NONE,
             search: Search::Residual(Form::Final),
+            lag: None,
             gamma: Gamma::constant(gamma),
             gate: Gate::EverySample,
             solved: 0,

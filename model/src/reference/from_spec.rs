@@ -12,7 +12,7 @@ use super::loops::LoopConfig;
 use super::poles::Poles;
 use super::start::Start;
 use super::sum_of_squares::Smoothing;
-use super::{Config, Parameters, ReferenceError, Steps, Theta};
+use super::{Config, Lag, Parameters, ReferenceError, Steps, Theta};
 use crate::spec::{Calibration, CalibrationMethod, Spec};
 
 /// From the unit of the ADC's range to y: the middle becomes 0, the nominal amplitude 1.
@@ -186,6 +186,12 @@ pub fn config(spec: &Spec) -> Result<Config, ReferenceError> {
         skew: spec.correction.channel_skew_s,
         harmonics: harmonics(spec),
         search: search(spec),
+        lag: k.allows_for_lag().then_some(Lag {
+            // A loop of type 1 always lags.
+            settled: (k.settles() && spec.tracking.filter_type == 2)
+                .then_some(Calibration::SETTLED),
+            e: 0.0625,
+        }),
         gamma: Gamma {
             first,
             halvings: k.gears(),
@@ -199,7 +205,7 @@ pub fn config(spec: &Spec) -> Result<Config, ReferenceError> {
             Gate::Locked(window)
         },
         solved: if k.starts() { 2 } else { 0 },
-        hold: Some(HoldConfig {
+        hold: k.settles().then(|| HoldConfig {
             residual: spec.hold_residual(),
             restart: k.restart_residual,
             settled: Calibration::SETTLED,

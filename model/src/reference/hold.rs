@@ -1,6 +1,6 @@
 //! A residual that was small and is no longer may be a signal that fades: then the parameters are held.
 //!
-//! They are held until a whole period has been travelled without such a residual, or many where an earlier Θ was recalled. Where it
+//! Before it was small throughout a period of travel, Θ is still being found. They are held until a whole period has been travelled without such a residual, or many where an earlier Θ was recalled. Where it
 //! stays for many periods and lock is not lost, the signal has changed, and γ begins again. The paper has nothing of the kind: there
 //! the gains follow a signal down to nothing.
 
@@ -15,7 +15,7 @@ pub struct HoldConfig {
     pub residual: f64,
     /// ρ from which the radius is far too large.
     pub restart: f64,
-    /// After so many halvings of γ.
+    /// Halvings of γ after which it has settled.
     pub settled: u32,
     /// Periods of travel until γ begins again: where nothing better is known, and where something is proven.
     pub periods: [u32; 2],
@@ -50,6 +50,8 @@ pub enum Verdict {
 pub struct Hold {
     /// α̂ where the running period of travel began, radians; `None`: nothing is travelled yet.
     began: Option<f64>,
+    /// A period has passed with a small residual since γ began.
+    calm: bool,
     /// The residual was large in the running period.
     disturbed: bool,
     /// And in the last one.
@@ -65,7 +67,7 @@ pub struct Hold {
 impl Hold {
     /// An earlier Θ was recalled, and is held from here on.
     pub fn recalled(&mut self) {
-        (self.returning, self.quiet) = (true, 0);
+        (self.calm, self.returning, self.quiet) = (true, true, 0);
     }
 
     /// Θ has been held for a period of travel or more.
@@ -74,23 +76,21 @@ impl Hold {
         self.held
     }
 
-    /// Takes ρ and α̂ (radians, unwrapped) of a sample; `halvings` of γ so far; without lock (`locked`) nothing is travelled; Θ may be
+    /// Takes ρ and α̂ (radians, unwrapped) of a sample; without lock (`locked`) nothing is travelled; Θ may be
     /// `proven`.
     pub fn step(
         &mut self,
         config: &HoldConfig,
         (rho, alpha_hat): (f64, f64),
-        halvings: u32,
         (locked, proven): (bool, bool),
     ) -> Verdict {
-        if halvings < config.settled {
-            *self = Self::default();
-            return Verdict::Free;
-        }
         if !locked {
-            let returning = self.returning;
+            let Self {
+                calm, returning, ..
+            } = *self;
             *self = Self {
                 began: Some(alpha_hat),
+                calm,
                 returning,
                 ..Self::default()
             };
@@ -98,7 +98,18 @@ impl Hold {
         }
         self.disturbed |= rho.abs() >= config.residual;
         let began = *self.began.get_or_insert(alpha_hat);
-        if (alpha_hat - began).abs() >= TAU {
+        let travelled = (alpha_hat - began).abs() >= TAU;
+        if !self.calm {
+            if travelled {
+                *self = Self {
+                    began: Some(alpha_hat),
+                    calm: !self.disturbed,
+                    ..Self::default()
+                };
+            }
+            return Verdict::Free;
+        }
+        if travelled {
             self.began = Some(alpha_hat);
             if self.disturbed && self.periods + 1 >= config.periods[usize::from(proven)] {
                 *self = Self::default();

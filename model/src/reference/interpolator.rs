@@ -6,7 +6,7 @@
 use std::f64::consts::TAU;
 
 use super::completed::Completion;
-pub use super::config::{Config, Gamma, Search, Steps};
+pub use super::config::{Config, Gamma, Lag, Search, Steps};
 use super::gate::{Gate, GateState, Window};
 use super::gradient::{Observation, ResidualGradient};
 use super::hold::{self, Hold, Recall, Recalled, Verdict};
@@ -254,17 +254,18 @@ impl Reference {
         };
         let along = |gradient: Theta| gamma.map_or(Theta::zeros(), |g| -g * gradient);
         let parameters = self.config.parameters;
+        let followed = self.followed(seen);
         let mut missing = Theta::zeros();
         let step = match &mut self.searching {
             Searching::None => Theta::zeros(),
-            Searching::Residual(gradient) => along(gradient.step(seen)),
+            Searching::Residual(gradient) => along(gradient.step(&followed)),
             // A closed gate takes no sample into the sum.
             Searching::SumOfSquares(_) if gamma.is_none() => Theta::zeros(),
             Searching::SumOfSquares(sum) => along(sum.step_of(&seen.m, seen.corrected)),
             Searching::Completed(completion) => {
                 let alpha_hat = estimate.alpha_hat;
                 missing = completion.step(parameters, &theta, seen, alpha_hat, complete);
-                along(seen.final_form())
+                along(followed.final_form())
             }
             Searching::Started(_) if gamma.is_none() => Theta::zeros(),
             Searching::Started(start) => start
@@ -290,6 +291,16 @@ impl Reference {
         estimate
     }
 
+    /// What was seen, less what the loop lags.
+    fn followed(&self, seen: &Observation) -> Observation {
+        let Some(lag) = self.config.lag else {
+            return *seen;
+        };
+        let settled = lag.settled.is_some_and(|from| self.geared.0 >= from);
+        let catches_up = settled && seen.e.abs() >= lag.e;
+        seen.without_lag(if catches_up { 0.0 } else { seen.e })
+    }
+
     /// Whether the search goes on; where the signal has changed, γ begins again. A Θ that is held may be an earlier one.
     fn free(&mut self, rho: f64, locked: bool) -> bool {
         let Some(config) = &self.config.hold else {
@@ -299,9 +310,7 @@ impl Reference {
         let lost = !locked && self.hold.lasts();
         let proven = self.recall.proven();
         let seen = (rho, alpha_hat);
-        let verdict = self
-            .hold
-            .step(config, seen, self.geared.0, (locked, proven));
+        let verdict = self.hold.step(config, seen, (locked, proven));
         if let Some(hold::RecallConfig { periods, .. }) = config.recall {
             let [gain_c, _, gain_s, _] = self.config.parameters.linear();
             let seen = hold::Seen {

@@ -45,7 +45,7 @@ pub mod start;
 pub mod sum_of_squares;
 
 pub use correction::{Jacobian, Parameters, Theta};
-pub use interpolator::{Config, Estimate, Reference, Steps};
+pub use interpolator::{Config, Estimate, Lag, Reference, Steps};
 pub use sensor::Sensor;
 
 use thiserror::Error;

@@ -25,6 +25,10 @@ pub struct Calibration {
     /// γ of that direction is 2^-`completion_gamma` per sector of travel.
     #[serde(default = "completion_gamma")]
     pub completion_gamma: u32,
+    /// Whether the radial residual allows for what the loop lags behind the signal: ρ + e²/2 in the place of ρ, for one product more than
+    /// the paper's. Default: wherever that residual is searched, see [`allows_for_lag`](Self::allows_for_lag).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lag: Option<bool>,
     /// First γ is 2^-`gamma_first`.
     #[serde(default = "gamma_first")]
     pub gamma_first: u32,
@@ -34,10 +38,10 @@ pub struct Calibration {
     /// Periods of travel between gears. Default: see [`gear_periods`](Self::gear_periods).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gear_periods: Option<u32>,
-    /// |ρ| above this returns to the first γ, until γ has settled.
+    /// |ρ| above this returns to the first γ, until a gear has ended with a small residual.
     #[serde(default = "restart")]
     pub restart_residual: f64,
-    /// |ρ| above this holds the parameters once γ has settled: the signal may be fading. See [`Spec::hold_residual`].
+    /// |ρ| above this holds the parameters once a gear has ended without: the signal may be fading. See [`Spec::hold_residual`].
     #[serde(default = "hold")]
     pub hold_residual: f64,
     /// Periods of travel that what was recalled is held before the sensor is taken for changed, and the search begins again. Default:
@@ -99,7 +103,7 @@ impl Spec {
 }
 
 impl Calibration {
-    /// Halvings of γ after which it has settled: parameters may then be held, and they move where a period of travel ends.
+    /// Halvings of γ after which it has settled: parameters move where a period of travel ends then.
     pub const SETTLED: u32 = 4;
     /// Periods of travel that parameters are held of which nothing better is known, before the search begins again.
     pub const HELD: u32 = 32;
@@ -176,6 +180,12 @@ impl Calibration {
     #[must_use]
     pub fn is_exact(&self) -> bool {
         self.is_on() && self.method == CalibrationMethod::Exact
+    }
+
+    /// What the loop lags is no part of the residual. The sum of squares knows no estimate that could lag.
+    #[must_use]
+    pub fn allows_for_lag(&self) -> bool {
+        self.is_on() && !self.squares() && self.lag.unwrap_or(true)
     }
 
     /// The first periods of travel are solved by least squares.
@@ -280,6 +290,7 @@ impl Default for Calibration {
             forgetting: forgetting(),
             completion: yes(),
             completion_gamma: completion_gamma(),
+            lag: None,
             gamma_first: gamma_first(),
             gamma_last: gamma_last(),
             gear_periods: None,

@@ -78,6 +78,7 @@ const KEYS: &[(&str, &[&str])] = &[
             "forgetting",
             "completion",
             "completion_gamma",
+            "lag",
             "gamma_first",
             "gamma_last",
             "gear_periods",

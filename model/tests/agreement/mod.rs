@@ -13,7 +13,7 @@ use nonius_model::kernel::{Input, Method, State};
 use nonius_model::reference::gradient::Form;
 use nonius_model::reference::interpolator::Search;
 use nonius_model::reference::start::Start;
-use nonius_model::reference::{Config, Parameters, Reference, Steps, Theta, from_spec};
+use nonius_model::reference::{Config, Lag, Parameters, Reference, Steps, Theta, from_spec};
 use nonius_model::spec::Coding;
 
 use crate::support::{Encoder, wrapped};
@@ -115,6 +115,11 @@ fn reference(design: &Design, registers: &State<f64>, position: f64) -> Referenc
             0 => Search::None,
             _ => Search::Residual(Form::Final),
         },
+        // Of the final form only what stands along the radius.
+        lag: spec.calibration.allows_for_lag().then_some(Lag {
+            settled: None,
+            e: 0.0,
+        }),
         start: Start::At {
             alpha_hat: position * TAU,
             speed: rate * TAU / tracking.ts,

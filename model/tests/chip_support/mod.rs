@@ -197,16 +197,17 @@ pub(crate) fn course_at(spec: &Spec, periods: usize, per_period: f64) -> Vec<f64
         let signals = sensor_of(signs, beta);
         let mut bench = at_rest.with_noise(u64::from(signs));
         let before = rms(&bench.miscalibration(&signals));
+        let period = per_period.round() as usize;
         let (mut locked, mut k) = (0, 0);
-        while locked < periods * 64 {
+        while locked < periods * period {
             bench.step(signals(TAU / per_period * f64::from(k)));
             k += 1;
             assert!(k < 20_000, "never locked");
             if bench.chip.state.locked {
                 locked += 1;
-                if locked % 64 == 0 {
+                if locked % period == 0 {
                     let left = rms(&bench.miscalibration(&signals)) / before;
-                    let worst = &mut worst[locked / 64 - 1];
+                    let worst = &mut worst[locked / period - 1];
                     *worst = worst.max(100.0 * left);
                 }
             }
