@@ -7,10 +7,8 @@ use anyhow::{Result, bail};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use nonius_model::spec::Multipliers;
-use nonius_package::{
-    DesignJson, Event, PackageError, PullIn, ROWS, engineering, package_followed,
-    periods_per_second, write,
-};
+use nonius_package::{DesignJson, Event, PackageError, PullIn, ROWS, package_followed, write};
+use nonius_quantity::{counted, engineering, periods_per_second};
 use nonius_testvectors::stimulus;
 
 use crate::play;
@@ -148,9 +146,8 @@ fn summary(j: &DesignJson, output: &Path, shown: &str) {
         j.clocks_per_sample
     );
     say!(
-        "  hardware    {} multiplier{} for {} products, {} table bits",
-        j.multipliers,
-        if j.multipliers == 1 { "" } else { "s" },
+        "  hardware    {} for {} products, {} table bits",
+        counted(j.multipliers, "multiplier"),
         j.products,
         j.sine_table.bits + j.harmonics.as_ref().map_or(0, |h| h.bits)
     );

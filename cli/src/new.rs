@@ -12,7 +12,8 @@ use anyhow::{Context, Result, bail};
 use clap::Args;
 use nonius_model::design::{Design, DesignError};
 use nonius_model::spec::Spec;
-use nonius_package::{BOTH_WAYS, periods_per_second, pull_in};
+use nonius_package::{BOTH_WAYS, pull_in};
+use nonius_quantity::periods_per_second;
 use nonius_recording::{Recording, Survey};
 
 use crate::recording_args::RecordingArgs;

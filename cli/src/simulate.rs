@@ -8,6 +8,7 @@ use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use nonius_model::physical::{metres, radians_of_revolution};
 use nonius_model::spec::Spec;
+use nonius_quantity::times;
 use nonius_recording::Recording;
 
 use crate::interpolator::{BitTrue, InFloatingPoint, Interpolator};
@@ -91,9 +92,8 @@ pub(crate) fn run(args: &Simulate) -> Result<()> {
     target.keep()?;
     if let Some(first) = lost.first() {
         eprintln!(
-            "note: lock is lost {} time{}, first at {first} s: the position may have lost periods there",
-            lost.len(),
-            if lost.len() == 1 { "" } else { "s" }
+            "note: lock is lost {}, first at {first} s: the position may have lost periods there",
+            times(lost.len())
         );
     }
     Ok(())

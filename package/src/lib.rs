@@ -5,7 +5,6 @@ mod coefficient;
 mod curves;
 mod design_json;
 mod diagram;
-mod engineering;
 mod harmonics;
 mod progress;
 mod pull_in;
@@ -19,7 +18,6 @@ mod write;
 
 pub use coefficient::{Coefficient, coefficients};
 pub use design_json::DesignJson;
-pub use engineering::{digits, engineering, periods_per_second};
 pub use progress::{Event, Progress, silent};
 pub use pull_in::{BOTH_WAYS, PullIn, Worst, pull_in, pull_in_followed};
 pub use signals::{Signal, signals};

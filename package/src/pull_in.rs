@@ -8,9 +8,9 @@ use nonius_model::spec::Spec;
 use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::engineering::digits;
 use crate::progress::{Event, Progress, silent};
 use crate::sensor::{Sensor, Shares};
+use nonius_quantity::digits;
 
 /// How the chip pulls in from power-up, with every promised error at either end of its range and the promised noise.
 #[derive(Clone, Debug, PartialEq, Serialize)]

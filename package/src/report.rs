@@ -9,8 +9,8 @@ use nonius_plot::{Axis, Look, Mark, Plot, Series};
 use crate::curves;
 use crate::design_json::DesignJson;
 use crate::diagram::Diagram;
-use crate::engineering::{engineering, periods_per_second};
 use crate::simulation::Simulation;
+use nonius_quantity::{engineering, periods_per_second};
 
 #[derive(Template)]
 #[template(path = "report.html")]

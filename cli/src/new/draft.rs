@@ -1,6 +1,6 @@
 //! The numbers of a new design, before it is one.
 
-use nonius_package::digits;
+use nonius_quantity::digits;
 
 use super::FINEST;
 use super::promise::Promise;

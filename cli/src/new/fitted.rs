@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use anyhow::{Result, bail};
-use nonius_package::digits;
+use nonius_quantity::digits;
 use nonius_recording::{AdcSource, Recording, Survey};
 
 use super::FINEST;

@@ -1,6 +1,6 @@
 //! What a draft promises of its sensor, and whether that holds what was measured.
 
-use nonius_package::digits;
+use nonius_quantity::digits;
 
 use super::draft::short;
 

@@ -1,4 +1,6 @@
-//! Numbers as engineers write them.
+//! Numbers without an error.
+
+use crate::prefix::prefix;
 
 /// So many digits, and no zeros behind them when it is written.
 #[must_use]
@@ -15,9 +17,8 @@ pub fn engineering(value: f64, unit: &str) -> String {
     if value == 0.0 || !value.is_finite() {
         return format!("{value} {unit}");
     }
-    let steps = (value.abs().log10() / 3.0).floor().clamp(-5.0, 4.0) as i32;
-    let prefix = ["f", "p", "n", "µ", "m", "", "k", "M", "G", "T"][(steps + 5) as usize];
-    let scaled = value / 1000f64.powi(steps);
+    let (prefix, power) = prefix(value, true);
+    let scaled = value / 10f64.powi(power);
     let digits = (2 - scaled.abs().log10().floor() as i32).clamp(0, 3) as usize;
     format!("{scaled:.digits$} {prefix}{unit}")
 }
