@@ -86,7 +86,7 @@ impl Plot {
             let _ = write!(
                 out,
                 r#"<path class="series {}" data-name="{}" d="{}"/>"#,
-                series.look.class(),
+                series.class(),
                 escaped(&series.name),
                 self.path(series, [UNITS, UNITS], 2)
             );

@@ -88,6 +88,21 @@ pub struct Plot {
     pub round: bool,
 }
 
+/// Points of a series below which they are drawn larger.
+const FEW: usize = 100;
+
+impl Series {
+    /// Classes of its path.
+    pub(crate) fn class(&self) -> String {
+        let few = if self.points.len() < FEW && !self.look.is_line() {
+            " few"
+        } else {
+            ""
+        };
+        format!("{}{few}", self.look.class())
+    }
+}
+
 impl Plot {
     /// The path of a series in a rectangle.
     pub(crate) fn path(&self, series: &Series, [width, height]: [f64; 2], digits: usize) -> String {

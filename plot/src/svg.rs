@@ -10,7 +10,7 @@ const WIDTH: f64 = 640.0;
 const HEIGHT: f64 = 300.0;
 const FRAME: [f64; 4] = [72.0, 628.0, 58.0, 250.0];
 
-const STYLE: &str = "text{font:12px sans-serif;fill:#3d4a57}.title{font-weight:600;fill:#1d2733}.grid{stroke:#d5dce3;fill:none}.dots,.bars,.line{fill:none;stroke-linecap:round;stroke-linejoin:round}.dots{stroke-width:2.4}.bars{stroke-width:1.8}.line{stroke-width:1.4}.was{stroke:#d55e00}.is{stroke:#0072b2}.line.is{stroke-dasharray:5 3}.model{stroke:#111}.mark{stroke:#7a4f9c;stroke-dasharray:2 3;fill:none}";
+const STYLE: &str = "text{font:12px sans-serif;fill:#3d4a57}.title{font-weight:600;fill:#1d2733}.grid{stroke:#d5dce3;fill:none}.dots,.bars,.line{fill:none;stroke-linecap:round;stroke-linejoin:round}.dots{stroke-width:2.4}.dots.few{stroke-width:5}.bars{stroke-width:1.8}.line{stroke-width:1.4}.was{stroke:#d55e00}.is{stroke:#0072b2}.line.is{stroke-dasharray:5 3}.model{stroke:#111}.mark{stroke:#7a4f9c;stroke-dasharray:2 3;fill:none}";
 
 impl Plot {
     /// The whole SVG file.
@@ -79,7 +79,7 @@ impl Plot {
             let path = self.path(series, [width, height], 1);
             // A number of points to the line, for those who compare files.
             let path = path.replace('M', "\nM");
-            let _ = writeln!(out, r#"<path class="{}" d="{path}"/>"#, series.look.class());
+            let _ = writeln!(out, r#"<path class="{}" d="{path}"/>"#, series.class());
         }
         out + "</g></svg>\n"
     }
