@@ -8,6 +8,7 @@ use anyhow::{Context, Result};
 use nonius_diagnosis::Diagnosis;
 use nonius_model::design::{Design, DesignError};
 use nonius_model::spec::Spec;
+use nonius_quantity::{Quantity, Unit, agree};
 use toml_edit::{ArrayOfTables, DocumentMut, Item, Table, value};
 
 /// Room above the largest bend that was found.
@@ -78,18 +79,28 @@ fn correct_skew(text: &str, found: &Diagnosis) -> Result<(String, Vec<String>)> 
     section["channel_skew_s"] = value(delay);
     Ok(match designed(&document)? {
         Ok(changed) => {
-            let note = format!(
-                "design.toml corrects a sine that is sampled {delay:e} s later than the cosine"
-            );
+            let note = format!("design.toml corrects that {}", late(delay));
             (changed, vec![note])
         }
         Err(error) => {
             let note = format!(
-                "the sine is sampled {delay:e} s later, but its correction does not fit the design: {error}"
+                "{}, but the correction of that does not fit the design: {error}",
+                late(delay)
             );
             (text.to_owned(), vec![note])
         }
     })
+}
+
+/// Which channel is sampled later, by how much.
+fn late(delay: f64) -> String {
+    let [first, second] = if delay < 0.0 {
+        ["sin", "cos"]
+    } else {
+        ["cos", "sin"]
+    };
+    let delay = Quantity::new(delay.abs(), 0.0, Unit::Small("s")).brief();
+    format!("{second} is sampled {delay} after {first}")
 }
 
 /// The table of harmonics, for what no parameter on line mends. Those that were measured are of the raw signals, so they take
@@ -124,17 +135,21 @@ fn correct_harmonics(text: &str, found: &Diagnosis) -> Result<(String, Vec<Strin
     }
     section["harmonics"] = Item::ArrayOfTables(entries);
     let orders: Vec<String> = list.iter().map(|h| h.order.to_string()).collect();
-    let orders = orders.join(", ");
+    let orders = format!(
+        "{} {}",
+        agree(list.len(), "order", "orders"),
+        orders.join(", ")
+    );
     Ok(match designed(&document)? {
         Ok(changed) => {
             notes.push(format!(
-                "design.toml takes harmonics of the scale period off by a table: order {orders}"
+                "design.toml corrects harmonics of the scale period by a table: {orders}"
             ));
             (changed, notes)
         }
         Err(error) => {
             notes.push(format!(
-                "harmonics of order {orders} were found, but a table of them does not fit the design: {error}"
+                "harmonics were found ({orders}), but a table of them does not fit the design: {error}"
             ));
             (text.to_owned(), notes)
         }

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use anyhow::Result;
 use clap::Args;
 use nonius_diagnosis::{Diagnosis, Extended, Finding, Simulation, Unexplained, diagnose};
+use nonius_quantity::{Unit, before_after, digits};
 use nonius_recording::Recording;
 use serde::Serialize;
 
@@ -129,30 +130,32 @@ fn summary(found: &Diagnosis, output: &Path) {
         say!("{}", found.nothing_named());
     }
     for finding in &found.findings {
-        let with = match finding.confounded_with.first() {
-            Some(other) => format!(" (or {other})"),
+        let snr = match finding.gain.detection_snr {
+            Some(snr) => format!(" (SNR {})", digits(snr, 3)),
             None => String::new(),
         };
-        say!("{}{with}: {}", finding.cause, finding.evidence);
+        say!("{}{snr}", finding.named_evidence());
     }
-    say!("left: {}", found.unexplained.signature);
+    match found.unexplained.parts.as_slice() {
+        [] => say!("left: {}", found.unexplained.signature),
+        parts => parts.iter().for_each(|part| say!("unexplained: {part}")),
+    }
     for sentence in nonius_diagnosis::unseen(&found.context) {
         say!("cannot be seen here: {sentence}");
     }
-    say!(
-        "residual on held-out data: {:.4e} -> {:.4e} of the amplitude",
+    let (before, after) = before_after(
         found.simulation.held_out_residual_rms,
-        found.extended.held_out_residual_rms
+        found.extended.held_out_residual_rms,
+        Unit::Percent,
     );
+    say!("residual on held-out data: {before} → {after} of the amplitude, rms");
     if let (Some(before), Some(after)) = (
         found.simulation.position_error_rms_rad,
         found.extended.position_error_rms_rad,
     ) {
-        say!(
-            "angle error against the reference: {:.4} -> {:.4} degrees rms",
-            before.to_degrees(),
-            after.to_degrees()
-        );
+        let degrees = [before, after].map(f64::to_degrees);
+        let (before, after) = before_after(degrees[0], degrees[1], Unit::Plain("°"));
+        say!("angle error against the reference: {before} → {after} rms (electrical)");
     }
     say!("written: {}/", output.display());
 }

@@ -82,23 +82,22 @@ fn section(
     };
     writeln!(text, "{change}.\n").expect("text");
     for finding in &found.findings {
-        let sentence = finding.evidence.split("; it raises").next();
-        let or = match finding.confounded_with.first() {
-            Some(other) => format!(" or `{other}`"),
-            None => String::new(),
-        };
-        writeln!(
-            text,
-            "- `{}`{or}: {}",
-            finding.cause,
-            sentence.unwrap_or_default()
-        )
-        .expect("text");
+        let named = finding.named_evidence();
+        let (names, sentence) = named.split_once(": ").expect("names and a sentence");
+        let names = names.replace(" or ", "` or `");
+        writeln!(text, "- `{names}`: {sentence}").expect("text");
     }
     if found.findings.is_empty() {
         writeln!(text, "No cause has a name.").expect("text");
     }
-    writeln!(text, "\nLeft: {}.\n", found.unexplained.signature).expect("text");
+    text += "\nLeft:\n\n";
+    if found.unexplained.parts.is_empty() {
+        writeln!(text, "- {}", found.unexplained.signature).expect("text");
+    }
+    for part in &found.unexplained.parts {
+        writeln!(text, "- {part}").expect("text");
+    }
+    text.push('\n');
     let all = plots(found, recording);
     let first_of = |i: usize| all.iter().find(move |p| p.0.starts_with(&format!("{i}-")));
     let findings = (1..=found.findings.len()).filter_map(first_of).take(SHOWN);

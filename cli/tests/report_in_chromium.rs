@@ -80,6 +80,9 @@ fn the_report_of_a_diagnosis_is_whole() {
         "Interference, 311.3",
         "Hysteresis",
         "Dropped samples",
+        "4 findings together: residual on held-out data, rms",
+        "2 samples put back into the time base",
+        "Angle less the smooth motion, around the first gap",
     ] {
         assert!(html.contains(title), "{title}");
     }

@@ -312,9 +312,8 @@ pub(crate) fn beside(mut found: Diagnosis, calm: Diagnosis, mark: Mark) -> Diagn
         return found;
     }
     if let Some(mut finding) = calm.findings.into_iter().find(one) {
-        finding.evidence +=
-            ", where the motion is followed with wider knots, away from its corners";
-        finding.gain = found.unchanged();
+        finding.evidence += "; it shows away from the starts, stops and reversals of the drive";
+        finding.gain = finding.gain.judged(found.unchanged());
         found.findings.push(finding);
     }
     found

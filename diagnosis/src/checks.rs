@@ -1,10 +1,12 @@
 //! Digital checks on the codes and the time base, before anything is fitted.
 
+use nonius_quantity::{agree, counted};
 use nonius_recording::Recording;
 
 use crate::edges::{Edges, edges};
 use crate::finding::{Finding, Parameter, Place};
 use crate::timebase;
+use crate::units;
 
 /// What the checks found, and which samples do not count.
 pub(crate) struct Checked {
@@ -145,7 +147,11 @@ fn bits_and_steps(channel: &str, codes: &[i64], bits: u32) -> Vec<Finding> {
             } else {
                 Parameter::exact("step_lsb", step as f64, "LSB")
             }],
-            format!("the {channel} channel moves over {span} codes in steps of {step} codes"),
+            if bit {
+                format!("the last bit of the {channel} channel never changes while its codes sweep over {span}")
+            } else {
+                format!("the {channel} channel moves in steps of {step} codes while its codes sweep over {span}")
+            },
         ));
     }
     if let Some(stuck) = constant.iter().find(|b| !lowest.contains(b)) {
@@ -153,7 +159,7 @@ fn bits_and_steps(channel: &str, codes: &[i64], bits: u32) -> Vec<Finding> {
             "stuck_bit",
             vec![Parameter::exact("bit", f64::from(*stuck), "1")],
             format!(
-                "bit {stuck} of the {channel} channel never changes while its codes sweep over {span} codes"
+                "bit {stuck} of the {channel} channel never changes while its codes sweep over {span}"
             ),
         ));
     }
@@ -316,15 +322,26 @@ fn glitches(recording: &Recording, checked: &mut Checked) {
             checked.weight[near] = 0.0;
         }
     }
+    let left_out = checked.weight.iter().filter(|w| **w == 0.0).count();
     let largest = found.iter().map(|f| f.1).fold(0.0, f64::max);
+    let largest = Parameter::exact("largest", largest, units::of_columns(recording));
     let share = found.len() as f64 / n as f64;
     let error = (found.len() as f64).sqrt() / n as f64;
-    checked.findings.push(Finding::digital(
-        "glitches",
-        vec![
-            Parameter::measured("share", share, error, "1"),
-            Parameter::exact("largest", largest, "column"),
-        ],
-        format!("{} isolated samples lie far off the curve through their neighbours, by up to {largest:.4}; the first is sample {}", found.len(), found[0].0),
-    ).at(Place::Sample(found[0].0)));
+    let n = found.len();
+    let evidence = format!(
+        "{} {} from the curve through {} neighbours by up to {}; {} sample {}",
+        counted(n, "isolated sample"),
+        agree(n, "deviates", "deviate"),
+        agree(n, "its", "their"),
+        match largest.unit.as_str() {
+            "counts" => largest.brief(),
+            _ => format!("{:.4} (unit of the columns)", largest.value),
+        },
+        agree(n, "it is", "the first is"),
+        found[0].0
+    );
+    let parameters = vec![Parameter::measured("share", share, error, "1"), largest];
+    let finding = Finding::digital("glitches", parameters, evidence);
+    let finding = finding.at(Place::Sample(found[0].0)).repairing(left_out);
+    checked.findings.push(finding);
 }

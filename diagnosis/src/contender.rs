@@ -1,6 +1,8 @@
 //! Which of the causes that explain most is accepted: one that holds what any shape of its domain explains, and that no
 //! more than one other explains as well.
 
+use nonius_quantity::agree;
+
 use crate::ahead;
 use crate::beside::Beside;
 use crate::cause::{Candidate, Domain, Sign};
@@ -11,11 +13,13 @@ use crate::exact;
 use crate::held::{holds, stand_beside};
 use crate::library::Shape;
 use crate::model::{Fit, System, amounts};
+use crate::names::plain;
 use crate::score::{RIVALS, Scored, score};
 use crate::select::both;
-use crate::selection::{Accepted, Unnamed};
+use crate::selection::Accepted;
 use crate::statistics::{log_tail, price};
 use crate::steps::{self, Change};
+use crate::unexplained::{Unnamed, What, like};
 
 /// Gain in log-likelihood (an SNR of 300) from which on a choice between causes is made where tangents are exact.
 const LARGE: f64 = 45_000.0;
@@ -134,29 +138,35 @@ pub(crate) fn contender(
             }
             break;
         }
-        let nearest = own.candidate.name.replace('_', " ");
         let why = if !listed(own.candidate.name) {
-            "the catalogue holds no such cause".to_owned()
+            "the catalogue has no such cause".to_owned()
         } else if locked {
-            "at this constant speed it goes with the angle as well".to_owned()
+            "at this constant speed an error that goes with the angle has that frequency, too"
+                .to_owned()
         } else if !slow {
             "steps explain it as well".to_owned()
         } else if let Some(refusal) = held.refusal {
             refusal
         } else if ahead.outdone {
-            "two others together explain more".to_owned()
+            "two other causes together explain more".to_owned()
         } else {
-            format!("{} explain it as well", rivals.join(", ").replace('_', " "))
+            let rivals: Vec<String> = rivals.iter().map(|r| plain(r)).collect();
+            format!(
+                "{} {} it as well",
+                rivals.join(" and "),
+                agree(rivals.len(), "explains", "explain")
+            )
         };
-        let signature = format!(
-            "{}; nearest likeness: {nearest}, but {why}",
-            lives(own.candidate.domain)
-        );
+        let hertz = own.candidate.exact.as_ref().and_then(|e| e.inner.first());
+        let hertz = hertz
+            .copied()
+            .filter(|_| own.candidate.domain == Domain::Line);
+        let likeness = like(own.candidate.name, &why);
         let unnamed = Unnamed {
             log_p: own.log_p,
             // What a drift leaves of steps can look like anything, too.
             gain: own.gain.max(steps.unwrap_or_default()),
-            signature,
+            what: What::Error(own.candidate.domain, hertz, likeness),
         };
         if first.is_some() {
             system.retain(|i| i < mark);
@@ -354,17 +364,4 @@ fn stands_in(system: &System, fit: &Fit, scored: &[Scored], drift: usize, which:
     stand_beside(system, &mut named, &others, other);
     let beside = Beside::new(&system.total, &fit.shapes);
     beside.gain(&named[fit.shapes.len()..]).0 >= enough
-}
-
-/// Where something lives, in words.
-pub(crate) fn lives(domain: Domain) -> &'static str {
-    match domain {
-        Domain::Angle => "something repeats with the scale period",
-        Domain::Code => "something depends on the ADC code",
-        Domain::Speed => "something depends on the speed",
-        Domain::Time => "something changes slowly with time",
-        Domain::Line => "something stands at a fixed frequency",
-        Domain::Revolution => "something repeats with the revolution",
-        Domain::Motion => "something moves that the motion's spline does not follow",
-    }
 }

@@ -20,43 +20,15 @@ use crate::reference;
 use crate::repair::{Repaired, repair};
 use crate::score::KINDS;
 use crate::select::select;
-use crate::selection::{Accepted, Selection, Unnamed};
+use crate::selection::{Accepted, Selection};
 use crate::simulation::{Simulation, simulation};
 use crate::statistics;
+use crate::unexplained::Unexplained;
+use crate::units;
+use crate::whereabouts::Left;
 
 /// Most times that a recording is looked at anew.
 const ROUNDS: usize = 10;
-
-/// What no cause explains.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Unexplained {
-    /// p < 0.001 after all trials.
-    pub significant: bool,
-    /// The smallest.
-    pub p_value: f64,
-    /// Where it lives and what it looks like.
-    pub signature: String,
-}
-
-impl Unexplained {
-    fn nothing() -> Self {
-        Self {
-            significant: false,
-            p_value: 1.0,
-            signature: "nothing significant is left: the residue is noise".into(),
-        }
-    }
-
-    fn add(&mut self, unnamed: &Unnamed) {
-        if self.significant {
-            self.signature = format!("{}; {}", self.signature, unnamed.signature);
-        } else {
-            self.signature.clone_from(&unnamed.signature);
-        }
-        self.significant = true;
-        self.p_value = self.p_value.min(unnamed.log_p.exp());
-    }
-}
 
 /// The model with the causes that were found.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -113,6 +85,7 @@ impl Diagnosis {
             held_out_residual_rms_after: model.held_out_residual_rms,
             position_error_rms_before_rad: model.position_error_rms_rad,
             position_error_rms_after_rad: model.position_error_rms_rad,
+            ..Gain::default()
         }
     }
 }
@@ -178,10 +151,12 @@ fn whole(
 fn beside(mut with: Diagnosis, noise: Option<Flicker>) -> Diagnosis {
     match noise.as_ref().map(Flicker::finding) {
         Some(Ok(mut finding)) => {
-            finding.gain = with.unchanged();
+            finding.gain = finding.gain.judged(with.unchanged());
             with.findings.push(finding);
         }
-        Some(Err(unnamed)) => with.unexplained.add(&unnamed),
+        Some(Err(unnamed)) => {
+            with.unexplained.add(unnamed.log_p, unnamed.what.said());
+        }
         None => {}
     }
     with
@@ -310,10 +285,17 @@ fn conclude(
         finding.gain.position_error_rms_after_rad = position_after;
         findings.push(finding);
     }
-    let mut unexplained = Unexplained::nothing();
-    unnamed().for_each(|u| unexplained.add(u));
     let was = system.residual(&selection.base);
     let left = system.residual(&extended.fit);
+    let mut unexplained = Unexplained::nothing();
+    let seen = Left {
+        context,
+        radial: &left.radial,
+        tangential: &left.tangential,
+    };
+    for one in unnamed() {
+        unexplained.add(one.log_p, one.sentence(&seen, system.noise()));
+    }
     let residuals = [(was.radial, was.tangential), (left.radial, left.tangential)];
     let left_motion = left.motion;
     let simulation = simulation(
@@ -322,6 +304,7 @@ fn conclude(
         held_before,
         halves.rms(&selection.base),
         position_before,
+        units::of_columns(&repaired.recording),
     );
     let model = Extended {
         residual_rms: halves.rms(&extended.fit),

@@ -5,13 +5,14 @@
 use crate::beside::Beside;
 use crate::cause::Domain;
 use crate::causes::Catalogue;
-use crate::contender::lives;
 use crate::finding::Finding;
 use crate::generic::HOLDS;
 use crate::held::share;
 use crate::library::Shape;
 use crate::model::System;
-use crate::selection::{Selection, Unnamed};
+use crate::names::plain;
+use crate::selection::Selection;
+use crate::unexplained::{Unnamed, What, explains_only, like};
 
 /// Share of what static errors, or errors of speed, explain below which another kind of them is what the strongest one's
 /// model leaves: an SNR between a fourth and a fifth of its.
@@ -91,11 +92,10 @@ fn gain_of(system: &System, found: &Selection, own: &[usize]) -> f64 {
 
 /// What is taken back, and why; `gain` is what its name explained.
 fn unnamed(domain: Domain, nearest: &str, gain: f64, but: &str) -> Unnamed {
-    let nearest = nearest.replace('_', " ");
     Unnamed {
         log_p: -gain,
         gain,
-        signature: format!("{}; nearest likeness: {nearest}, but {but}", lives(domain)),
+        what: What::Error(domain, None, like(nearest, but)),
     }
 }
 
@@ -111,8 +111,7 @@ fn too_much_left(
     let beyond = beside.gain(&system.sure(catalogue.basis(domain)));
     let gain = gain_of(system, found, own);
     let share = share(gain, beyond);
-    let held = share.max(0.0) * 100.0;
-    let but = format!("it holds {held:.0} % of what any shape there explains");
+    let but = explains_only(share);
     let nearest = found.accepted[own[0]].candidate.name;
     (share < HOLDS).then(|| unnamed(domain, nearest, gain, &but))
 }
@@ -173,9 +172,10 @@ fn leftovers(
     }
     let (gain, nearest) = largest?;
     let but = format!(
-        "it is {:.1} % of what {} explains, whose model may leave as much",
-        100.0 * gain / all,
-        name.replace('_', " ")
+        "its SNR of {:.0} is so small beside the {:.0} of {} that it may be what that model leaves",
+        (2.0 * gain).sqrt(),
+        (2.0 * all).sqrt(),
+        plain(name)
     );
     Some(unnamed(domain, nearest, gain, &but))
 }
@@ -213,7 +213,7 @@ pub(crate) fn beside_codes(system: &System, found: &mut Selection, digital: &[Fi
             found.accepted[i].doubted = true;
         }
     }
-    let but = "the codes themselves are off by more";
+    let but = "the errors of the codes are larger";
     let taken = first.map(|(name, gain)| unnamed(Domain::Angle, name, gain, but));
     found.unnamed.extend(taken);
 }

@@ -1,6 +1,10 @@
 //! Findings, as `findings.json` has them.
 
+use nonius_quantity::Quantity;
 use serde::Serialize;
+
+use crate::names::plain;
+use crate::units;
 
 /// A parameter of a cause.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -28,9 +32,31 @@ impl Parameter {
     pub(crate) fn exact(name: &str, value: f64, unit: &str) -> Self {
         Self::measured(name, value, 0.0, unit)
     }
+
+    /// So many times as large, of the same name.
+    pub(crate) fn times(&self, factor: f64) -> Self {
+        Self {
+            value: factor * self.value,
+            std_error: factor.abs() * self.std_error,
+            ..self.clone()
+        }
+    }
+
+    /// In a sentence: value and unit, in the digits that the error allows.
+    pub(crate) fn brief(&self) -> String {
+        let unit = units::shown(&self.name, &self.unit);
+        Quantity::new(self.value, self.std_error, unit).brief()
+    }
+
+    /// In a table: value ± error, and the unit.
+    pub(crate) fn apart(&self) -> (String, String) {
+        let unit = units::shown(&self.name, &self.unit);
+        let (value, unit) = Quantity::new(self.value, self.std_error, unit).apart();
+        (value, units::of_what(&unit, &self.name, &self.unit))
+    }
 }
 
-/// What naming a cause gains.
+/// What naming a cause gains. What is optional beyond the contract is left out where it says nothing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Gain {
     /// Residual on data that was not fitted, without the cause, in fractions of the amplitude.
@@ -41,6 +67,35 @@ pub struct Gain {
     pub position_error_rms_before_rad: Option<f64>,
     /// And with it.
     pub position_error_rms_after_rad: Option<f64>,
+    /// Size of the cause over the noise: the root of twice the log-likelihood that it explains.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub detection_snr: Option<f64>,
+    /// Of noise: log-likelihood of data that was not fitted, with its name less without it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub held_out_log_likelihood_gain: Option<f64>,
+    /// Samples that were put back, taken out or left out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub repaired_samples: Option<usize>,
+}
+
+impl Gain {
+    /// What is known before the model is judged: how much log-likelihood a cause explains.
+    pub(crate) fn of(log_likelihood: f64) -> Self {
+        Self {
+            detection_snr: Some((2.0 * log_likelihood.max(0.0)).sqrt()),
+            ..Self::default()
+        }
+    }
+
+    /// The same with residuals and position errors of another.
+    pub(crate) fn judged(self, by: Self) -> Self {
+        Self {
+            detection_snr: self.detection_snr,
+            held_out_log_likelihood_gain: self.held_out_log_likelihood_gain,
+            repaired_samples: self.repaired_samples,
+            ..by
+        }
+    }
 }
 
 /// What the chip can do about a cause.
@@ -73,6 +128,20 @@ pub struct Effect {
 pub enum Place {
     /// At a sample of the recording.
     Sample(usize),
+    /// Before a sample of the recording, so many are missing.
+    Gap {
+        /// The sample.
+        sample: usize,
+        /// How many.
+        missing: usize,
+    },
+    /// At a sample that repeats the one before.
+    Repeat {
+        /// The sample.
+        sample: usize,
+        /// It was put in, and does not stand in another's place.
+        inserted: bool,
+    },
     /// In the codes of a channel (0 is cos), again every `step` of them.
     Code {
         /// Which channel.
@@ -95,7 +164,7 @@ pub struct Finding {
     pub parameters: Vec<Parameter>,
     /// What it gains.
     pub gain: Gain,
-    /// One sentence, with numbers.
+    /// One sentence, with numbers; of a group it names both first.
     pub evidence: String,
     /// What the chip can do.
     pub chip: Chip,
@@ -116,6 +185,49 @@ impl Finding {
     pub fn parameter(&self, name: &str) -> Option<f64> {
         let one = self.parameters.iter().find(|p| p.name == name);
         one.map(|p| p.value)
+    }
+
+    /// The causes that it may be, as people write them.
+    #[must_use]
+    pub fn plain_name(&self) -> String {
+        let others = self.confounded_with.iter().map(String::as_str);
+        let all: Vec<String> = std::iter::once(self.cause.as_str())
+            .chain(others)
+            .map(plain)
+            .collect();
+        all.join(" or ")
+    }
+
+    /// The evidence after the names of the contract.
+    #[must_use]
+    pub fn named_evidence(&self) -> String {
+        let seen = self
+            .evidence
+            .strip_prefix(&self.group())
+            .unwrap_or(&self.evidence);
+        let all = [&[self.cause.clone()][..], &self.confounded_with].concat();
+        format!("{}: {seen}", all.join(" or "))
+    }
+
+    /// What stands before the evidence of a group; nothing where there is one name.
+    fn group(&self) -> String {
+        if self.confounded_with.is_empty() {
+            String::new()
+        } else {
+            format!("{}: ", self.plain_name())
+        }
+    }
+
+    /// With both names before the evidence, where there are two.
+    pub(crate) fn naming_both(mut self) -> Self {
+        self.evidence.insert_str(0, &self.group());
+        self
+    }
+
+    /// With so many samples that were put back, taken out or left out.
+    pub(crate) fn repairing(mut self, samples: usize) -> Self {
+        self.gain.repaired_samples = Some(samples);
+        self
     }
 
     /// The same with where it is seen.

@@ -7,6 +7,8 @@
 //! noise, drift and hum are not 1/f. Nor are offsets that jump between two levels, though their spectrum may be: there the
 //! levels explain as much as such noise does, each by its likelihood in time.
 
+mod held_out;
+
 use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
 
@@ -14,9 +16,9 @@ use crate::channels::Channels;
 use crate::context::Context;
 use crate::finding::{Chip, Finding, Gain, Parameter};
 use crate::one_over_f;
-use crate::selection::Unnamed;
 use crate::statistics::{after_trials, log_tail, price};
 use crate::telegraph;
+use crate::unexplained::{Unnamed, What, like};
 
 /// Its name.
 pub(crate) const FLICKER: &str = "flicker_noise";
@@ -51,6 +53,8 @@ pub(crate) struct Flicker {
     /// Where it is as large as the white noise, hertz.
     pub(crate) corner: f64,
     gain: f64,
+    /// Log-likelihood of lines of the spectrum that were not fitted.
+    held_out: f64,
     /// Log-likelihood that it explains of what is seen sample by sample, its number paid for.
     paid: f64,
     log_p: f64,
@@ -317,6 +321,7 @@ fn find_from(seen: Channels, slowest: usize) -> Option<Flicker> {
         density: [density, 0.5 * density / curvature.max(1e-12).sqrt()],
         corner: best.0,
         gain,
+        held_out: held_out::gain(&lines),
         log_p,
         paid,
         slowest,
@@ -348,32 +353,41 @@ impl Flicker {
 
     /// The finding, whose gain in the residual is for the caller to say; or what it is where it has no name.
     pub(crate) fn finding(&self) -> Result<Finding, Unnamed> {
+        let corner = self.corner;
+        let corner_error = 2.0 * corner * self.density[1] / self.density[0];
+        let corner = Parameter::measured("corner_hz", corner, corner_error, "Hz");
         if self.jumps {
             return Err(Unnamed {
                 log_p: self.log_p,
                 gain: self.gain,
-                signature: "the noise of the channels rises towards low frequencies; nearest likeness: flicker noise, but two levels between which the offsets jump explain nearly as much".into(),
+                what: What::Said(format!(
+                    "the noise of the channels rises towards low frequencies, from {} down; {}",
+                    corner.brief(),
+                    like(
+                        FLICKER,
+                        "offsets that jump between two levels explain nearly as much"
+                    )
+                )),
             });
         }
         let [density, error] = self.density;
+        let evidence = format!(
+            "the noise of the channels rises as 1/f towards low frequencies and exceeds the white noise below {}",
+            corner.brief()
+        );
         Ok(Finding {
             cause: FLICKER.into(),
             confounded_with: vec![],
             p_value: self.log_p.exp(),
             parameters: vec![
                 Parameter::measured("density_at_1_hz", density, error, "amplitude/sqrt(Hz)"),
-                Parameter::measured(
-                    "corner_hz",
-                    self.corner,
-                    2.0 * self.corner * error / density,
-                    "Hz",
-                ),
+                corner,
             ],
-            gain: Gain::default(),
-            evidence: format!(
-                "the noise of the channels rises towards low frequencies as 1/f, from {:.3e} Hz down above the white noise; it raises the log-likelihood by {:.1}",
-                self.corner, self.gain
-            ),
+            gain: Gain {
+                held_out_log_likelihood_gain: Some(self.held_out),
+                ..Gain::of(self.gain)
+            },
+            evidence,
             chip: Chip::CannotCorrect,
             weight: self.gain,
             effect: None,

@@ -9,6 +9,7 @@ use crate::model::{Fit, System, atoms_of};
 use crate::score::{KINDS, SHOWN, Scored};
 use crate::select::both;
 use crate::statistics::{after_trials, log_tail};
+use crate::unexplained::explains_only;
 
 /// Share that it has to hold of what grows with the size of the speed: there a law has no shapes of its own.
 const LAW: f64 = 0.97;
@@ -41,12 +42,9 @@ impl Held {
     /// `share` of what any shape explains, and of what grows with the size of the speed in any way.
     fn new(candidate: &Candidate, share: f64, sizes: f64, beyond: Vec<Shape>) -> Self {
         let refusal = if sizes < LAW {
-            Some("it grows with the speed by another law".to_owned())
+            Some("it grows with speed by another law".to_owned())
         } else if share < least(candidate) {
-            let percent = share * 100.0;
-            Some(format!(
-                "it holds {percent:.0} % of what any shape there explains"
-            ))
+            Some(explains_only(share))
         } else {
             None
         };

@@ -1,12 +1,13 @@
 //! Whether what everything leaves of the radius is white noise: what is not, lives there without a name.
 
+use nonius_quantity::{Quantity, Unit, digits};
 use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
 
 use crate::context::Context;
 use crate::score::SHOWN;
-use crate::selection::Unnamed;
 use crate::statistics::after_trials;
+use crate::unexplained::{Unnamed, What, like};
 
 /// Questions that are asked of it.
 const TRIALS: f64 = 2.0;
@@ -23,6 +24,9 @@ pub(crate) struct Bartlett {
     pub(crate) shares: Vec<f64>,
     /// Largest distance from the even rise.
     pub(crate) distance: f64,
+    /// Where that is, as a share of half the sample rate; whether there is more power below than above.
+    at: f64,
+    low: bool,
     /// Of a distance as large as this in white noise.
     pub(crate) p_value: f64,
 }
@@ -50,13 +54,31 @@ impl Bartlett {
             .for_each(|s| *s /= sum.max(f64::MIN_POSITIVE));
         let m = shares.len().max(1) as f64;
         let even = (1..).map(|i| f64::from(i) / m);
-        let off = shares.iter().zip(even).map(|(s, e)| (s - e).abs());
-        let distance = off.fold(0.0, f64::max);
+        let off = shares.iter().zip(even).map(|(s, e)| (s - e, e));
+        let (off, at) = off.fold((0.0, 0.0), |far: (f64, f64), one| {
+            if one.0.abs() > far.0.abs() { one } else { far }
+        });
+        let distance = off.abs();
         Self {
             shares,
             distance,
+            at,
+            low: off > 0.0,
             p_value: kolmogorov(distance * m.sqrt()),
         }
+    }
+}
+
+impl Bartlett {
+    /// How the spectrum differs from that of white noise, for so many samples per second.
+    pub(crate) fn words(&self, rate: f64) -> String {
+        let hertz = Quantity::new(digits(self.at * rate / 2.0, 2), 0.0, Unit::Prefixed("Hz"));
+        let side = if self.low { "below" } else { "above" };
+        format!(
+            "{} more of its power is {side} {} than of white noise",
+            Quantity::new(digits(self.distance, 2), 0.0, Unit::Percent).brief(),
+            hertz.brief()
+        )
     }
 }
 
@@ -103,13 +125,13 @@ pub(crate) fn no_noise(context: &Context, radial: &[f64]) -> Vec<Unnamed> {
         return vec![];
     }
     let mut found = vec![];
-    let mut tell = |p_value: f64, signature: String| {
+    let mut tell = |p_value: f64, sentence: String| {
         let log_p = after_trials(p_value.max(f64::MIN_POSITIVE).ln(), TRIALS);
         if log_p < SHOWN.ln() {
             found.push(Unnamed {
                 log_p,
                 gain: 0.0,
-                signature,
+                what: What::Said(sentence),
             });
         }
     };
@@ -122,17 +144,21 @@ pub(crate) fn no_noise(context: &Context, radial: &[f64]) -> Vec<Unnamed> {
         tell(
             p_value,
             format!(
-                "{} samples stand out of the noise of the radius by more than {FAR} standard deviations, the first is sample {first}; nearest likeness: glitches, but they do not stand alone",
-                far.len()
+                "{} samples deviate in the radius by more than {FAR} standard deviations of the noise, the first is sample {first}; {}",
+                far.len(),
+                like("glitches", "the samples beside them deviate, too")
             ),
         );
     }
     let bartlett = Bartlett::of(radial);
+    let square: f64 = radial.iter().map(|r| r * r).sum();
+    let rms = (square / radial.len().max(1) as f64).sqrt();
     tell(
         bartlett.p_value,
         format!(
-            "what is left along the radius is not white: its cumulated spectrum is off an even rise by {:.3} (Bartlett's test)",
-            bartlett.distance
+            "the radial residual of {} of the amplitude rms is not white: {} (Bartlett's test)",
+            Quantity::new(digits(rms, 2), 0.0, Unit::Percent).brief(),
+            bartlett.words(context.rate)
         ),
     );
     found

@@ -4,13 +4,15 @@
 //! likelihood). A name is given where one shape holds what knots over all three explain, and where what is called random
 //! is no line.
 
+use nonius_quantity::{Quantity, Unit, digits};
+
 use crate::context::Context;
 use crate::finding::{Chip, Finding, Gain, Parameter};
 use crate::generic::{HOLDS, hat};
 use crate::lines;
 use crate::model::{Residual, System};
-use crate::selection::Unnamed;
 use crate::statistics::{after_trials, log_tail};
+use crate::unexplained::{Unnamed, What, explains_only, like};
 use crate::variance::{ENOUGH, Fitted, Squares};
 
 /// Global probability below which it is shown.
@@ -26,6 +28,9 @@ const A_LINE: f64 = 1e-4;
 /// Share of what jitter explains that such a line has to explain to be the reason for it: what is left of a shaking axis
 /// has weak ones.
 const MUCH: f64 = 0.2;
+/// Names of the contract.
+const CLOCK_JITTER: &str = "clock_jitter";
+const AMPLITUDE_NOISE: &str = "amplitude_noise";
 /// Equal noise of either row, unequal noise of the channels.
 const BASE: usize = 3;
 
@@ -149,6 +154,7 @@ pub(crate) fn findings(system: &System, residual: &Residual) -> (Vec<Finding>, V
         if log_p > SHOWN.ln() || with.x[BASE + 1] <= 0.0 {
             continue;
         }
+        let held_out = own.held_out(&with.x, &both) / inflation;
         let why = refusal(
             &depends,
             own,
@@ -162,7 +168,7 @@ pub(crate) fn findings(system: &System, residual: &Residual) -> (Vec<Finding>, V
             unnamed.push(Unnamed {
                 log_p,
                 gain,
-                signature: why,
+                what: What::Said(why),
             });
             continue;
         }
@@ -170,10 +176,9 @@ pub(crate) fn findings(system: &System, residual: &Residual) -> (Vec<Finding>, V
         let error = (with.covariance[(BASE + 1, BASE + 1)] * inflation).sqrt() / scale;
         list.push(finding(
             kind,
-            amount,
-            error,
+            [amount, error],
             context.top_speed(),
-            gain,
+            [gain, held_out],
             log_p,
         ));
     }
@@ -201,8 +206,8 @@ fn refusal(
 ) -> Option<String> {
     let n = tangential.len();
     let name = match kind {
-        Kind::Amplitude => "amplitude noise",
-        Kind::Jitter => "clock jitter",
+        Kind::Amplitude => AMPLITUDE_NOISE,
+        Kind::Jitter => CLOCK_JITTER,
     };
     squares.every = n.div_ceil(ENOUGH);
     let named = with.x.len();
@@ -219,8 +224,9 @@ fn refusal(
     let share = gain / (gain + beyond / inflation);
     if share < HOLDS {
         return Some(format!(
-            "the size of the noise depends on something; nearest likeness: {name}, but it holds {:.0} % of what any dependence on angle, speed and time explains",
-            share * 100.0
+            "the noise level varies with angle, speed or time, at a detection SNR of {:.0}; {}",
+            (2.0 * (gain + beyond / inflation)).sqrt(),
+            like(name, &explains_only(share))
         ));
     }
     if kind == Kind::Jitter {
@@ -228,48 +234,61 @@ fn refusal(
         let time: Vec<f64> = (0..n)
             .map(|k| tangential[k] * depends.context.speed[k] / depends.context.top_speed())
             .collect();
-        let (power, _) = lines::spectrum(&time);
+        let (power, length) = lines::spectrum(&time);
         let mean = power.iter().sum::<f64>() / power.len() as f64;
         let highest = power.iter().copied().fold(0.0, f64::max);
         let line = highest / mean;
+        let at = power.iter().position(|p| *p == highest).unwrap_or(0);
+        let hertz = at as f64 / length as f64 * depends.context.rate;
         if n as f64 * (-line).exp() < A_LINE && line > MUCH * gain {
             return Some(format!(
-                "the sampling time wanders; nearest likeness: {name}, but a line stands in its spectrum"
+                "the sampling time wanders periodically, at {}; {}",
+                Quantity::new(digits(hertz, 3), 0.0, Unit::Prefixed("Hz")).brief(),
+                like(name, "that is random")
             ));
         }
     }
     None
 }
 
-fn finding(kind: Kind, amount: f64, error: f64, top: f64, gain: f64, log_p: f64) -> Finding {
+/// `gain` and `held_out`: log-likelihood of all data, and of data that was not fitted.
+fn finding(
+    kind: Kind,
+    [amount, error]: [f64; 2],
+    top: f64,
+    [gain, held_out]: [f64; 2],
+    log_p: f64,
+) -> Finding {
     let (value, error) = (amount.sqrt(), error / (2.0 * amount.sqrt()));
-    let (cause, parameter, sentence) = match kind {
-        Kind::Jitter => {
-            let value = value / top;
-            (
-                "clock_jitter",
-                Parameter::measured("rms_s", value, error / top, "s"),
-                format!(
-                    "the angle is noisier the faster the scale moves, as if the sampling time were random by {value:.3e} s rms"
-                ),
-            )
-        }
-        Kind::Amplitude => (
-            "amplitude_noise",
-            Parameter::measured("rms", value, error, "1"),
-            format!(
-                "the noise of each channel grows with its signal: {:.3} % of it, rms",
-                value * 100.0
-            ),
+    let (cause, parameter) = match kind {
+        Kind::Jitter => (
+            CLOCK_JITTER,
+            Parameter::measured("rms_s", value / top, error / top, "s"),
         ),
+        Kind::Amplitude => (
+            AMPLITUDE_NOISE,
+            Parameter::measured("rms", value, error, "1"),
+        ),
+    };
+    let size = parameter.brief();
+    let evidence = match kind {
+        Kind::Jitter => format!(
+            "the noise of the angle grows with speed, as from a sampling clock with a jitter of {size} rms"
+        ),
+        Kind::Amplitude => {
+            format!("the noise of each channel is proportional to its signal: {size} of it, rms")
+        }
     };
     Finding {
         cause: cause.into(),
         confounded_with: vec![],
         p_value: log_p.exp(),
         parameters: vec![parameter],
-        gain: Gain::default(),
-        evidence: format!("{sentence}; it raises the log-likelihood by {gain:.1}"),
+        gain: Gain {
+            held_out_log_likelihood_gain: Some(held_out),
+            ..Gain::of(gain)
+        },
+        evidence,
         chip: Chip::CannotCorrect,
         weight: gain,
         effect: None,

@@ -4,7 +4,7 @@ use crate::beside::Beside;
 use crate::cause::{Candidate, Domain};
 use crate::causes::{self, AC_COUPLING, Catalogue, HYSTERESIS};
 use crate::channels::Channels;
-use crate::contender::{Contender, contender, lives, paid_where_noise_shows};
+use crate::contender::{Contender, contender, paid_where_noise_shows};
 use crate::context::Context;
 use crate::doubt::doubt;
 use crate::exact::{self, Start};
@@ -12,9 +12,10 @@ use crate::flicker;
 use crate::library::Shape;
 use crate::model::{Fit, Residual, System, atoms_of};
 use crate::score::{SHOWN, Scored, likely, score, worth};
-use crate::selection::{Accepted, Selection, Unnamed};
+use crate::selection::{Accepted, Selection};
 use crate::simpler::simpler;
 use crate::statistics::{after_trials, log_tail, price};
+use crate::unexplained::{Unnamed, What};
 
 /// Most causes of one recording.
 const MOST: usize = 8;
@@ -340,7 +341,11 @@ fn leftover(system: &System, catalogue: &Catalogue, fit: &Fit, closed: &[Domain]
         (log_p < SHOWN.ln()).then(|| Unnamed {
             log_p,
             gain,
-            signature: format!("{}; it looks like no cause of the catalogue", lives(domain)),
+            what: What::Error(
+                domain,
+                None,
+                "no cause of the catalogue looks like it".into(),
+            ),
         })
     };
     let left = open.into_iter().filter(|d| !closed.contains(d));

@@ -7,6 +7,7 @@ use crate::generic::HOLDS;
 use crate::model::{Fit, Halves, System, amounts};
 use crate::score::{KINDS, SHOWN};
 use crate::statistics::{after_trials, log_tail};
+use crate::unexplained::Unnamed;
 
 /// A cause that was accepted; its shapes stand in the fit from `first` on.
 #[derive(Clone)]
@@ -63,15 +64,6 @@ fn without(fit: &Fit, range: &std::ops::Range<usize>, system: &System) -> Fit {
     let shapes = fit.shapes.iter().enumerate();
     let others = shapes.filter(|(k, _)| !range.contains(k));
     system.fit(others.map(|(_, s)| s.clone()).collect())
-}
-
-/// What cannot be named.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Unnamed {
-    pub(crate) log_p: f64,
-    /// Gain in log-likelihood of the shape that is nearest to it.
-    pub(crate) gain: f64,
-    pub(crate) signature: String,
 }
 
 /// The end of the selection.
@@ -158,23 +150,25 @@ impl Selection {
             let p_value = log_p.exp();
             let without = without(fit, &range, system);
             let seen = (accepted.candidate.evidence)(&parameters);
-            list.push(Finding {
+            let finding = Finding {
                 cause: accepted.candidate.name.into(),
                 confounded_with: accepted.confounded.clone(),
                 p_value,
-                evidence: format!("{seen}; it raises the log-likelihood by {gain:.1}"),
+                evidence: seen,
                 parameters,
                 gain: Gain {
                     held_out_residual_rms_before: halves.held_out(&without, own, 0),
                     held_out_residual_rms_after: halves.held_out(fit, own, 0),
                     position_error_rms_before_rad: halves.position_error(&without),
                     position_error_rms_after_rad: halves.position_error(fit),
+                    ..Gain::of(gain)
                 },
                 chip: accepted.candidate.chip,
                 weight: gain - i as f64 * 1e-9,
                 effect: Some(system.effect(fit, range)),
                 place: None,
-            });
+            };
+            list.push(finding.naming_both());
         }
         list.sort_by(|a, b| b.weight.total_cmp(&a.weight));
         list

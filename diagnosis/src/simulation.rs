@@ -61,6 +61,7 @@ pub(crate) fn simulation(
     held_out: f64,
     rms: f64,
     position: Option<f64>,
+    unit: &str,
 ) -> Simulation {
     let n = system.context.samples() as f64;
     let noise = system.noise();
@@ -72,17 +73,11 @@ pub(crate) fn simulation(
         causes: vec![
             SimulatedCause {
                 cause: "offset",
-                parameters: vec![
-                    p("b_c", e.b_c, b_c, "column"),
-                    p("b_s", e.b_s, b_s, "column"),
-                ],
+                parameters: vec![p("b_c", e.b_c, b_c, unit), p("b_s", e.b_s, b_s, unit)],
             },
             SimulatedCause {
                 cause: "gain_mismatch",
-                parameters: vec![
-                    p("a_c", e.a_c, a_c, "column"),
-                    p("a_s", e.a_s, a_s, "column"),
-                ],
+                parameters: vec![p("a_c", e.a_c, a_c, unit), p("a_s", e.a_s, a_s, unit)],
             },
             SimulatedCause {
                 cause: "quadrature_error",

@@ -13,7 +13,7 @@ use crate::spline::{Basis, Spline};
 use crate::whiten::{ORDER, Whitener};
 
 /// Interleaved blocks, every other one of which is held out.
-const BLOCKS: usize = 20;
+pub(crate) const BLOCKS: usize = 20;
 
 /// How what cannot be seen is taken off a row.
 enum Projector<'a> {

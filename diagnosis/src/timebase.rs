@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 
+use nonius_quantity::{agree, counted};
 use nonius_recording::Recording;
 
 use crate::checks::{Checked, ninth, repeats};
@@ -164,18 +165,20 @@ pub(crate) fn repeated(recording: &Recording, checked: &mut Checked) {
     if next < 1.5f64.powi(2) * usual {
         checked.extra.clone_from(&twins);
     }
-    checked.findings.push(
-        Finding::digital(
-            "repeated_samples",
-            vec![Parameter::exact("count", twins.len() as f64, "samples")],
-            format!(
-                "{} samples repeat the one before while the scale moves; the first is sample {}",
-                twins.len(),
-                twins[0]
-            ),
-        )
-        .at(Place::Sample(twins[0])),
+    let (count, first) = (twins.len(), twins[0]);
+    let evidence = format!(
+        "{} {} the one before while the scale moves{} sample {first}",
+        counted(count, "sample"),
+        agree(count, "repeats", "repeat"),
+        agree(count, ":", "; the first is"),
     );
+    let parameters = vec![Parameter::exact("count", count as f64, "samples")];
+    let place = Place::Repeat {
+        sample: first,
+        inserted: !checked.extra.is_empty(),
+    };
+    let finding = Finding::digital("repeated_samples", parameters, evidence);
+    checked.findings.push(finding.at(place).repairing(count));
 }
 
 /// Samples that are missing: where the clock shows a gap, and where the angle jumps by what it moves in whole samples.
@@ -206,26 +209,31 @@ pub(crate) fn dropped(recording: &Recording, checked: &mut Checked) {
         return;
     }
     let lost: usize = gaps.iter().map(|g| g.1).sum();
-    let (count, first) = (gaps.len(), gaps[0].0);
-    let seen = if in_time > 0 {
-        format!(
-            "{lost} samples are missing in {count} gaps of the time base; the first gap is before sample {first}"
-        )
+    let (count, (first, missing)) = (gaps.len(), gaps[0]);
+    let where_ = if in_time > 0 {
+        format!("in {} of the time base", counted(count, "gap"))
     } else {
         format!(
-            "{lost} samples are missing at {count} places, where the angle jumps by what it moves in whole samples; the first is before sample {first}"
+            "at {} where the angle jumps by what it moves in whole samples",
+            counted(count, "place")
         )
     };
-    checked.findings.push(
-        Finding::digital(
-            "dropped_samples",
-            vec![Parameter::exact("count", lost as f64, "samples")],
-            seen,
-        )
-        .at(Place::Sample(first)),
+    let evidence = format!(
+        "{} {} missing {where_}{} before sample {first}",
+        counted(lost, "sample"),
+        agree(lost, "is", "are"),
+        agree(count, ",", "; the first is"),
     );
+    let parameters = vec![Parameter::exact("count", lost as f64, "samples")];
+    let place = Place::Gap {
+        sample: first,
+        missing,
+    };
+    let mut finding = Finding::digital("dropped_samples", parameters, evidence).at(place);
     // A long pause is no loss of samples that anything could bridge.
     if lost < n / 10 {
         checked.gaps = gaps;
+        finding = finding.repairing(lost);
     }
+    checked.findings.push(finding);
 }

@@ -1,41 +1,88 @@
 //! What a recording cannot show whatever is in it, and the experiment that would.
 
+use std::f64::consts::TAU;
+
+use nonius_quantity::digits;
+use nonius_recording::AdcSource;
+
 use crate::causes::speed_varies;
 use crate::context::Context;
 
 /// Share of the largest speed below which the scale stands.
 const STANDS: f64 = 0.02;
-/// Fewest scale periods that a calibration can see.
-const PERIODS: f64 = 1.0;
-/// Fewest revolutions that repeat themselves.
-const REVOLUTIONS: f64 = 1.9;
+/// Parts of the scale period in which samples are looked for, and how many of them have to be seen.
+const PARTS: usize = 36;
+const ALL_BUT_A_FEW: usize = 32;
+/// Fewest scale periods, and fewest revolutions, that repeat themselves.
+const REPEATS: f64 = 1.9;
+/// Fewest scale periods by which drifts are looked for.
+const DRIFTS: f64 = 3.0;
 
 /// A sentence for each group of causes that this recording cannot show.
 #[must_use]
 pub fn unseen(context: &Context) -> Vec<String> {
-    let mut list: Vec<&str> = vec![];
-    if context.periods_travelled() < PERIODS {
-        list.push("not enough motion: less than a scale period was travelled, so hardly any error of the sensor can be seen; move it over several periods");
+    let mut list: Vec<String> = vec![];
+    let mut tell = |sentence: &str| list.push(sentence.into());
+    let travelled = context.periods_travelled();
+    let seen = parts_seen(context);
+    if seen < ALL_BUT_A_FEW {
+        let share = digits(seen as f64 / PARTS as f64, 2) * 100.0;
+        tell(&format!(
+            "only {share:.0} % of the scale period was seen: offset, gain, phase and harmonics cannot be told apart; move over several periods"
+        ));
+    } else if travelled < REPEATS {
+        tell(
+            "within less than two scale periods, what repeats with the period and what changes with time are the same; move over several periods",
+        );
+    }
+    if travelled < DRIFTS {
+        tell(
+            "offset_drift, gain_drift and ac_coupling are not looked for within so few scale periods; move over more than six",
+        );
     }
     let stands = STANDS * context.top_speed();
     let moves = |sign: f64| context.speed.iter().any(|v| v * sign > stands);
     if !speed_varies(context) {
-        list.push("not enough motion: at this constant speed channel skew, bandwidths, delayed crosstalk and hysteresis look like phase, gain and offset; record several speeds");
-    } else if !(moves(1.0) && moves(-1.0)) {
-        list.push("not enough motion: hysteresis is not seen in one direction; reverse");
+        tell(
+            "at this constant speed, channel_skew, bandwidth_mismatch, common_bandwidth and delayed_crosstalk look like phase and gain errors, and amplitude_noise and clock_jitter like white noise; record several speeds",
+        );
+    }
+    if !(moves(1.0) && moves(-1.0)) {
+        tell("in one direction, hysteresis looks like an offset; reverse");
     }
     if context.against_reference.is_none() {
-        list.push("without a reference, latency and graduation errors look like motion; record a better instrument beside it");
+        tell(
+            "without a reference, latency and graduation_error look like motion; record a better instrument beside it",
+        );
     }
     match &context.phi {
-        None => list.push("without periods_per_revolution, run-out, contamination and cogging are not looked for; give it if the axis turns"),
+        None => tell(
+            "without periods_per_revolution, runout, contamination and cogging are not looked for; give it if the axis turns",
+        ),
         Some(phi) => {
             let start = [f64::MAX, f64::MIN];
             let [low, high] = phi.iter().fold(start, |[a, b], p| [a.min(*p), b.max(*p)]);
-            if (high - low) / std::f64::consts::TAU < REVOLUTIONS {
-                list.push("within less than two revolutions, what repeats with the revolution and what changes with time are one; turn further");
+            if (high - low) / TAU < REPEATS {
+                tell(
+                    "within less than two revolutions, what repeats with the revolution and what changes with time are the same; turn further",
+                );
             }
         }
     }
-    list.into_iter().map(str::to_owned).collect()
+    if context.adc.cos.source != AdcSource::Described {
+        tell(
+            "without adc_bits and full_scale, stuck_bit and coarse_quantisation are not looked for; describe the ADC",
+        );
+    }
+    list
+}
+
+/// Parts of the scale period in which there are samples.
+fn parts_seen(context: &Context) -> usize {
+    let mut seen = [false; PARTS];
+    for angle in &context.alpha {
+        let place = (angle / TAU).rem_euclid(1.0) * PARTS as f64;
+        seen[(place as usize).min(PARTS - 1)] = true;
+    }
+    seen.iter().filter(|s| **s).count()
 }

@@ -3,6 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::solve::Normal;
+use crate::sweep::BLOCKS as INTERLEAVED;
 
 /// Steps of the scoring iteration; each is a regression on the squares, weighted with the variances of the one before.
 const STEPS: usize = 6;
@@ -119,6 +120,32 @@ impl Squares<'_> {
             sum -= 0.5 * (v.ln() + self.rows[row][k] / v);
         });
         sum
+    }
+
+    /// Log-likelihood of interleaved blocks by amounts that were fitted to the blocks between them: with the last shape less
+    /// without it.
+    pub(crate) fn held_out(&self, start: &[f64], shapes: &Shapes) -> f64 {
+        let length = self.weight.len().div_ceil(INTERLEAVED).max(1);
+        let half = |half: usize| -> Vec<f64> {
+            let own = |k: usize| f64::from(k / length % 2 == half);
+            let weights = self.weight.iter().enumerate();
+            weights.map(|(k, w)| w * own(k)).collect()
+        };
+        let [first, second] = [half(0), half(1)];
+        let part = |weight| Squares {
+            rows: self.rows.clone(),
+            weight,
+            every: self.every,
+        };
+        let gain = |fitted: &Squares, judged: &Squares| {
+            let likelihood = |start: &[f64]| {
+                let x = fitted.fit(start.to_vec(), shapes).x;
+                judged.likelihood(&x, shapes)
+            };
+            likelihood(start) - likelihood(&start[..start.len() - 1])
+        };
+        let halves = [part(&first), part(&second)];
+        gain(&halves[0], &halves[1]) + gain(&halves[1], &halves[0])
     }
 
     /// So many times the variance that independent squares give it, the amount of the last shape has: squares of coloured

@@ -104,6 +104,14 @@ fn it_is_found() {
         let found = diagnosed(&Colour::Flicker(0.0005), seed, |_| 0.0, |_| 0.0);
         assert_eq!(names(&found), ["flicker_noise"], "seed {seed}");
         assert!(found.findings[0].p_value < 1e-3);
+        // A spectrum tells half of what samples do, and its other lines as much as those that were fitted.
+        let gain = found.findings[0].gain;
+        let all = gain.detection_snr.expect("an SNR").powi(2) / 2.0;
+        let held_out = gain.held_out_log_likelihood_gain.expect("a gain");
+        assert!(
+            (0.2 * all..1.1 * all).contains(&held_out),
+            "{held_out} {all}"
+        );
         // Equal powers a third of a decade apart: power per hertz is that of one over f times ln 10 / 3.
         let density = 0.0005 * (3.0 / 10f64.ln()).sqrt();
         let p = &found.findings[0].parameters[0];

@@ -8,4 +8,4 @@ mod quantity;
 
 pub use counted::{agree, counted, ordinal, times};
 pub use plain::{digits, engineering, periods_per_second};
-pub use quantity::{Quantity, Unit};
+pub use quantity::{Quantity, Unit, before_after, prefixed};

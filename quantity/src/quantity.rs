@@ -131,6 +131,46 @@ impl<'a> Quantity<'a> {
     }
 }
 
+/// The unit with the prefix for numbers up to this size, and what they are multiplied by: for an axis.
+#[must_use]
+pub fn prefixed(size: f64, unit: Unit) -> (String, f64) {
+    let (unit, power) = Quantity::new(size, 0.0, unit).unit_of(size);
+    (unit, over(1.0, power))
+}
+
+/// Two numbers to compare, in the same digits and the same unit: three of the smaller, or as many as show that they differ.
+#[must_use]
+pub fn before_after(before: f64, after: f64, unit: Unit) -> (String, String) {
+    const SHOWN: i32 = 3;
+    const MOST_SHOWN: i32 = 5;
+    const SAME: f64 = 5e-4;
+    let large = before.abs().max(after.abs());
+    let small = match before.abs().min(after.abs()) {
+        0.0 => large,
+        small => small,
+    };
+    let apart = (before - after).abs();
+    let mut last = first_digit(small, SHOWN) - SHOWN + 1;
+    // What is off by a few of the digits that are not shown is the same.
+    if apart > SAME * large {
+        last = last.min(first_digit(apart, 1) - 1);
+    }
+    last = last.max(first_digit(large, MOST_SHOWN) - MOST_SHOWN + 1);
+    let (unit, power) =
+        Quantity::new(large, 0.0, unit).unit_of(over(over(large, last).round(), -last));
+    let text = |value: f64| {
+        let value = decimal(over(value, last).round(), last - power);
+        // A degree sign stands close.
+        let space = if unit.is_empty() || unit == "°" {
+            ""
+        } else {
+            " "
+        };
+        format!("{value}{space}{unit}")
+    };
+    (text(before), text(after))
+}
+
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
@@ -173,6 +213,25 @@ mod tests {
         assert_eq!(brief(999.96, 1e-9, HZ), "1.000 kHz");
         assert_eq!(brief(0.0, 0.0, HZ), "0 Hz");
         assert_eq!(brief(8.0, 0.0, Unit::Plain("")), "8");
+    }
+
+    #[test]
+    fn two_numbers_have_the_same_digits() {
+        let of = |a: f64, b: f64, unit: Unit| {
+            let (a, b) = before_after(a, b, unit);
+            format!("{a} → {b}")
+        };
+        assert_eq!(
+            of(0.234_51, 0.086_64, Unit::Plain("°")),
+            "0.2345° → 0.0866°"
+        );
+        assert_eq!(of(0.010_064, 0.009_636, Unit::Percent), "1.006 % → 0.964 %");
+        assert_eq!(of(0.001_398, 0.001_398, Unit::Percent), "0.140 % → 0.140 %");
+        assert_eq!(
+            of(0.086_57, 0.086_568, Unit::Plain("°")),
+            "0.0866° → 0.0866°"
+        );
+        assert_eq!(of(0.0, 0.0, Unit::Percent), "0 % → 0 %");
     }
 
     fn read_back(text: &str, unit: &str, plain: &str) -> [f64; 2] {

@@ -3,6 +3,8 @@
 use std::rc::Rc;
 
 use super::{Catalogue, ORDERS};
+use nonius_quantity::ordinal;
+
 use crate::block::Block;
 use crate::cause::{Candidate, Domain, Exact, Sign, each, polar};
 use crate::context::Context;
@@ -14,6 +16,9 @@ const THRESHOLDS: [f64; 7] = [0.5, 0.6, 0.7, 0.8, 0.85, 0.9, 0.95];
 
 /// How far a threshold may be off its grid.
 const GRID: f64 = 0.05;
+
+/// Rails that differ.
+const EACH: &str = "the rails, each at its own rate";
 
 /// Shapes of a variant, of each channel's upper and lower rail.
 type Variant = fn(&[Shape]) -> Vec<Shape>;
@@ -29,6 +34,17 @@ fn rails(threshold: f64, library: &mut Library) -> Vec<Shape> {
         })
     };
     (0..4).map(rail).collect()
+}
+
+/// What a compression does beyond its threshold.
+fn loses(compression: &Parameter, at_most: bool) -> String {
+    /// Standard errors by which a slope may be off zero and be none.
+    const NEAR: f64 = 3.0;
+    if compression.value > 1.0 - NEAR * compression.std_error.max(0.005) {
+        return "they are clipped".into();
+    }
+    let most = if at_most { "up to " } else { "" };
+    format!("the slope is {most}{} lower", compression.brief())
 }
 
 pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
@@ -52,17 +68,17 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
         parameters: each(&["k_cos", "k_sin"], "amplitude"),
         evidence: Rc::new(move |p| {
             format!(
-                "the channels bend as {what}, by {:.3} % (cos) and {:.3} % (sin) of the amplitude",
-                p[0].value * 100.0,
-                p[1].value * 100.0
+                "the channels show {what} instead of y, in amplitudes, with k = {} (cos) and {} (sin)",
+                p[0].brief(),
+                p[1].brief()
             )
         }),
         ..Candidate::new(name, Domain::Angle, shapes)
     };
     let list = &mut catalogue.candidates;
     list.extend([
-        of("even_nonlinearity", per_channel(2), "y + k y^2"),
-        of("odd_nonlinearity", per_channel(3), "y + k y^3"),
+        of("even_nonlinearity", per_channel(2), "y + k·y²"),
+        of("odd_nonlinearity", per_channel(3), "y + k·y³"),
     ]);
     for order in 2..=7 {
         let shapes = (0..2)
@@ -85,7 +101,12 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
                 ]
             }),
             evidence: Rc::new(move |p| {
-                format!("order {order} of the scale period stands in the channels with {:.3} % (cos) and {:.3} % (sin) of the amplitude", p[1].value * 100.0, p[3].value * 100.0)
+                format!(
+                    "the channels carry a {} harmonic of the scale period: {} (cos) and {} (sin) of the amplitude",
+                    ordinal(order),
+                    p[1].brief(),
+                    p[3].brief()
+                )
             }),
             ..Candidate::new("spatial_harmonic", Domain::Angle, shapes)
         });
@@ -98,7 +119,7 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
             }),
             ("the upper rail", |r| vec![r[0].plus(&r[2])]),
             ("the lower rail", |r| vec![r[1].plus(&r[3])]),
-            ("the rails, each by itself", <[Shape]>::to_vec),
+            (EACH, <[Shape]>::to_vec),
         ];
         for (where_, of) in variants {
             catalogue.candidates.push(Candidate {
@@ -139,7 +160,11 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
                     all
                 }),
                 evidence: Rc::new(move |p| {
-                    format!("the signals are compressed at {where_}, from {:.3} of the amplitude on by {:.2} % of what is beyond", p[0].value, p[1].value * 100.0)
+                    format!(
+                        "the signals saturate at {where_}: beyond {} of the amplitude {}",
+                        p[0].brief(),
+                        loses(&p[1], where_ == EACH)
+                    )
                 }),
                 ..Candidate::new("saturation", Domain::Angle, of(&rails))
             });

@@ -39,6 +39,7 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
         u.map(|u| adc.code(a * u + b)).collect()
     };
     // The highest bit is the step in the middle of the range.
+    let top = context.bits.min(40) - 1;
     for bit in (0..context.bits.min(40)).rev().take(8) {
         if (1i64 << bit) > reach || (1i64 << bit) < 8 {
             continue;
@@ -62,7 +63,12 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
                 ]
             }),
             evidence: Rc::new(move |p| {
-                format!("the ADC's bit {bit} is off by {:.4} % (cos) and {:.4} % (sin) of the amplitude", p[1].value * 100.0, p[2].value * 100.0)
+                format!(
+                    "the codes jump where bit {bit} of the ADC{} changes: by {} (cos) and {} (sin) of the amplitude",
+                    if bit == top { ", at mid-scale," } else { "" },
+                    p[1].brief(),
+                    p[2].brief()
+                )
             }),
             ..Candidate::new("adc_nonlinearity", Domain::Code, shapes)
         });

@@ -54,9 +54,9 @@ pub(super) fn hysteresis(context: &Context, speed: &Speed) -> Vec<Candidate> {
             trials: turnings.len() as f64,
             evidence: Rc::new(|p| {
                 format!(
-                    "the offsets change with the direction of motion by {:.4} % (cos) and {:.4} % (sin) of the amplitude",
-                    p[0].value * 200.0,
-                    p[1].value * 200.0
+                    "the offsets change at each reversal of the motion, by {} (cos) and {} (sin) of the amplitude",
+                    p[0].times(2.0).brief(),
+                    p[1].times(2.0).brief()
                 )
             }),
             ..cause(

@@ -113,8 +113,8 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
             parameters: Rc::new(|e| corner_hz(e, (e.x[0], e.error[0]))),
             evidence: Rc::new(|p| {
                 format!(
-                    "slow parts of the signals are missing, as behind a high pass of {:.3e} Hz",
-                    p[0].value
+                    "the channels lose their slow parts, as behind a high pass with its corner at {}",
+                    p[0].brief()
                 )
             }),
             ..Candidate::new(AC_COUPLING, Domain::Speed, shapes)
@@ -133,8 +133,8 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
             parameters: Rc::new(|e| corner_hz(e, (e.inner[0], e.inner[0]))),
             evidence: Rc::new(|p| {
                 format!(
-                    "offsets leak away from the beginning on, as charges do behind a high pass of {:.3e} Hz",
-                    p[0].value
+                    "the offsets decay from the start of the recording on, as behind a high pass with its corner at {}",
+                    p[0].brief()
                 )
             }),
             ..Candidate::new(AC_COUPLING, Domain::Time, leaking)

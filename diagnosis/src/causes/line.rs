@@ -155,15 +155,15 @@ impl Search<'_> {
                 parameters: in_either(duration),
                 evidence: Rc::new(move |p| {
                     let with = if harmonics > 1 {
-                        " and its harmonics"
+                        " and its harmonics are added to the channels, the fundamental with"
                     } else {
-                        ""
+                        " is added to the channels, with"
                     };
                     format!(
-                        "a line at {:.3} Hz{with} is added to the channels, {:.3} % (cos) and {:.3} % (sin) of the amplitude",
-                        p[0].value,
-                        p[1].value * 100.0,
-                        p[3].value * 100.0
+                        "a line at {}{with} {} (cos) and {} (sin) of the amplitude",
+                        p[0].brief(),
+                        p[1].brief(),
+                        p[3].brief()
                     )
                 }),
                 ..self.candidate("interference", Domain::Line, hertz, make, library)
@@ -181,9 +181,9 @@ impl Search<'_> {
             parameters: one_wave("depth", "1", self.duration()),
             evidence: Rc::new(|p| {
                 format!(
-                    "the amplitude of both channels is modulated by {:.3} % at {:.3} Hz",
-                    p[1].value * 100.0,
-                    p[0].value
+                    "the amplitude of both channels is modulated by {} at {}",
+                    p[1].brief(),
+                    p[0].brief()
                 )
             }),
             ..self.candidate("amplitude_ripple", Domain::Line, hertz, make, library)
@@ -204,8 +204,9 @@ impl Search<'_> {
             parameters: one_wave("amplitude", "rad", self.duration()),
             evidence: Rc::new(|p| {
                 format!(
-                    "the axis really vibrates: {:.3e} rad of a scale period at {:.3} Hz, without any change of the radius",
-                    p[1].value, p[0].value
+                    "the axis vibrates at {} with an amplitude of {} of electrical angle; the radius does not change, so the motion is real",
+                    p[0].brief(),
+                    p[1].brief()
                 )
             }),
             ..self.candidate(super::VIBRATION, Domain::Motion, hertz, make, library)

@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 use std::rc::Rc;
 
+use nonius_quantity::times;
 use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
 
@@ -203,8 +204,9 @@ fn of_order(order: usize, trials: f64, library: &mut Library) -> Candidate {
         parameters: harmonic(order, "amplitude", "rad"),
         evidence: Rc::new(move |p| {
             format!(
-                "the axis really moves unevenly, {order} times per revolution by {:.3e} rad of a scale period, without any change of the radius",
-                p[1].value
+                "the axis moves unevenly {} per revolution, with an amplitude of {} of electrical angle; the radius does not change, so the motion is real",
+                times(order as usize),
+                p[1].brief()
             )
         }),
         ..Candidate::new(COGGING, Domain::Motion, shapes)
@@ -269,9 +271,9 @@ fn contamination(phi: &[f64], residual: &Residual, library: &mut Library) -> Vec
                 }),
                 evidence: Rc::new(|p| {
                     format!(
-                        "the amplitude dips by {:.3} % at {:.3} rad of the revolution, every time",
-                        p[0].value * 100.0,
-                        p[1].value
+                        "the amplitude of both channels dips by {} at {} of the revolution, in every revolution",
+                        p[0].brief(),
+                        p[1].brief()
                     )
                 }),
                 ..Candidate::new("contamination", Domain::Revolution, shapes)

@@ -3,6 +3,8 @@
 use std::f64::consts::TAU;
 use std::rc::Rc;
 
+use nonius_quantity::times;
+
 use super::{Catalogue, GRADUATION_ERROR};
 use crate::block::Block;
 use crate::cause::{Candidate, Domain, polar};
@@ -59,7 +61,13 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
         list.push(Candidate {
             trials: 3.0,
             parameters: harmonic(order, "depth", "1"),
-            evidence: Rc::new(move |p| format!("the amplitude of both channels changes {order} time(s) per revolution, by {:.3} %", p[1].value * 100.0)),
+            evidence: Rc::new(move |p| {
+                format!(
+                    "the amplitude of both channels varies {} per revolution, by ± {}",
+                    times(order as usize),
+                    p[1].brief()
+                )
+            }),
             ..Candidate::new("runout", Domain::Revolution, shapes)
         });
     }
@@ -79,7 +87,13 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
                     Chip::CannotCorrect
                 },
                 parameters: harmonic(order, "amplitude", "rad"),
-                evidence: Rc::new(move |p| format!("against the reference the angle is off by {:.3e} rad of a scale period, {order} time(s) per revolution", p[1].value)),
+                evidence: Rc::new(move |p| {
+                    format!(
+                        "the angle error against the reference repeats {} per revolution, with an amplitude of {} of electrical angle",
+                        times(order as usize),
+                        p[1].brief()
+                    )
+                }),
                 ..Candidate::new(GRADUATION_ERROR, Domain::Revolution, shapes)
             });
         }

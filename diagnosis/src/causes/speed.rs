@@ -148,15 +148,24 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
     catalogue.candidates.extend(list);
 }
 
+/// A time constant and the corner that belongs to it.
+fn time_constant(tau: &Parameter) -> String {
+    let corner = 1.0 / (std::f64::consts::TAU * tau.value);
+    let share = tau.std_error / tau.value;
+    let corner = Parameter::measured("corner_hz", corner, corner * share, "Hz");
+    format!(
+        "a time constant of {} (corner at {})",
+        tau.brief(),
+        corner.brief()
+    )
+}
+
 /// Late by d: the angle shown is that of d before.
 fn latency(speed: &Speed) -> Candidate {
     let angle = [Trig::constant(0.0), Trig::constant(1.0)];
     let shape = speed.by.shape(ODD, &angle).scaled(-speed.top);
     Candidate {
-        evidence: Rc::new(|p| {
-            let d = p[0].value;
-            format!("both channels are late against the reference by {d:.3e} s")
-        }),
+        evidence: Rc::new(|p| format!("both channels lag the reference by {}", p[0].brief())),
         ..cause("latency", vec![shape], &["delay_s"], "s")
     }
 }
@@ -175,9 +184,9 @@ fn late_bandwidths(speed: &Speed, library: &mut Library) -> Vec<Candidate> {
             exact: follows(tau, make),
             sign: Sign::Positive,
             evidence: Rc::new(|p| {
-                let t = p[0].value;
                 format!(
-                    "both channels are late against the reference, and their amplitude falls with speed, as behind a low pass of {t:.3e} s"
+                    "both channels lag the reference and lose amplitude with speed, as behind a low pass with {}",
+                    time_constant(&p[0])
                 )
             }),
             ..cause("common_bandwidth", shapes, &["tau_s"], "s")
@@ -196,8 +205,15 @@ fn skew(speed: &Speed) -> Candidate {
             })]
         }),
         evidence: Rc::new(|p| {
-            let d = p[0].value;
-            format!("the phase error grows with speed: sin is sampled {d:.3e} s later than cos")
+            let (late, [first, second]) = if p[0].value < 0.0 {
+                (-1.0, ["sin", "cos"])
+            } else {
+                (1.0, ["cos", "sin"])
+            };
+            let delay = p[0].times(late).brief();
+            format!(
+                "the phase error grows in proportion to speed, as if {second} were sampled {delay} after {first}"
+            )
         }),
         ..cause("channel_skew", vec![shape], &["delay_s"], "s")
     }
@@ -220,10 +236,11 @@ fn mismatches(speed: &Speed, library: &mut Library) -> Vec<Candidate> {
             trials: (2 * REACHES.len()) as f64,
             exact: follows(tau, make),
             sign: Sign::Known(least),
-            evidence: Rc::new(|p| {
-                let t = p[0].value;
+            evidence: Rc::new(move |p| {
+                let [own, other] = [["cos", "sin"], ["sin", "cos"]][which];
                 format!(
-                    "phase and amplitude of one channel fall with speed as behind a low pass of {t:.3e} s that the other does not have"
+                    "{own} loses phase and amplitude with speed, as behind a low pass with {} that {other} does not have",
+                    time_constant(&p[0])
                 )
             }),
             ..cause("bandwidth_mismatch", shapes, names[which], "s")
@@ -253,9 +270,9 @@ fn common_bandwidth(speed: &Speed) -> Candidate {
             vec![Parameter::measured("tau_s", tau, error, "s")]
         }),
         evidence: Rc::new(|p| {
-            let t = p[0].value;
             format!(
-                "the radius falls with the square of the speed, as behind a low pass of {t:.3e} s in both channels"
+                "the amplitude of both channels falls with the square of the speed, as behind a low pass with {}",
+                time_constant(&p[0])
             )
         }),
         ..cause(
@@ -295,8 +312,9 @@ fn crosstalk(speed: &Speed) -> Candidate {
         }),
         evidence: Rc::new(|p| {
             format!(
-                "a part of the other channel arrives delayed: fraction times delay {:.3e} s into cos, {:.3e} s into sin",
-                p[0].value, p[1].value
+                "a delayed fraction of each channel appears in the other: fraction times delay is {} into cos and {} into sin",
+                p[0].brief(),
+                p[1].brief()
             )
         }),
         ..cause("delayed_crosstalk", shapes, &[], "s")

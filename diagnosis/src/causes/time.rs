@@ -102,7 +102,17 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
                 }),
                 evidence: Rc::new(move |p| {
                     let what = if gain { "gains" } else { "offsets" };
-                    format!("the {what} drift with {driver}, by {:.3} % (cos) and {:.3} % (sin) of the amplitude from one end to the other", p[0].value * 100.0, p[1].value * 100.0)
+                    let of = if gain { "" } else { " of the amplitude" };
+                    format!(
+                        "the {what} drift with {driver}: {}, they change by {} (cos) and {} (sin){of}",
+                        if driver == "time" {
+                            "from the start of the recording to its end"
+                        } else {
+                            "from one standard deviation below its mean to one above"
+                        },
+                        p[0].brief(),
+                        p[1].brief()
+                    )
                 }),
                 ..Candidate::new(name, Domain::Time, all)
             });

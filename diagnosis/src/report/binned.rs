@@ -1,6 +1,7 @@
 //! What a cause does against what it depends on: means over bins, of what is measured and of what is simulated alike.
 
 use nonius_plot::{Axis, Look, Plot, Series};
+use nonius_quantity::{Quantity, Unit, digits, prefixed};
 
 use crate::context::Context;
 
@@ -48,6 +49,12 @@ pub(super) enum Along {
 /// Residuals along the radius, along the circle and as motion, at a sample.
 pub(super) type Row = [f64; 3];
 
+/// The unit of a time axis over the recording, and what seconds are multiplied by.
+fn time_unit(context: &Context) -> (String, f64) {
+    let duration = context.samples() as f64 / context.rate;
+    prefixed(duration, Unit::Small("s"))
+}
+
 impl Against {
     /// The numbers, and the ends of the axis where they are known.
     fn values(self, context: &Context) -> Option<(Vec<f64>, Option<[f64; 2]>)> {
@@ -59,7 +66,10 @@ impl Against {
         Some(match self {
             Self::Angle => (turns(&context.alpha), whole),
             Self::Revolution => (turns(context.phi.as_ref()?), whole),
-            Self::Time => (context.time.clone(), None),
+            Self::Time => {
+                let (_, factor) = time_unit(context);
+                (context.time.iter().map(|t| factor * t).collect(), None)
+            }
             Self::Speed => {
                 let speed = context.speed.iter();
                 (speed.map(|v| v / std::f64::consts::TAU).collect(), None)
@@ -85,16 +95,19 @@ impl Against {
         })
     }
 
-    fn label(self) -> String {
+    fn label(self, context: &Context) -> String {
         match self {
             Self::Angle => "angle, scale periods".into(),
             Self::Revolution => "angle, revolutions".into(),
-            Self::Time => "time, s".into(),
+            Self::Time => format!("time, {}", time_unit(context).0),
             Self::Speed => "speed, scale periods per second".into(),
-            Self::Signal(0) => "cos, amplitudes".into(),
-            Self::Signal(_) => "sin, amplitudes".into(),
-            Self::Code(_, bit) => format!("code modulo 2^{}", bit + 1),
-            Self::Line(hertz) => format!("phase of {hertz:.3} Hz, cycles"),
+            Self::Signal(0) => "cos, in amplitudes".into(),
+            Self::Signal(_) => "sin, in amplitudes".into(),
+            Self::Code(_, bit) => format!("code modulo {}", 2i64.pow(bit.min(40) + 1)),
+            Self::Line(hertz) => {
+                let hertz = Quantity::new(digits(hertz, 5), 0.0, Unit::Prefixed("Hz"));
+                format!("phase of the line at {}, cycles", hertz.brief())
+            }
         }
     }
 }
@@ -121,8 +134,8 @@ impl Along {
     fn label(self) -> (&'static str, f64) {
         match self {
             Self::Radius => ("radial error, % of the amplitude", 100.0),
-            Self::Circle => ("angle error, mrad of a scale period", 1000.0),
-            Self::Motion => ("motion, mrad of a scale period", 1000.0),
+            Self::Circle => ("angle error, mrad (electrical)", 1000.0),
+            Self::Motion => ("motion, mrad (electrical)", 1000.0),
             Self::Offset(0) => ("error of cos, % of the amplitude", 100.0),
             Self::Offset(_) => ("error of sin, % of the amplitude", 100.0),
             Self::Gain(0) => ("gain error of cos, %", 100.0),
@@ -203,7 +216,7 @@ impl Seen<'_> {
             .chain([0.0]);
         Some(Plot {
             title: title.into(),
-            x: Axis::linear(&against.label(), ends),
+            x: Axis::linear(&against.label(context), ends),
             y: Axis::fitted(label, reach),
             series: vec![
                 Series {

@@ -1,5 +1,7 @@
 //! Pictures of noise: its size against what it depends on, its spectrum.
 
+use std::f64::consts::TAU;
+
 use nonius_plot::{Axis, Look, Plot, Series};
 
 use crate::diagnose::Diagnosis;
@@ -26,7 +28,7 @@ pub(super) fn of(finding: &Finding, found: &Diagnosis) -> Vec<Plot> {
                 };
                 (which, sizes(n, &context.weight, &value, [-1.0, 1.0]))
             });
-            let label = |which: usize| ["cos, amplitudes", "sin, amplitudes"][which];
+            let label = |which: usize| ["cos, in amplitudes", "sin, in amplitudes"][which];
             sizes
                 .into_iter()
                 .map(|(which, s)| {
@@ -38,14 +40,15 @@ pub(super) fn of(finding: &Finding, found: &Diagnosis) -> Vec<Plot> {
         }
         "clock_jitter" => {
             let rms = finding.parameter("rms_s").unwrap_or(0.0);
-            let value = |k: usize| (context.speed[k].abs(), tangential[k]);
-            let sizes = sizes(n, &context.weight, &value, [0.0, context.top_speed()]);
-            let label = "speed, radians of a scale period per second";
+            let value = |k: usize| (context.speed[k].abs() / TAU, tangential[k]);
+            let top = context.top_speed() / TAU;
+            let sizes = sizes(n, &context.weight, &value, [0.0, top]);
+            let label = "speed, scale periods per second";
             vec![drawn(
                 "Noise of the angle against speed",
                 label,
                 sizes,
-                |v| (rms * v).powi(2),
+                |v| (rms * v * TAU).powi(2),
             )]
         }
         "flicker_noise" => vec![spectrum(finding, found)],

@@ -4,7 +4,7 @@ use nonius_plot::{Axis, Look, Mark, Plot, Series};
 use rustfft::num_complex::Complex;
 
 use super::binned::{Against, Along, Row, Seen};
-use super::pictures::title;
+use super::pictures::{hertz_text, title};
 use super::spectra::Signal;
 use crate::diagnose::Diagnosis;
 
@@ -113,7 +113,7 @@ pub(super) fn residuals(found: &Diagnosis) -> Vec<Plot> {
             } else {
                 "Angle error above the motion, over the angle"
             },
-            "angle error, mrad of a scale period",
+            "angle error, mrad (electrical)",
             1000.0,
             |r| &r.1,
         ),
@@ -127,16 +127,16 @@ pub(super) fn residuals(found: &Diagnosis) -> Vec<Plot> {
         let (radial, tangential) = &found.residuals[model];
         move |k: usize| Complex::new(radial[k], tangential[k])
     };
-    let numbers = |name: &str, text: fn(f64) -> String| -> Vec<Mark> {
-        let all = found.findings.iter().filter_map(|f| f.parameter(name));
-        all.take(MARKS).map(|x| Mark { x, text: text(x) }).collect()
-    };
+    let lines = found.findings.iter().filter_map(|f| {
+        let text = hertz_text(f);
+        f.parameter("frequency_hz").map(|x| Mark { x, text })
+    });
     plots.extend(signal.frequency(
         "Spectrum against frequency",
         &both(0),
         &both(1),
         None,
-        numbers("frequency_hz", |f| format!("{f:.2} Hz")),
+        lines.take(MARKS).collect(),
     ));
     let orders = found
         .findings
@@ -189,7 +189,7 @@ pub(super) fn left(found: &Diagnosis) -> Vec<Plot> {
             let mut plot = seen.plot(&title(against, along), against, along)?;
             if let [measured, model] = plot.series.as_mut_slice() {
                 measured.name = "left, ± standard error".into();
-                model.name = "nothing".into();
+                model.name = "zero".into();
             }
             Some((shows(&plot), plot))
         })

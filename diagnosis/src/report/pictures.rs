@@ -9,7 +9,7 @@ use super::spectra::Signal;
 use super::{noisy, raw};
 use crate::context::Context;
 use crate::diagnose::Diagnosis;
-use crate::finding::Finding;
+use crate::finding::{Finding, Parameter};
 
 /// What a cause is shown against, and along what.
 fn ways(finding: &Finding, context: &Context) -> Vec<(Against, Along)> {
@@ -60,7 +60,7 @@ fn ways(finding: &Finding, context: &Context) -> Vec<(Against, Along)> {
 pub(super) fn of(finding: &Finding, found: &Diagnosis, recording: &Recording) -> Vec<Plot> {
     let context = &found.context;
     let Some(effect) = &finding.effect else {
-        return raw::of(finding, recording)
+        return raw::of(finding, found, recording)
             .into_iter()
             .chain(noisy::of(finding, found))
             .collect();
@@ -118,6 +118,12 @@ pub(super) fn title(against: Against, along: Along) -> String {
     format!("{what} against {over}")
 }
 
+/// The frequency of a line as it stands beside a mark.
+pub(super) fn hertz_text(finding: &Finding) -> String {
+    let own = finding.parameters.iter().find(|p| p.name == "frequency_hz");
+    own.map_or_else(String::new, Parameter::brief)
+}
+
 /// The spectrum close to a line.
 fn line(finding: &Finding, seen: &Seen, hertz: f64) -> Option<Plot> {
     let context = seen.context;
@@ -138,7 +144,7 @@ fn line(finding: &Finding, seen: &Seen, hertz: f64) -> Option<Plot> {
     let after = |k: usize| value((seen.left)(k), k);
     let before = |k: usize| after(k) + value((seen.effect)(k), k);
     let (label, unit) = match finding.cause.as_str() {
-        "vibration" => ("motion, mrad of a scale period", 1000.0),
+        "vibration" => ("motion, mrad (electrical)", 1000.0),
         "amplitude_ripple" => ("radius, % of the amplitude", 100.0),
         _ => ("both channels, % of the amplitude", 100.0),
     };
@@ -149,7 +155,7 @@ fn line(finding: &Finding, seen: &Seen, hertz: f64) -> Option<Plot> {
     };
     let mark = Mark {
         x: hertz,
-        text: format!("{hertz:.3} Hz"),
+        text: hertz_text(finding),
     };
     let title = "Spectrum close to the line";
     signal.frequency(title, &before, &after, Some(hertz), vec![mark])

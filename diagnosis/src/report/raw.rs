@@ -5,7 +5,10 @@ use std::collections::BTreeMap;
 use nonius_plot::{Axis, Look, Mark, Plot, Series};
 use nonius_recording::Recording;
 
+use super::jump;
+use crate::diagnose::Diagnosis;
 use crate::finding::{Finding, Place};
+use crate::solve::Normal;
 
 /// Samples on either side of a place that is shown.
 const AROUND: usize = 14;
@@ -13,8 +16,9 @@ const AROUND: usize = 14;
 const CODES: i64 = 32;
 
 /// The pictures of a finding; none where it is of another kind.
-pub(super) fn of(finding: &Finding, recording: &Recording) -> Vec<Plot> {
+pub(super) fn of(finding: &Finding, found: &Diagnosis, recording: &Recording) -> Vec<Plot> {
     match finding.place {
+        Some(Place::Gap { .. } | Place::Repeat { .. }) => jump::of(finding, found, recording),
         Some(Place::Sample(k)) => vec![trace(recording, k)],
         Some(Place::Code { channel, step }) => codes(recording, channel, step),
         None => vec![],
@@ -25,25 +29,50 @@ pub(super) fn of(finding: &Finding, recording: &Recording) -> Vec<Plot> {
 fn trace(recording: &Recording, k: usize) -> Plot {
     let last = recording.samples().saturating_sub(1);
     let range = k.saturating_sub(AROUND)..(k + AROUND).min(last) + 1;
-    let time = |k: usize| 1e3 * (recording.time_s[k] - recording.time_s[0]);
-    let points =
-        |values: &[f64]| -> Vec<[f64; 2]> { range.clone().map(|k| [time(k), values[k]]).collect() };
+    let points = |values: &[f64]| -> Vec<[f64; 2]> {
+        range.clone().map(|k| [k as f64, values[k]]).collect()
+    };
     let (cos, sin) = (points(&recording.cos), points(&recording.sin));
-    let heights = cos.iter().chain(&sin).map(|p| p[1]);
+    let curve = curve(&[&cos, &sin], k - range.start);
+    let heights = cos.iter().chain(&sin).chain(&curve).map(|p| p[1]);
     Plot {
-        title: "The recording there".into(),
-        x: Axis::fitted("time, ms", range.clone().map(time)),
+        title: "The recording around the first glitch".into(),
+        x: Axis::fitted("sample", cos.iter().map(|p| p[0])),
         y: Axis::fitted("signals, as recorded", heights),
         series: vec![
+            Series::new("curve through the neighbours", Look::Model, curve.clone()),
             Series::new("cos", Look::Before, cos),
             Series::new("sin", Look::After, sin),
         ],
         marks: vec![Mark {
-            x: time(k),
+            x: k as f64,
             text: format!("sample {k}"),
         }],
         round: false,
     }
+}
+
+/// The curve through a channel but for a sample and those beside it: of the channel that is farther off it there.
+fn curve(channels: &[&[[f64; 2]]; 2], at: usize) -> Vec<[f64; 2]> {
+    const ORDER: i32 = 4;
+    let one = |points: &[[f64; 2]]| {
+        let place = |i: usize| (i as f64 - at as f64) / AROUND as f64;
+        let kept: Vec<usize> = (0..points.len()).filter(|i| i.abs_diff(at) > 1).collect();
+        let column = |order: i32| kept.iter().map(|i| place(*i).powi(order)).collect();
+        let columns: Vec<Vec<f64>> = (0..=ORDER).map(column).collect();
+        let values: Vec<f64> = kept.iter().map(|i| points[*i][1]).collect();
+        let x = Normal::of_columns(&values, &columns).solve().x;
+        let value = |i: usize| -> f64 {
+            let terms = (0..=ORDER).zip(&x);
+            terms.map(|(order, x)| x * place(i).powi(order)).sum()
+        };
+        let curve: Vec<[f64; 2]> = (0..points.len())
+            .map(|i| [points[i][0], value(i)])
+            .collect();
+        ((points[at][1] - curve[at][1]).abs(), curve)
+    };
+    let [a, b] = channels.map(one);
+    if a.0 > b.0 { a.1 } else { b.1 }
 }
 
 /// How often codes come, over a range of them, and over the places of what repeats every `step` codes.

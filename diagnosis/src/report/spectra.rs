@@ -3,6 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use nonius_plot::{Axis, Look, Mark, Plot, Series};
+use nonius_quantity::{Unit, prefixed};
 use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
 
@@ -79,14 +80,20 @@ impl Signal<'_> {
                 middle.saturating_sub(NEAR + 1)..(middle + NEAR).min(was.len())
             }
         };
+        let (unit, factor) = prefixed(step * range.end as f64, Unit::Prefixed("Hz"));
+        let marks = marks.into_iter().map(|mark| Mark {
+            x: factor * mark.x,
+            ..mark
+        });
         let first = range.start + 1;
         let part = |lines: &[f64]| {
             lines
                 .get(range.clone())
-                .map(|l| gathered(l, first, step, self.unit))
+                .map(|l| gathered(l, first, factor * step, self.unit))
         };
         let (was, is) = (part(&was)?, part(&is)?);
-        Some(self.drawn(title, "frequency, Hz", was, is, names, marks))
+        let label = format!("frequency, {unit}");
+        Some(self.drawn(title, &label, was, is, names, marks.collect()))
     }
 
     /// The spectrum of both channels against the order of the scale period.

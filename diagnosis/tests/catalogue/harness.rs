@@ -223,7 +223,9 @@ pub(crate) fn arc(periods: f64, seed: u64) -> (Diagnosis, [f64; 2]) {
 }
 
 fn of_rows(case: &Case, rows: &Rows) -> Diagnosis {
-    diagnose(&recording(case, rows)).expect("signals that draw an ellipse")
+    let found = diagnose(&recording(case, rows)).expect("signals that draw an ellipse");
+    crate::words::well_said(&found);
+    found
 }
 
 pub(crate) fn names(found: &Diagnosis) -> Vec<&str> {

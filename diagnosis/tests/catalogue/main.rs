@@ -13,6 +13,7 @@ mod revolution;
 mod speed;
 mod statics;
 mod time;
+mod words;
 
 use harness::{Case, PLAIN, arc, damaged, diagnosed, finds_nothing, names};
 
