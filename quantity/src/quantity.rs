@@ -106,11 +106,12 @@ impl<'a> Quantity<'a> {
         let last = |value: f64| {
             let most = first_digit(value, DIGITS);
             let sure = self.known_error().map_or(i32::MIN, |e| first_digit(e, 1));
-            sure.clamp(most - DIGITS + 1, most)
+            sure.max(most - DIGITS + 1)
         };
         // Rounded first: 999.96 is 1.000 k.
         let round = decimal(over(value, last(value)).round(), last(value));
-        let last = last(round.parse().unwrap_or(value));
+        let round = round.parse().unwrap_or(value);
+        let last = last(if round == 0.0 { value } else { round });
         let count = over(value, last).round();
         let (unit, power) = self.unit_of(over(count, -last));
         let mut text = decimal(count, last - power);
@@ -209,7 +210,8 @@ mod tests {
         assert_eq!(brief(572.38, 0.07, HZ), "572.4 Hz");
         assert_eq!(brief(2.157, 0.0021, Unit::Plain("rad")), "2.157 rad");
         assert_eq!(brief(0.004_213, 3e-5, Unit::Percent), "0.421 %");
-        assert_eq!(brief(0.004_2, 0.01, Unit::Percent), "0.4 %");
+        assert_eq!(brief(0.004_2, 0.01, Unit::Percent), "0 %");
+        assert_eq!(brief(-4e-7, 2.2e-5, Unit::Percent), "0.000 %");
         assert_eq!(brief(999.96, 1e-9, HZ), "1.000 kHz");
         assert_eq!(brief(0.0, 0.0, HZ), "0 Hz");
         assert_eq!(brief(8.0, 0.0, Unit::Plain("")), "8");

@@ -68,7 +68,7 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
         parameters: each(&["k_cos", "k_sin"], "amplitude"),
         evidence: Rc::new(move |p| {
             format!(
-                "the channels show {what} instead of y, in amplitudes, with k = {} (cos) and {} (sin)",
+                "the channels follow {what} instead of y, with k = {} (cos) and {} (sin) for y in amplitudes",
                 p[0].brief(),
                 p[1].brief()
             )

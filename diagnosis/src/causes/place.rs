@@ -271,7 +271,7 @@ fn contamination(phi: &[f64], residual: &Residual, library: &mut Library) -> Vec
                 }),
                 evidence: Rc::new(|p| {
                     format!(
-                        "the amplitude of both channels dips by {} at {} of the revolution, in every revolution",
+                        "the amplitude of both channels dips by {} in every revolution, at {} from the scale period of the first sample",
                         p[0].brief(),
                         p[1].brief()
                     )

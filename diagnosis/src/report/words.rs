@@ -7,8 +7,9 @@ pub(super) fn title(finding: &Finding) -> String {
     let name = finding.plain_name();
     let own = |name: &str| finding.parameters.iter().find(|p| p.name == name);
     let hertz = own("frequency_hz").map(|f| format!("{name}, {}", f.brief()));
-    let order = || own("order").map(|o| format!("{name}, order {}", o.value));
-    capital(&hertz.or_else(order).unwrap_or(name))
+    let number = |what: &str| own(what).map(|n| format!("{name}, {what} {}", n.value));
+    let order = || number("order").or_else(|| number("bit"));
+    capital(&hertz.or_else(order).unwrap_or_else(|| name.clone()))
 }
 
 /// A sentence with a capital letter at its beginning.
