@@ -17,7 +17,7 @@ use crate::settle::settle;
 pub const SAMPLED: [&str; 4] = ["adc_cos", "adc_sin", "preset", "calibrate"];
 
 /// Longest chain in a cycle, in about tenths of nanoseconds of an iCE40 HX.
-pub(crate) const DEPTH: u32 = 125;
+pub(crate) const DEPTH: u32 = 115;
 
 /// When and where each node is computed.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -26,41 +26,40 @@
 //      |                          | gamma_settled periods_modulo_4 sector sector_relative period_ahead period_behind
 //      |                          | a_period_away reach_ahead reach_behind unseen_ahead used_ahead_counts may_add_ahead
 //      |                          | sector_ahead unseen_behind used_behind_counts may_add_behind sector_behind
-//      |                          | sector_added search_begun proven_stand held_and_lost nominal held_some_periods
-//      |                          | held_unknown held_long rises_again restart_cause last_gamma_gear returned_lately
+//      |                          | search_begun proven_stand held_and_lost nominal held_some_periods held_unknown
+//      |                          | held_long rises_again restart_cause last_gamma_gear returned_lately
 //      |                          | gear_periods_done quiet gear_done periods_count_ends parameters_follow held_before
 //      |                          | gain_c_inside gain_c_rests gain_s_inside gain_s_rests gains_steady proves
 //      |                          | nothing_proven_yet
-//    1 | loop_ab * error_previous | sin_value sin_slope y_c y_s counting whole_period travel_clear new_sector
-//      |                          | still_used_ahead used_up_ahead still_used_behind used_up_behind y_5 known_in_lock
-//      |                          | held_or_known period_breaks_off lost_before
+//    1 | loop_ab * error_previous | sin_value sin_slope y_c y_s counting whole_period travel_clear sector_added
+//      |                          | new_sector still_used_ahead used_up_ahead still_used_behind used_up_behind y_5
+//      |                          | known_in_lock held_or_known period_breaks_off lost_before
 //    2 | theta_3 * y_s            | cos_value cos_slope drift
 //    3 | sin_slope * sin_inside   |
 //    4 | cos_slope * cos_inside   | sin_magnitude sin_hat
 //    5 | theta_5 * y_c            | cos_magnitude cos_hat
-//    6 | theta_1 * y_c            | s_exact s s_weak
-//    7 | s * cos_hat              | c_exact c c_weak
-//    8 | c * sin_hat              | signal_present may_flip
+//    6 | theta_1 * y_c            | s_exact s
+//    7 | s * cos_hat              | c_exact c s_weak
+//    8 | c * sin_hat              | c_weak signal_present may_flip
 //    9 | c * cos_hat              | e_exact e_seen e
 //   10 | s * sin_hat              | e_in_window e_change
 //   11 | e * e                    | rho_exact rho rho_in_window in_window flip level_step half_turn sample_counts
-//      |                          | counted rho_high rho_large rho_not_small rho_too_large rho_rises proven_better
-//      |                          | may_recall residual_rough radius_large
-//   12 | loop_a * e_change        | level_moved level_full level_empty narrower loop_gear_up full_in_last_gear
-//      |                          | residual_large disturbed_lately disturbed_or_held disturbed_or_astray hold_cause
-//      |                          | hold recall fresh rho_limited period_tick disturbed_period gamma_restart
-//      |                          | gear_passed gamma_shift gamma_gear_up gear_periods_up periods_end
-//      |                          | gear_periods_again held_periods_up free_period held_periods_step held_periods_stay
-//      |                          | within_period gear_ends_calm stays_calm still_held holding first_gear_period
-//      |                          | restart_risen recall_again known_to_be_calm last_gear_passed quiet_periods_pass
-//      |                          | quiet_periods_end proved gain_moved remember search_improves remember_better
-//      |                          | return_ends return_goes_on signal_changed still_known fades fade_ends
-//   13 | cos_hat * rho_limited    | kick recall_any remember_recent together_again period_taught travel_ends
-//      |                          | search_ends theta_applies lock_falls
+//      |                          | rho_high rho_large rho_not_small rho_rises proven_better may_recall
+//   12 | loop_a * e_change        | level_moved level_full level_empty narrower loop_gear_up full_in_last_gear counted
+//      |                          | rho_too_large residual_large disturbed_lately disturbed_or_held disturbed_or_astray
+//      |                          | hold_cause hold recall residual_rough radius_large rho_limited period_tick
+//      |                          | disturbed_period gamma_restart gear_passed gamma_shift gamma_gear_up
+//      |                          | gear_periods_up periods_end gear_periods_again held_periods_up free_period
+//      |                          | held_periods_step held_periods_stay within_period gear_ends_calm stays_calm
+//      |                          | still_held holding first_gear_period restart_risen recall_again known_to_be_calm
+//      |                          | last_gear_passed quiet_periods_pass quiet_periods_end proved gain_moved remember
+//      |                          | search_improves remember_better return_ends signal_changed still_known fades
+//      |                          | fade_ends
+//   13 | cos_hat * rho_limited    | kick fresh recall_any remember_recent return_goes_on together_again period_taught
+//      |                          | travel_ends search_ends theta_applies lock_falls
 //   14 | sin_hat * rho_limited    | speed alpha_hat_turned alpha_hat_sum carry backwards not_forwards rho_c gradient_2
-//      |                          | step_2
-//   15 | y_c * rho_c              | count_before rho_s gradient_4 step_4
-//   16 | y_s * rho_s              | gradient_1 step_1
+//   15 | y_c * rho_c              | count_before rho_s step_2 gradient_4
+//   16 | y_s * rho_s              | gradient_1 step_1 step_4
 //   17 | y_5 * rho_s              | gradient_3 step_3
 //   18 | -                        | gradient_5 step_5
 //   19 | -                        |
@@ -203,15 +202,16 @@ module optical (
     reg signed [26:0] s_exact_sum;
     reg signed [17:0] c;
     reg signed [17:0] s;
-    reg c_weak;
+    reg c_below_weak_signal;
+    reg not_c_below_minus_weak_signal;
+    reg s_below_weak_signal;
+    reg not_s_below_minus_weak_signal;
     reg s_weak;
     reg signal_lost_next;
     reg signed [34:0] rho_exact_difference;
     reg signed [17:0] rho;
     reg signed [34:0] s_times_cos_hat;
     reg signed [17:0] e;
-    reg e_below_lock_error;
-    reg e_below_minus_lock_error;
     reg e_in_window;
     reg signal_present;
     reg in_window;
@@ -220,7 +220,7 @@ module optical (
     reg level_empty;
     reg loop_gear_below_loop_gear_last;
     reg last_gear;
-    reg signed [2:0] loop_gear_next_bits;
+    reg signed [1:0] loop_gear_up;
     reg signed [6:0] lock_level_next_chosen;
     reg locked_next;
     reg signed [2:0] loop_gear_next;
@@ -236,6 +236,7 @@ module optical (
     reg gamma_gear_below_gamma_gear_settled;
     reg gamma_settled;
     reg signed [7:0] sector;
+    reg signed [7:0] sector_relative;
     reg period_ahead;
     reg period_behind;
     reg a_period_away;
@@ -244,15 +245,16 @@ module optical (
     reg sector_behind;
     reg not_counting;
     reg travel_clear;
-    reg sector_added;
     reg new_sector;
-    reg signed [7:0] travel_low_next_chosen;
-    reg signed [7:0] travel_high_next_chosen;
+    reg signed [7:0] travel_low_next;
     reg ahead_used_next;
     reg behind_used_next;
     reg sample_counts;
     reg counted;
-    reg rho_too_large;
+    reg rho_high;
+    reg rho_large;
+    reg rho_not_small;
+    reg calm_and_rho_not_small;
     reg gamma_gear_below_one;
     reg search_begun;
     reg not_fading;
@@ -260,19 +262,19 @@ module optical (
     reg held_and_lost;
     reg not_apart;
     reg may_recall;
-    reg residual_rough;
-    reg radius_large;
+    reg recall;
+    reg not_hold;
     reg fresh;
     reg signed [14:0] rho_limited;
     reg signed [17:0] rho_c;
     reg signed [17:0] rho_s;
     reg signed [13:0] y_5;
     reg nominal;
-    reg signed [25:0] running_5_next_difference;
+    reg signed [24:0] step_5;
     reg signed [21:0] step_1;
-    reg signed [20:0] step_2;
+    reg signed [24:0] step_2_geared;
     reg signed [21:0] step_3;
-    reg signed [20:0] step_4;
+    reg signed [24:0] step_4_geared;
     reg held_long;
     reg restart_cause;
     reg gamma_gear_below_gamma_gear_last;
@@ -292,7 +294,6 @@ module optical (
     reg risen_next;
     reg held_next;
     reg recall_again;
-    reg recall_or_recall_again;
     reg recall_any;
     reg signed [24:0] running_1_next;
     reg signed [23:0] running_2_next;
@@ -307,12 +308,10 @@ module optical (
     reg remember;
     reg remember_better;
     reg remember_recent;
-    reg return_goes_on;
-    reg signed [17:0] recent_1_next;
-    reg signed [16:0] recent_2_next;
-    reg signed [17:0] recent_3_next;
-    reg signed [16:0] recent_4_next;
+    reg not_return_ends;
+    reg fades;
     reg returning_next;
+    reg not_fade_ends;
     reg fading_next;
     reg either_halfway_or_quiet_periods_pass;
     reg halfway_next;
@@ -322,7 +321,6 @@ module optical (
     reg period_breaks_off;
     reg theta_applies;
     reg lost_before;
-    reg not_locked_next;
     reg lock_lost_next;
 
     // Operands and products
@@ -444,10 +442,12 @@ module optical (
 
     // Loss of signal
     //   |c| and |s| both below the threshold
-    wire c_weak_now = // step 7, with weak_signal, minus_weak_signal
-        ($signed(c_now[17:14]) < 4'sd1) & ($signed(~c_now[17:14]) < 4'sd1);
-    wire s_weak_now = // step 6, with weak_signal, minus_weak_signal
-        ($signed(s_now[17:14]) < 4'sd1) & ($signed(~s_now[17:14]) < 4'sd1);
+    wire c_below_weak_signal_now = $signed(c_now[17:14]) < 4'sd1; // step 7, with weak_signal
+    wire not_c_below_minus_weak_signal_now = $signed(~c_now[17:14]) < 4'sd1; // step 7, with minus_weak_signal
+    wire c_weak = c_below_weak_signal & not_c_below_minus_weak_signal; // step 8
+    wire s_below_weak_signal_now = $signed(s_now[17:14]) < 4'sd1; // step 6, with weak_signal
+    wire not_s_below_minus_weak_signal_now = $signed(~s_now[17:14]) < 4'sd1; // step 6, with minus_weak_signal
+    wire s_weak_now = s_below_weak_signal & not_s_below_minus_weak_signal; // step 7
     wire signal_lost_next_now = c_weak & s_weak; // step 8
 
     // Radial residual
@@ -478,9 +478,8 @@ module optical (
     // Lock window
     //   |e| and -rho below their limits, signal present
     //   (calibration needs lock: the update would otherwise drive the gains to zero)
-    wire e_below_lock_error_now = $signed(e_now[17:12]) < 6'sd7; // step 9, with lock_error
-    wire e_below_minus_lock_error_now = ~($signed(~e_now[17:12]) < 6'sd7); // step 9, with minus_lock_error
-    wire e_in_window_now = e_below_lock_error & ~e_below_minus_lock_error; // step 10
+    wire e_in_window_now = // step 10, with lock_error, minus_lock_error
+        ($signed(e[17:12]) < 6'sd7) & ($signed(~e[17:12]) < 6'sd7);
     wire rho_in_window = $signed(~rho_now[17:15]) < 3'sd1; // step 11, with minus_lock_residual
     wire signal_present_now = ~signal_lost_next_now; // step 8
     wire in_window_now = (e_in_window & rho_in_window) & signal_present; // step 11
@@ -500,10 +499,10 @@ module optical (
     wire loop_gear_below_loop_gear_last_now = loop_gear < 3'sd3; // step 0, with loop_gear_last
     wire last_gear_now = ~loop_gear_below_loop_gear_last_now; // step 0
     wire narrower = level_full & loop_gear_below_loop_gear_last; // step 12
-    wire signed [1:0] loop_gear_up = narrower ? 2'sd1 : 2'sd0; // s2.0, step 12
-    wire signed [3:0] loop_gear_next_sum = // s4.0, step 12
+    wire signed [1:0] loop_gear_up_now = narrower ? 2'sd1 : 2'sd0; // s2.0, step 12
+    wire signed [3:0] loop_gear_next_sum = // s4.0, step 13
         {loop_gear[2], loop_gear} + {{2{loop_gear_up[1]}}, loop_gear_up};
-    wire signed [2:0] loop_gear_next_bits_now = {1'b0, loop_gear_next_sum[1:0]}; // u2.0, step 12
+    wire signed [2:0] loop_gear_next_bits = {1'b0, loop_gear_next_sum[1:0]}; // u2.0, step 13
     wire signed [2:0] loop_gear_next_chosen = level_empty ? 3'sd0 : loop_gear_next_bits; // s3.0, step 13
     wire signed [6:0] lock_level_next_chosen_now = narrower ? 7'sh1f : level_moved; // s7.0, step 12, with lock_restart
     wire full_in_last_gear = level_full & last_gear; // step 12
@@ -569,32 +568,32 @@ module optical (
     wire signed [7:0] sector_now = {periods_modulo_4, 6'b0} + {sector_bits[6], sector_bits}; // s8.6, step 0
     wire signed [8:0] sector_relative_difference = // s9.6, step 0
         {sector_now[7], sector_now} - {travel_origin[7], travel_origin};
-    wire signed [7:0] sector_relative = sector_relative_difference[7:0]; // s8.6, step 0
-    wire period_ahead_now = ~($signed(sector_relative[7:6]) < 2'sd1); // step 0
-    wire period_behind_now = ~(~sector_relative < 8'sh3f); // step 0
+    wire signed [7:0] sector_relative_now = sector_relative_difference[7:0]; // s8.6, step 0
+    wire period_ahead_now = ~($signed(sector_relative_now[7:6]) < 2'sd1); // step 0
+    wire period_behind_now = ~(~sector_relative_now < 8'sh3f); // step 0
     wire a_period_away_now = period_ahead_now | period_behind_now; // step 0
     wire whole_period_now = a_period_away & counting_now; // step 1
     wire signed [8:0] reach_ahead = {travel_low[7], travel_low} + 9'sh40; // s9.6, step 0
     wire signed [8:0] reach_behind = {travel_high[7], travel_high} - 9'sh40; // s9.6, step 0
     wire unseen_ahead = // step 0
-        (travel_high < sector_relative) & ($signed({sector_relative[7], sector_relative}) < reach_ahead);
+        (travel_high < sector_relative_now) & ($signed({sector_relative_now[7], sector_relative_now}) < reach_ahead);
     wire used_ahead_counts = ahead_used & gamma_gear_below_gamma_gear_settled_now; // step 0
-    wire may_add_ahead = ~(($signed(sector_relative[7:4]) < 4'sd1) & used_ahead_counts); // step 0
+    wire may_add_ahead = ~(($signed(sector_relative_now[7:4]) < 4'sd1) & used_ahead_counts); // step 0
     wire sector_ahead_now = unseen_ahead & may_add_ahead; // step 0
     wire unseen_behind = // step 0
-        (sector_relative < travel_low) & (reach_behind < $signed({sector_relative[7], sector_relative}));
+        (sector_relative_now < travel_low) & (reach_behind < $signed({sector_relative_now[7], sector_relative_now}));
     wire used_behind_counts = behind_used & gamma_gear_below_gamma_gear_settled_now; // step 0
     wire may_add_behind = // step 0, with minus_quarter
-        ~(($signed(~sector_relative[7:4]) < 4'sd1) & used_behind_counts);
+        ~(($signed(~sector_relative_now[7:4]) < 4'sd1) & used_behind_counts);
     wire sector_behind_now = unseen_behind & may_add_behind; // step 0
     wire not_counting_now = ~counting_now; // step 1
     wire travel_clear_now = whole_period_now | not_counting_now; // step 1
-    wire sector_added_now = sector_ahead_now | sector_behind_now; // step 0
+    wire sector_added = sector_ahead | sector_behind; // step 1
     wire new_sector_now = sector_added | travel_clear_now; // step 1
     wire signed [7:0] travel_origin_next = travel_clear ? sector : travel_origin; // s8.6, step 19
-    wire signed [7:0] travel_low_next_chosen_now = sector_behind_now ? sector_relative : travel_low; // s8.6, step 0
-    wire signed [7:0] travel_low_next = travel_clear ? 8'sd0 : travel_low_next_chosen; // s8.6, step 19
-    wire signed [7:0] travel_high_next_chosen_now = sector_ahead_now ? sector_relative : travel_high; // s8.6, step 0
+    wire signed [7:0] travel_low_next_chosen = sector_behind ? sector_relative : travel_low; // s8.6, step 1
+    wire signed [7:0] travel_low_next_now = travel_clear_now ? 8'sd0 : travel_low_next_chosen; // s8.6, step 1
+    wire signed [7:0] travel_high_next_chosen = sector_ahead ? sector_relative : travel_high; // s8.6, step 19
     wire signed [7:0] travel_high_next = travel_clear ? 8'sd0 : travel_high_next_chosen; // s8.6, step 19
     wire still_used_ahead = ahead_used & ~(whole_period_now | sector_ahead); // step 1
     wire used_up_ahead = period_behind | still_used_ahead; // step 1
@@ -603,17 +602,18 @@ module optical (
     wire used_up_behind = period_ahead | still_used_behind; // step 1
     wire behind_used_next_now = counting_now & used_up_behind; // step 1
     wire sample_counts_now = counting & in_window_now; // step 11
-    wire counted_now = sample_counts_now & new_sector; // step 11
+    wire counted_now = sample_counts & new_sector; // step 12
 
     // Hold
     //   from the first quiet period on a large residual, once a gear has ended calm one that is not small, and all
     //   until the end of a period without one, moves no parameter
-    wire rho_high = ~($signed(rho_now[17:14]) < 4'sd1); // step 11, with restart_residual
-    wire rho_large = rho_high | ~($signed(~rho_now[17:14]) < 4'sd1); // step 11, with minus_restart_residual
+    wire rho_high_now = ~($signed(rho_now[17:14]) < 4'sd1); // step 11, with restart_residual
+    wire rho_large_now = rho_high_now | ~($signed(~rho_now[17:14]) < 4'sd1); // step 11, with minus_restart_residual
     wire rho_below_hold_residual = $signed(rho_now[17:12]) < 6'sd1; // step 11, with hold_residual
-    wire rho_not_small = // step 11, with minus_hold_residual
+    wire rho_not_small_now = // step 11, with minus_hold_residual
         ~(rho_below_hold_residual & ($signed(~rho_now[17:12]) < 6'sd1));
-    wire rho_too_large_now = rho_large | (calm & rho_not_small); // step 11
+    wire calm_and_rho_not_small_now = calm & rho_not_small_now; // step 11
+    wire rho_too_large = rho_large | calm_and_rho_not_small; // step 12
     wire residual_large = rho_too_large & sample_counts; // step 12
     wire disturbed_lately = residual_large | disturbed; // step 12
     wire disturbed_or_held = disturbed_lately | held; // step 12
@@ -629,10 +629,11 @@ module optical (
     wire not_apart_now = ~apart; // step 0
     wire proven_better = (not_apart | rho_rises) | held_and_lost; // step 11
     wire may_recall_now = proven_stand & proven_better; // step 11
-    wire recall = hold & may_recall; // step 12
-    wire residual_rough_now = rho_not_small & sample_counts_now; // step 11
-    wire radius_large_now = rho_high & sample_counts_now; // step 11
-    wire fresh_now = counted & ~hold; // step 12
+    wire recall_now = hold & may_recall; // step 12
+    wire residual_rough = rho_not_small & sample_counts; // step 12
+    wire radius_large = rho_high & sample_counts; // step 12
+    wire not_hold_now = ~hold; // step 12
+    wire fresh_now = counted & not_hold; // step 13
 
     // Radius, whatever the loop lags behind
     //   radius - 1 = rho + e^2/2
@@ -654,7 +655,7 @@ module optical (
     wire signed [31:0] sin_hat_times_rho_limited = product_0[31:0]; // s32.32, step 15
     wire signed [17:0] rho_s_rounded = sin_hat_times_rho_limited[31:14] + {17'b0, sin_hat_times_rho_limited[13]};
     wire signed [17:0] rho_s_now = rho_s_rounded; // s18.18, step 15
-    wire period_tick = counted & whole_period; // step 12
+    wire period_tick = counted_now & whole_period; // step 12
 
     // Parameter update
     //   theta -= gamma gradient, each component times a power of two that lets all parameters converge alike; once
@@ -667,8 +668,8 @@ module optical (
     wire signed [28:0] y_s_times_rho_s = product_0[28:0]; // s29.29, step 17
     wire nominal_now = gamma_gear_below_one_now & (signal_lost & ~locked); // step 0
     wire signed [24:0] step_5_geared = shifted_2; // s25.25, step 18
-    wire signed [24:0] step_5 = fresh ? step_5_geared : 25'sd0; // s25.25, step 18
-    wire signed [25:0] running_5_next_difference_now = // s26.25, step 18
+    wire signed [24:0] step_5_now = fresh ? step_5_geared : 25'sd0; // s25.25, step 18
+    wire signed [25:0] running_5_next_difference = // s26.25, step 19
         {{2{running_5[23]}}, running_5} - {step_5[24], step_5};
     wire signed [23:0] running_5_next_bits = // s24.25, step 19
         ((&running_5_next_difference[25:23]) | ~(|running_5_next_difference[25:23]))
@@ -684,8 +685,8 @@ module optical (
             ? running_1_next_difference[24:0]
             : {running_1_next_difference[25], {24{~running_1_next_difference[25]}}};
     wire signed [17:0] gradient_2 = rho_c_now; // s18.22, step 14
-    wire signed [24:0] step_2_geared = shifted_2; // s25.25, step 14
-    wire signed [20:0] step_2_now = fresh ? step_2_geared[20:0] : 21'sd0; // s21.25, step 14
+    wire signed [24:0] step_2_geared_now = shifted_2; // s25.25, step 14
+    wire signed [20:0] step_2 = fresh ? step_2_geared[20:0] : 21'sd0; // s21.25, step 15
     wire signed [24:0] running_2_next_difference = // s25.25, step 15
         {running_2[23], running_2} - {{4{step_2[20]}}, step_2};
     wire signed [23:0] running_2_next_bits = // s24.25, step 15
@@ -702,8 +703,8 @@ module optical (
             ? running_3_next_difference[24:0]
             : {running_3_next_difference[25], {24{~running_3_next_difference[25]}}};
     wire signed [17:0] gradient_4 = rho_s_now; // s18.22, step 15
-    wire signed [24:0] step_4_geared = shifted_2; // s25.25, step 15
-    wire signed [20:0] step_4_now = fresh ? step_4_geared[20:0] : 21'sd0; // s21.25, step 15
+    wire signed [24:0] step_4_geared_now = shifted_2; // s25.25, step 15
+    wire signed [20:0] step_4 = fresh ? step_4_geared[20:0] : 21'sd0; // s21.25, step 16
     wire signed [24:0] running_4_next_difference = // s25.25, step 16
         {running_4[23], running_4} - {{4{step_4[20]}}, step_4};
     wire signed [23:0] running_4_next_bits = // s24.25, step 16
@@ -775,8 +776,7 @@ module optical (
     //   recent' = theta, proven' = recent if no gain moves
     wire restart_risen = gamma_restart & risen; // step 12
     wire recall_again_now = ((restart_risen & fading) | nominal) & known; // step 12
-    wire recall_or_recall_again_now = recall | recall_again_now; // step 12
-    wire recall_any_now = recall_or_recall_again | nominal; // step 13
+    wire recall_any_now = (recall | recall_again) | nominal; // step 13
     wire signed [24:0] running_1_next_now = recall_any ? {proven_1, 7'b0} : running_1_next_bits; // s25.25, step 17
     wire signed [23:0] running_2_next_now = recall_any ? {proven_2, 7'b0} : running_2_next_bits; // s24.25, step 15
     wire signed [24:0] running_3_next_now = recall_any ? {proven_3, 7'b0} : running_3_next_bits; // s25.25, step 18
@@ -814,20 +814,21 @@ module optical (
     wire remember_better_now = search_improves | quiet_periods_end; // step 12
     wire remember_recent_now = remember_better | recall_any_now; // step 13
     wire return_ends = gear_passed | gamma_restart; // step 12
-    wire return_goes_on_now = recall & ~return_ends; // step 12
+    wire not_return_ends_now = ~return_ends; // step 12
+    wire return_goes_on = recall & not_return_ends; // step 13
     wire signal_changed = restart_risen & not_fading; // step 12
     wire still_known = known & ~signal_changed; // step 12
-    wire fades = (gamma_restart & held_long) | fading; // step 12
+    wire fades_now = (gamma_restart & held_long) | fading; // step 12
     wire fade_ends = (recall_again_now | proved_now) | signal_changed; // step 12
     wire together_again = proved | recall_any_now; // step 13
-    wire signed [17:0] recent_1_next_bits = running_1_next_now[24:7]; // s18.18, step 17
-    wire signed [17:0] recent_1_next_now = remember_recent ? recent_1_next_bits : recent_1; // s18.18, step 17
-    wire signed [16:0] recent_2_next_bits = running_2_next_now[23:7]; // s17.18, step 15
-    wire signed [16:0] recent_2_next_now = remember_recent ? recent_2_next_bits : recent_2; // s17.18, step 15
-    wire signed [17:0] recent_3_next_bits = running_3_next_now[24:7]; // s18.18, step 18
-    wire signed [17:0] recent_3_next_now = remember_recent ? recent_3_next_bits : recent_3; // s18.18, step 18
-    wire signed [16:0] recent_4_next_bits = running_4_next_now[23:7]; // s17.18, step 16
-    wire signed [16:0] recent_4_next_now = remember_recent ? recent_4_next_bits : recent_4; // s17.18, step 16
+    wire signed [17:0] recent_1_next_bits = running_1_next[24:7]; // s18.18, step 19
+    wire signed [17:0] recent_1_next = remember_recent ? recent_1_next_bits : recent_1; // s18.18, step 19
+    wire signed [16:0] recent_2_next_bits = running_2_next[23:7]; // s17.18, step 19
+    wire signed [16:0] recent_2_next = remember_recent ? recent_2_next_bits : recent_2; // s17.18, step 19
+    wire signed [17:0] recent_3_next_bits = running_3_next[24:7]; // s18.18, step 19
+    wire signed [17:0] recent_3_next = remember_recent ? recent_3_next_bits : recent_3; // s18.18, step 19
+    wire signed [16:0] recent_4_next_bits = running_4_next[23:7]; // s17.18, step 19
+    wire signed [16:0] recent_4_next = remember_recent ? recent_4_next_bits : recent_4; // s17.18, step 19
     wire signed [16:0] recent_5_next_bits = running_5_next[23:7]; // s17.18, step 19
     wire signed [16:0] recent_5_next = remember_recent ? recent_5_next_bits : recent_5; // s17.18, step 19
     wire signed [17:0] proven_1_next = remember ? recent_1 : proven_1; // s18.18, step 19
@@ -836,7 +837,8 @@ module optical (
     wire signed [16:0] proven_4_next = remember ? recent_4 : proven_4; // s17.18, step 19
     wire signed [16:0] proven_5_next = remember ? recent_5 : proven_5; // s17.18, step 19
     wire returning_next_now = return_goes_on | recall_again; // step 13
-    wire fading_next_now = fades & ~fade_ends; // step 12
+    wire not_fade_ends_now = ~fade_ends; // step 12
+    wire fading_next_now = fades & not_fade_ends; // step 13
     wire either_halfway_or_quiet_periods_pass_now = halfway ^ quiet_periods_pass; // step 12
     wire halfway_next_now = either_halfway_or_quiet_periods_pass & ~recall_any_now; // step 13
     wire known_next_now = still_known | proved_now; // step 12
@@ -846,7 +848,7 @@ module optical (
     // Parameters as they are applied
     //   theta = what the search has found, once gamma has settled where a period of travel ends
     //   (paper section 5.5: static measurements may bias the estimates)
-    wire period_taught = fresh & whole_period; // step 13
+    wire period_taught = fresh_now & whole_period; // step 13
     wire period_breaks_off_now = travel_clear_now & ~whole_period_now; // step 1
     wire travel_ends = period_taught | period_breaks_off; // step 13
     wire search_ends = gamma_gear_below_gamma_gear_settled | travel_ends; // step 13
@@ -860,8 +862,7 @@ module optical (
     // Flags
     //   what the machine control needs to know
     wire lost_before_now = lock_lost & ~preset_held; // step 1
-    wire not_locked_next_now = ~locked_next_now; // step 12
-    wire lock_falls = locked & not_locked_next; // step 13
+    wire lock_falls = locked & ~locked_next; // step 13
     wire lock_lost_next_now = lost_before | lock_falls; // step 13
 
     // Shifter 2, shared: gamma is a power of two
@@ -933,14 +934,12 @@ module optical (
             gamma_gear_below_gamma_gear_settled <= gamma_gear_below_gamma_gear_settled_now;
             gamma_settled <= gamma_settled_now;
             sector <= sector_now;
+            sector_relative <= sector_relative_now;
             period_ahead <= period_ahead_now;
             period_behind <= period_behind_now;
             a_period_away <= a_period_away_now;
             sector_ahead <= sector_ahead_now;
             sector_behind <= sector_behind_now;
-            sector_added <= sector_added_now;
-            travel_low_next_chosen <= travel_low_next_chosen_now;
-            travel_high_next_chosen <= travel_high_next_chosen_now;
             gamma_gear_below_one <= gamma_gear_below_one_now;
             search_begun <= search_begun_now;
             not_fading <= not_fading_now;
@@ -973,6 +972,7 @@ module optical (
             not_counting <= not_counting_now;
             travel_clear <= travel_clear_now;
             new_sector <= new_sector_now;
+            travel_low_next <= travel_low_next_now;
             ahead_used_next <= ahead_used_next_now;
             behind_used_next <= behind_used_next_now;
             y_5 <= y_5_now;
@@ -996,11 +996,14 @@ module optical (
         end
         if (step == 5'd6) begin
             s <= s_now;
-            s_weak <= s_weak_now;
+            s_below_weak_signal <= s_below_weak_signal_now;
+            not_s_below_minus_weak_signal <= not_s_below_minus_weak_signal_now;
         end
         if (step == 5'd7) begin
             c <= c_now;
-            c_weak <= c_weak_now;
+            c_below_weak_signal <= c_below_weak_signal_now;
+            not_c_below_minus_weak_signal <= not_c_below_minus_weak_signal_now;
+            s_weak <= s_weak_now;
         end
         if (step == 5'd8) begin
             signal_lost_next <= signal_lost_next_now;
@@ -1010,8 +1013,6 @@ module optical (
         end
         if (step == 5'd9) begin
             e <= e_now;
-            e_below_lock_error <= e_below_lock_error_now;
-            e_below_minus_lock_error <= e_below_minus_lock_error_now;
         end
         if (step == 5'd10) begin
             rho_exact_difference <= rho_exact_difference_now;
@@ -1024,18 +1025,20 @@ module optical (
             level_step <= level_step_now;
             half_turn <= half_turn_now;
             sample_counts <= sample_counts_now;
-            counted <= counted_now;
-            rho_too_large <= rho_too_large_now;
+            rho_high <= rho_high_now;
+            rho_large <= rho_large_now;
+            rho_not_small <= rho_not_small_now;
+            calm_and_rho_not_small <= calm_and_rho_not_small_now;
             may_recall <= may_recall_now;
-            residual_rough <= residual_rough_now;
-            radius_large <= radius_large_now;
         end
         if (step == 5'd12) begin
             level_empty <= level_empty_now;
-            loop_gear_next_bits <= loop_gear_next_bits_now;
+            loop_gear_up <= loop_gear_up_now;
             lock_level_next_chosen <= lock_level_next_chosen_now;
             locked_next <= locked_next_now;
-            fresh <= fresh_now;
+            counted <= counted_now;
+            recall <= recall_now;
+            not_hold <= not_hold_now;
             rho_limited <= rho_limited_now;
             held_periods_next <= held_periods_next_now;
             gear_periods_next <= gear_periods_next_now;
@@ -1044,25 +1047,26 @@ module optical (
             risen_next <= risen_next_now;
             held_next <= held_next_now;
             recall_again <= recall_again_now;
-            recall_or_recall_again <= recall_or_recall_again_now;
             known_to_be_calm <= known_to_be_calm_now;
             gamma_gear_next <= gamma_gear_next_now;
             proved <= proved_now;
             remember <= remember_now;
             remember_better <= remember_better_now;
-            return_goes_on <= return_goes_on_now;
-            fading_next <= fading_next_now;
+            not_return_ends <= not_return_ends_now;
+            fades <= fades_now;
+            not_fade_ends <= not_fade_ends_now;
             either_halfway_or_quiet_periods_pass <= either_halfway_or_quiet_periods_pass_now;
             known_next <= known_next_now;
             gain_moved_or_apart <= gain_moved_or_apart_now;
-            not_locked_next <= not_locked_next_now;
         end
         if (step == 5'd13) begin
             loop_gear_next <= loop_gear_next_now;
             speed_sum <= speed_sum_now;
+            fresh <= fresh_now;
             recall_any <= recall_any_now;
             remember_recent <= remember_recent_now;
             returning_next <= returning_next_now;
+            fading_next <= fading_next_now;
             halfway_next <= halfway_next_now;
             apart_next <= apart_next_now;
             theta_applies <= theta_applies_now;
@@ -1074,29 +1078,25 @@ module optical (
             count_next_scaled <= count_next_scaled_now;
             direction_next <= direction_next_now;
             rho_c <= rho_c_now;
-            step_2 <= step_2_now;
+            step_2_geared <= step_2_geared_now;
         end
         if (step == 5'd15) begin
             count_next <= count_next_now;
             rho_s <= rho_s_now;
-            step_4 <= step_4_now;
+            step_4_geared <= step_4_geared_now;
             running_2_next <= running_2_next_now;
-            recent_2_next <= recent_2_next_now;
         end
         if (step == 5'd16) begin
             step_1 <= step_1_now;
             running_4_next <= running_4_next_now;
-            recent_4_next <= recent_4_next_now;
         end
         if (step == 5'd17) begin
             step_3 <= step_3_now;
             running_1_next <= running_1_next_now;
-            recent_1_next <= recent_1_next_now;
         end
         if (step == 5'd18) begin
-            running_5_next_difference <= running_5_next_difference_now;
+            step_5 <= step_5_now;
             running_3_next <= running_3_next_now;
-            recent_3_next <= recent_3_next_now;
         end
     end
 
