@@ -251,7 +251,7 @@ pub(crate) fn likelihood_of(context: &Context, radial: &[f64]) -> Option<f64> {
     let power: f64 = radial.iter().map(|r| r * r).sum();
     let white = -0.5 * radial.len() as f64 * power.max(f64::MIN_POSITIVE).ln();
     let seen = Channels::in_radius(context, radial);
-    Some(white + one_over_f::gain(seen, corner))
+    Some(white + one_over_f::gain(seen, corner).all)
 }
 
 /// Whether two levels explain nearly as much of what is seen as flicker noise does sample by sample, its number paid for, or more:
@@ -297,7 +297,7 @@ fn find_from(seen: Channels, slowest: usize) -> Option<Flicker> {
     }
     // A spectrum holds half of what the samples tell.
     let in_time = one_over_f::gain(seen, best.0);
-    let gain = gain.max(in_time);
+    let gain = gain.max(in_time.seen);
     let log_p = after_trials(log_tail(2.0 * gain, 1), TRIALS);
     if log_p > SHOWN.ln() {
         return None;
@@ -309,7 +309,7 @@ fn find_from(seen: Channels, slowest: usize) -> Option<Flicker> {
     if any - own > ((1.0 - HOLDS) * any).max(BY_CHANCE) || any - own > MISFIT {
         return None;
     }
-    let paid = in_time - price(n as f64);
+    let paid = in_time.all - price(n as f64);
     // From the curvature in the logarithm of the corner.
     let step: f64 = 0.05;
     let at = |by: f64| beside(&bands, best.0 * by.exp()).1;

@@ -4,6 +4,10 @@
 //! Noise with a 1/f spectrum is a sum of first-order processes of equal power whose time constants are evenly spaced in
 //! their logarithm. Both channels have such noise, the radius shows r = c cos α + s sin α of it beside white noise, and what is
 //! against a reference s cos α − c sin α: a Kalman filter tells how likely each sample is after the ones before it.
+//!
+//! A long recording is looked at by groups of samples over which the fastest process that is not lost in the white noise
+//! hardly changes. Of slow noise all of it is seen then; the first part alone would not do, for what is chance there looks
+//! like many times as much if the rest is taken to be alike.
 
 use crate::channels::{Channels, Row};
 use crate::telegraph::ENOUGH;
@@ -17,13 +21,33 @@ const LONGEST: f64 = 0.5;
 /// Corner frequencies that are tried, over the one of the spectrum.
 const CORNERS: [f64; 5] = [0.35, 0.6, 1.0, 1.7, 2.9];
 
-/// Log-likelihood that flicker noise explains of what is seen beyond white noise, near a corner frequency in hertz.
-pub(crate) fn gain(seen: Channels, corner: f64) -> f64 {
-    let n = seen.samples().min(ENOUGH);
-    let part = seen.first(n);
-    let of_one = |by: f64| Processes::new(&part, by * corner).gain(&part);
-    let best = CORNERS.into_iter().map(of_one).fold(0.0, f64::max);
-    best / n as f64 * seen.samples() as f64
+/// Shares of the shortest time constant that a group of samples may last.
+const SHARES: f64 = 8.0;
+/// Share of a group's information below which one of its two channels is not seen.
+const UNSEEN: f64 = 1e-9;
+
+/// Log-likelihood that flicker noise explains beyond white noise.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Explained {
+    /// Of the samples that were looked at: this is evidence.
+    pub(crate) seen: f64,
+    /// Of all samples, if those that were not looked at are like the others: this compares.
+    pub(crate) all: f64,
+}
+
+/// What flicker noise explains of what is seen, near a corner frequency in hertz.
+pub(crate) fn gain(seen: Channels, corner: f64) -> Explained {
+    let of_one = |by: f64| Processes::explained(seen, by * corner);
+    let more = |a: Explained, b: Explained| if b.all > a.all { b } else { a };
+    CORNERS
+        .into_iter()
+        .map(of_one)
+        .fold(Explained::default(), more)
+}
+
+/// Time constant in samples below which a process is lost in the white noise.
+fn shortest(seen: &Channels, corner: f64) -> f64 {
+    (SHORTEST / corner * seen.context.rate).max(1.0)
 }
 
 /// First-order processes of both channels, in units of the white noise.
@@ -39,15 +63,29 @@ struct Processes {
 }
 
 impl Processes {
-    fn new(seen: &Channels, corner: f64) -> Self {
+    /// What processes below a corner frequency explain.
+    fn explained(seen: Channels, corner: f64) -> Explained {
+        let all = seen.samples();
+        let longest = (shortest(&seen, corner) / SHARES).max(1.0) as usize;
+        let group = all.div_ceil(ENOUGH).clamp(1, longest);
+        let part = seen.first(all.min(ENOUGH * group));
+        let gain = Self::new(&part, corner, group).gain(&part, group);
+        Explained {
+            seen: gain,
+            all: gain / part.samples() as f64 * all as f64,
+        }
+    }
+
+    /// Before the first group, of so many samples.
+    fn new(seen: &Channels, corner: f64, group: usize) -> Self {
         let rate = seen.context.rate;
-        let shortest = (SHORTEST / corner * rate).max(1.0);
+        let shortest = shortest(seen, corner);
         let longest = LONGEST * seen.samples() as f64;
         let mut times = vec![longest];
         while let Some(next) = times.last().map(|t| t / RATIO).filter(|t| *t > shortest) {
             times.push(next);
         }
-        let one: Vec<f64> = times.iter().map(|t| (-1.0 / t).exp()).collect();
+        let one: Vec<f64> = times.iter().map(|t| (-(group as f64) / t).exp()).collect();
         let stay = [one.as_slice(), one.as_slice()].concat();
         // Σ of 2 v τ / (1 + ω²τ²) over evenly spaced ln τ is v / (2 f ln RATIO).
         let power = 2.0 * RATIO.ln() * corner / rate;
@@ -62,21 +100,22 @@ impl Processes {
         }
     }
 
-    fn gain(mut self, seen: &Channels) -> f64 {
+    fn gain(mut self, seen: &Channels, group: usize) -> f64 {
         let mut with = vec![];
         let (mut spread, mut power, mut white, mut counts) = (0.0, 0.0, 0.0, 0.0);
-        for k in 0..seen.samples() {
+        for first in (0..seen.samples()).step_by(group) {
             self.step();
-            if seen.context.weight[k] == 0.0 {
-                continue;
-            }
-            for row in seen.rows(k) {
-                let (variance, off) = self.take(&row, &mut with);
+            let group = Group::of(seen, first..(first + group).min(seen.samples()));
+            let rows = group.rows();
+            // What no offset of the channels explains is white noise.
+            power += group.square - rows.iter().map(|r| r.left * r.left).sum::<f64>();
+            for row in rows.iter().filter(|r| r.of != [0.0; 2]) {
+                let (variance, off) = self.take(row, &mut with);
                 spread += variance.ln();
                 power += off * off / variance;
-                white += row.left * row.left;
-                counts += 1.0;
             }
+            white += group.square;
+            counts += group.count;
         }
         0.5 * (counts * (white / power).ln() - spread)
     }
@@ -101,7 +140,7 @@ impl Processes {
         (variance, off)
     }
 
-    /// A sample later.
+    /// A group later.
     fn step(&mut self) {
         let m = self.stay.len();
         for (i, line) in self.covariance.chunks_mut(m).enumerate() {
@@ -115,5 +154,67 @@ impl Processes {
             .iter_mut()
             .zip(&self.stay)
             .for_each(|(x, s)| *x *= s);
+    }
+}
+
+/// Samples over which the offsets of the channels hardly change.
+#[derive(Default)]
+struct Group {
+    /// Sums of products of what a residual shows of the channels: cos², cos sin, sin².
+    shown: [f64; 3],
+    /// Of those with the residual.
+    with_left: [f64; 2],
+    /// Of squares of the residual.
+    square: f64,
+    /// Residuals.
+    count: f64,
+}
+
+impl Group {
+    fn of(seen: &Channels, samples: std::ops::Range<usize>) -> Self {
+        let mut this = Self::default();
+        for k in samples.filter(|k| seen.context.weight[*k] != 0.0) {
+            for Row { of: [c, s], left } in seen.rows(k) {
+                this.shown[0] += c * c;
+                this.shown[1] += c * s;
+                this.shown[2] += s * s;
+                this.with_left[0] += c * left;
+                this.with_left[1] += s * left;
+                this.square += left * left;
+                this.count += 1.0;
+            }
+        }
+        this
+    }
+
+    /// Two residuals with the noise of one that tell as much of the offsets as all of the group do (Cholesky): the channel that is
+    /// seen more, and what is seen of the other beside it.
+    fn rows(&self) -> [Row; 2] {
+        let [cc, cs, ss] = self.shown;
+        let turned = ss > cc;
+        let (own, other) = if turned { (ss, cc) } else { (cc, ss) };
+        let [with_c, with_s] = self.with_left;
+        let (with_own, with_other) = if turned {
+            (with_s, with_c)
+        } else {
+            (with_c, with_s)
+        };
+        let row = |of: [f64; 2], left: f64| Row {
+            of: if turned { [of[1], of[0]] } else { of },
+            left,
+        };
+        let nothing = || row([0.0; 2], 0.0);
+        if own <= 0.0 {
+            return [nothing(), nothing()];
+        }
+        let root = own.sqrt();
+        let first = row([root, cs / root], with_own / root);
+        let beside = other - cs * cs / own;
+        if beside <= UNSEEN * own {
+            return [first, nothing()];
+        }
+        let root = beside.sqrt();
+        let left = (with_other - cs / own * with_own) / root;
+        [first, row([0.0, root], left)]
     }
 }
