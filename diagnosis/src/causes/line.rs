@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 use std::rc::Rc;
 
+use super::mirror::unmirrored;
 use crate::block::Block;
 use crate::cause::{Candidate, Domain, Estimate, Exact, Make, Reads, polar};
 use crate::context::Context;
@@ -95,7 +96,8 @@ impl Search<'_> {
     /// Frequency of a line in the motion: an axis that shakes has broad peaks, too, which may be the higher ones.
     fn of_motion(&self, power: &[f64], length: usize) -> Option<f64> {
         let narrow = self.narrow(power, length);
-        narrow.or_else(|| self.line(power, length))
+        let seen = narrow.or_else(|| self.line(power, length))?;
+        Some(unmirrored(self.context, seen))
     }
 
     /// Cycles per sample below which nothing is a line.
