@@ -95,9 +95,12 @@ impl<'a> System<'a> {
         );
         let shapes: Vec<Shape> = broad.iter().map(|i| Shape(vec![(*i, 1.0)])).collect();
         let x = this.total.of(&shapes).solve().x;
-        let amounts: Vec<(usize, f64)> = broad.into_iter().zip(x).collect();
+        let amounts: Vec<(usize, f64)> = broad.iter().copied().zip(x).collect();
         let mut left = this.samples.left(&amounts);
         this.flicker = flicker::find(context, &left[0]);
+        if every > 1 && this.flicker.is_some() {
+            this.flicker = flicker::find(context, &this.left_of_radius(&broad));
+        }
         let fast = if left[2].is_empty() {
             Row::Tangential
         } else {
@@ -137,6 +140,20 @@ impl<'a> System<'a> {
         };
         this.total = this.without_nothing(this.normal(&moments, &atoms, true), &atoms);
         this
+    }
+
+    /// What the best amounts of some atoms leave of the radius, fitted to all samples. Amounts that were fitted to a part of them
+    /// are off by more than all samples would allow, and slow functions with such amounts leave what looks like slow noise.
+    fn left_of_radius(&self, atoms: &[usize]) -> Vec<f64> {
+        let radial = self.in_row(atoms, Row::Radial);
+        let own: Vec<usize> = radial.map(|i| atoms[i]).collect();
+        let moments = self.moments(&own, 1);
+        let normal = self.without_nothing(self.normal(&moments, &own, true), &own);
+        let shapes: Vec<Shape> = (0..own.len()).map(|i| Shape(vec![(i, 1.0)])).collect();
+        let x = normal.of(&shapes).solve().x;
+        let amounts: Vec<(usize, f64)> = own.into_iter().zip(x).collect();
+        let [radial, ..] = self.samples.left(&amounts);
+        radial
     }
 
     /// Whether what is left along the circle is the axis more than it is noise.
