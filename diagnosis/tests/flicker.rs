@@ -11,6 +11,8 @@ use rand::{SeedableRng, rngs::StdRng};
 use rand_distr::{Distribution, StandardNormal};
 
 const SAMPLES: usize = 20_000;
+/// So long that its functions are fitted to a part of the samples first.
+const LONG: usize = 400_000;
 const RATE: f64 = 50e3;
 const NOISE: f64 = 0.001;
 
@@ -64,6 +66,16 @@ impl Relaxations {
 }
 
 fn diagnosed(colour: &Colour, seed: u64, motion: OfTime, drift: OfTime) -> Diagnosis {
+    diagnosed_of(SAMPLES, colour, seed, motion, drift)
+}
+
+fn diagnosed_of(
+    samples: usize,
+    colour: &Colour,
+    seed: u64,
+    motion: OfTime,
+    drift: OfTime,
+) -> Diagnosis {
     let mut random = StdRng::seed_from_u64(seed);
     let mut normal = || -> f64 { StandardNormal.sample(&mut random) };
     let mut noises = [Relaxations::new(colour), Relaxations::new(colour)];
@@ -77,7 +89,7 @@ fn diagnosed(colour: &Colour, seed: u64, motion: OfTime, drift: OfTime) -> Diagn
     let lsb = 2.0 / f64::from(1 << 14);
     let code = |v: f64| (v / lsb).round() * lsb;
     let mut text = String::from("# adc_bits: 14\n# full_scale: 1\ntime_s,cos,sin\n");
-    for k in 0..SAMPLES {
+    for k in 0..samples {
         let t = k as f64 / RATE;
         let alpha = 90.0 * (TAU * 5.3 * t + 0.2).sin() + 300.0 * t + motion(t);
         let own = noises
@@ -216,4 +228,22 @@ fn steps_are_no_drift() {
         assert_eq!(names(&found), Vec::<&str>::new(), "seed {seed}");
         assert!(found.unexplained.significant, "seed {seed}");
     }
+}
+
+/// What is chance in the first part of a long recording is no evidence if it is taken for all of it, and slow functions whose amounts
+/// were fitted to a part of the samples leave what looks like slow noise in the others.
+#[test]
+fn a_long_recording_of_white_noise_has_none() {
+    let still: OfTime = |_| 0.0;
+    let found = diagnosed_of(LONG, &Colour::White, 13, still, still);
+    assert_eq!(names(&found), Vec::<&str>::new());
+    assert!(!found.unexplained.significant);
+}
+
+/// Noise of which only the slow part stands out of the white noise is seen in all of a long recording.
+#[test]
+fn weak_noise_is_found_in_a_long_recording() {
+    let still: OfTime = |_| 0.0;
+    let found = diagnosed_of(LONG, &Colour::Flicker(0.00004), 1, still, still);
+    assert_eq!(names(&found), ["flicker_noise"]);
 }
