@@ -258,3 +258,20 @@ fn cogging_at_orders_of_the_scale_period() {
         }
     }
 }
+
+/// Knots make a vibration slower than half their frequency look like one at their frequency less its own, and the other way
+/// round. Whatever the knots of this recording are, some of these stand on either side of the half.
+#[test]
+fn at_its_own_frequency_and_not_at_its_mirror() {
+    let motions: [(f64, fn(f64, f64) -> f64); 5] = [
+        (190.0, |t, _| 0.0008 * (TAU * 190.0 * t).sin()),
+        (225.0, |t, _| 0.0008 * (TAU * 225.0 * t).sin()),
+        (265.0, |t, _| 0.0008 * (TAU * 265.0 * t).sin()),
+        (310.0, |t, _| 0.0008 * (TAU * 310.0 * t).sin()),
+        (365.0, |t, _| 0.0008 * (TAU * 365.0 * t).sin()),
+    ];
+    for (hertz, motion) in motions {
+        let found = finds("vibration", &Case { motion, ..PLAIN });
+        near(&found, "frequency_hz", hertz);
+    }
+}
