@@ -263,7 +263,8 @@ fn cogging_at_orders_of_the_scale_period() {
 /// round. Whatever the knots of this recording are, some of these stand on either side of the half.
 #[test]
 fn at_its_own_frequency_and_not_at_its_mirror() {
-    let motions: [(f64, fn(f64, f64) -> f64); 5] = [
+    type Motion = fn(t: f64, alpha: f64) -> f64;
+    let motions: [(f64, Motion); 5] = [
         (190.0, |t, _| 0.0008 * (TAU * 190.0 * t).sin()),
         (225.0, |t, _| 0.0008 * (TAU * 225.0 * t).sin()),
         (265.0, |t, _| 0.0008 * (TAU * 265.0 * t).sin()),
