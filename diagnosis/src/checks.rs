@@ -21,11 +21,11 @@ pub(crate) struct Checked {
 
 const CHANNELS: [&str; 2] = ["cos", "sin"];
 
-pub(crate) fn check(recording: &Recording) -> Checked {
-    let n = recording.samples();
+/// Checks a recording; `weight` is 0 for samples that are known to hold no signal.
+pub(crate) fn check(recording: &Recording, weight: Vec<f64>) -> Checked {
     let mut checked = Checked {
         findings: vec![],
-        weight: vec![1.0; n],
+        weight,
         gaps: vec![],
         extra: vec![],
     };

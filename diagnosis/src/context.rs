@@ -11,6 +11,9 @@ use crate::spline::Spline;
 /// Most samples that the first ellipse is fitted to; the model of all samples has the five parameters again.
 const FIRST: usize = 8192;
 
+/// From so many bad samples in a row on, their own angle tells how far the scale moves meanwhile.
+const MANY: usize = 8;
+
 /// So near to one, what the angle does for each radian that its reference moves fast has to be, or that motion is noise.
 const FOLLOWS: f64 = 0.1;
 
@@ -183,10 +186,14 @@ impl Context {
     pub fn set_pair(&mut self, c: Vec<f64>, s: Vec<f64>, reference: Option<&[f64]>) {
         let n = c.len();
         let mut angle: Vec<f64> = c.iter().zip(&s).map(|(c, s)| s.atan2(*c)).collect();
-        // Bad samples take their neighbour's angle.
+        // Bad samples take their neighbour's angle, but for many in a row: those were filled along the ellipse, and periods pass
+        // in them.
+        let mut bad = 0;
         for k in 1..n {
-            if self.weight[k] == 0.0 {
-                angle[k] = angle[k - 1];
+            bad = if self.weight[k] == 0.0 { bad + 1 } else { 0 };
+            let ends = k + 1 == n || self.weight[k + 1] > 0.0;
+            if bad > 0 && ends && bad < MANY {
+                (k + 1 - bad..=k).for_each(|k| angle[k] = angle[k - 1]);
             }
         }
         self.measured = unwrapped(angle);

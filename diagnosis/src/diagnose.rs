@@ -21,6 +21,7 @@ use crate::repair::{Repaired, repair};
 use crate::score::KINDS;
 use crate::select::select;
 use crate::selection::{Accepted, Selection};
+use crate::silent;
 use crate::simulation::{Simulation, simulation};
 use crate::statistics;
 use crate::unexplained::Unexplained;
@@ -95,8 +96,13 @@ impl Diagnosis {
 /// # Errors
 /// Where the signals draw no ellipse.
 pub fn diagnose(recording: &Recording) -> Result<Diagnosis, ContextError> {
+    let heard = silent::left_out(recording);
+    let (recording, weight) = match &heard {
+        Some(heard) => (&heard.recording, heard.weight.clone()),
+        None => (recording, vec![1.0; recording.samples()]),
+    };
     let recording = &*reference::checked(recording);
-    let checked = checks::check(recording);
+    let checked = checks::check(recording, weight);
     let repaired = repair(recording, &checked);
     let context = || Context::new(&repaired.recording, repaired.weight.clone());
     let first = context()?;

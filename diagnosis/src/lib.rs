@@ -42,6 +42,7 @@ mod score;
 mod select;
 mod selection;
 mod sensor;
+mod silent;
 mod simpler;
 mod simulation;
 mod solve;
