@@ -5,6 +5,7 @@ use nonius_recording::Recording;
 
 use crate::edges::{Edges, edges};
 use crate::finding::{Finding, Parameter, Place};
+use crate::missing;
 use crate::timebase;
 use crate::units;
 
@@ -57,7 +58,16 @@ pub(crate) fn check(recording: &Recording, weight: Vec<f64>) -> Checked {
                 })
             };
             let found = bits_and_steps(name, codes, bits);
+            // Where codes lie on a grid, those between are missing.
+            let missing = if found.is_empty() {
+                missing::codes(codes)
+            } else {
+                vec![]
+            };
             digital.extend(found.into_iter().map(of_channel));
+            if !missing.is_empty() {
+                digital.push(missing::finding(name, channel, &missing));
+            }
         }
     }
     checked.findings.splice(..0, digital);
@@ -213,8 +223,8 @@ fn isolated(channels: &[Vec<f64>; 2], which: usize, k: usize) -> bool {
     one > AS_MUCH * step
 }
 
-/// Whether a step of both channels before or after a sample explains clearly more than that the sample is off: of a jump of
-/// the time base, the samples farther away tell.
+/// Whether a step of both channels before or after a sample, or a corner, explains clearly more than that the sample is off: of
+/// a jump of the time base, or a step of the speed, the samples farther away tell.
 fn steps(recording: &Recording, k: usize) -> bool {
     /// Samples on either side, and the order of the curve through them.
     const SIDE: usize = 8;
@@ -236,7 +246,11 @@ fn steps(recording: &Recording, k: usize) -> bool {
     };
     let one = left(&|x| f64::from(x == 0.0));
     let step = left(&|x| f64::from(x >= 0.0)).min(left(&|x| f64::from(x > 0.0)));
-    step < CLEARLY * one
+    // A drive that is faster at once bends both.
+    let sample = 1.0 / SIDE as f64;
+    let corners = [-0.5, 0.0, 0.5].map(|at| left(&|x| (x - at * sample).max(0.0)));
+    let corner = corners.into_iter().fold(f64::MAX, f64::min);
+    step.min(corner) < CLEARLY * one
 }
 
 /// Lowest and highest value.

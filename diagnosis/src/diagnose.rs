@@ -6,9 +6,9 @@ use serde::Serialize;
 use crate::calm::{self, Calm};
 use crate::channels::Channels;
 use crate::checks::{self, Checked};
+use crate::codes;
 use crate::contender::is_drift;
 use crate::context::{Context, ContextError};
-use crate::doubt;
 use crate::exact;
 use crate::finding::{Finding, Gain};
 use crate::flicker::{self, Flicker};
@@ -191,10 +191,12 @@ fn search(
         let mut selection = select(&context, &mut system, &catalogue, carried.clone(), last);
         if selection.again.is_empty() {
             let noise = system.flicker.clone();
-            doubt::beside_codes(&system, &mut selection, &checked.findings);
+            let note = codes::beside(&system, &mut selection, &checked.findings);
             let concluded = conclude(&system, &selection, checked, repaired);
             drop(system);
-            return (concluded(context), noise);
+            let mut found = concluded(context);
+            found.notes.extend(note);
+            return (found, noise);
         }
         // Its samples are not needed any longer, and the next look has its own.
         drop(system);
@@ -234,7 +236,7 @@ fn conclude(
     let named = extended.findings(system, &halves);
     let left = system.residual(&selection.fit);
     // Only what is noise can be noise of a kind.
-    let (mut noisy, mut strange) = if selection.unnamed.is_empty() {
+    let (mut noisy, mut strange) = if selection.unnamed.is_empty() && !selection.coded {
         noise::findings(system, &left)
     } else {
         (vec![], vec![])
@@ -259,7 +261,7 @@ fn conclude(
         .fold(0.0, f64::max);
     let flicker = flicker.filter(|f| !f.is_part_of(unknown));
     let silent = selection.unnamed.is_empty() && rest.is_empty() && noisy.is_empty();
-    if silent && strange.is_empty() && flicker.is_none() {
+    if silent && !selection.coded && strange.is_empty() && flicker.is_none() {
         strange = left::no_noise(context, &system.residual(&extended.fit).radial);
     }
     match flicker.as_ref().map(Flicker::finding) {

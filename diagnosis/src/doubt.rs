@@ -5,7 +5,6 @@
 use crate::beside::Beside;
 use crate::cause::Domain;
 use crate::causes::Catalogue;
-use crate::finding::Finding;
 use crate::generic::HOLDS;
 use crate::held::share;
 use crate::library::Shape;
@@ -27,15 +26,8 @@ const ALIKE: f64 = 0.95;
 /// angle only, neither is what the other leaves.
 const APART: f64 = 2.0;
 
-/// A code's error changes so often within a period that hardly any of it is of a low order: of steps of an amplitude's share
-/// q, so many times √q of it (a sine's turning points alone stay within one step for long).
-const OF_LOW_ORDER: f64 = 2.0;
-
-/// Static errors beside a channel's coarse steps, each smaller than those: more of them are their doing.
-const MANY: usize = 2;
-
 /// What depends on the code depends on the angle too.
-fn home(domain: Domain) -> Domain {
+pub(crate) fn home(domain: Domain) -> Domain {
     if domain == Domain::Code {
         Domain::Angle
     } else {
@@ -79,7 +71,7 @@ pub(crate) fn doubt(system: &System, catalogue: &Catalogue, found: &mut Selectio
 }
 
 /// What the fit explains more than without some of its causes.
-fn gain_of(system: &System, found: &Selection, own: &[usize]) -> f64 {
+pub(crate) fn gain_of(system: &System, found: &Selection, own: &[usize]) -> f64 {
     let within = |k: usize| own.iter().any(|i| found.accepted[*i].range().contains(&k));
     let shapes = found.fit.shapes.iter().enumerate();
     let others: Vec<Shape> = shapes
@@ -178,42 +170,4 @@ fn leftovers(
         plain(name)
     );
     Some(unnamed(domain, nearest, gain, &but))
-}
-
-/// Takes names of static errors back that are smaller than the error that a stuck bit or coarse steps make in the codes:
-/// that error repeats with the angle, too, and is in the data as it is.
-pub(crate) fn beside_codes(system: &System, found: &mut Selection, digital: &[Finding]) {
-    let context = system.context;
-    let lsb = context.adc.cos.lsb.max(context.adc.sin.lsb) / context.ellipse.amplitude();
-    let error = |f: &Finding| {
-        // Of a bit that is lost half of the time, and of even steps.
-        let (step, rms) = match f.cause.as_str() {
-            "stuck_bit" => (2f64.powf(f.parameter("bit")?), 0.5),
-            "coarse_quantisation" => (f.parameter("step_lsb")?, 12f64.sqrt().recip()),
-            _ => return None,
-        };
-        let step = lsb * step;
-        let low = (OF_LOW_ORDER * step.sqrt()).min(1.0);
-        Some([step * rms, step * rms * low])
-    };
-    let errors = digital.iter().filter_map(error);
-    let [whole, low] = errors.fold([0.0; 2], |[a, b]: [f64; 2], e| [a.max(e[0]), b.max(e[1])]);
-    let samples: f64 = context.weight.iter().sum();
-    let size = |gain: f64| system.noise() * (2.0 * gain.max(0.0) / samples).sqrt();
-    let own = |i: &usize| home(found.accepted[*i].candidate.domain) == Domain::Angle;
-    let all = (0..found.accepted.len()).filter(own);
-    let gains = all.map(|i| (i, gain_of(system, found, &[i])));
-    let small: Vec<(usize, f64)> = gains.filter(|(_, gain)| size(*gain) < whole).collect();
-    // Many at once are the pattern that the codes make.
-    let error = if small.len() > MANY { whole } else { low };
-    let mut first = None;
-    for (i, gain) in small {
-        if size(gain) < error {
-            first = first.or(Some((found.accepted[i].candidate.name, gain)));
-            found.accepted[i].doubted = true;
-        }
-    }
-    let but = "the errors of the codes are larger";
-    let taken = first.map(|(name, gain)| unnamed(Domain::Angle, name, gain, but));
-    found.unnamed.extend(taken);
 }

@@ -1,5 +1,7 @@
 //! Whether what everything leaves of the radius is white noise: what is not, lives there without a name.
 
+use std::f64::consts::TAU;
+
 use nonius_quantity::{Quantity, Unit, digits};
 use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
@@ -15,6 +17,9 @@ const TRIALS: f64 = 2.0;
 const CODES: f64 = 0.5;
 /// Standard deviations from which on a sample stands out: not one in 10⁸ of noise does.
 const FAR: f64 = 6.0;
+/// Sectors of the period in each of which the noise has a size of its own, and fewest samples that tell it.
+const SECTORS: usize = 16;
+const IN_A_SECTOR: usize = 50;
 /// Fewest samples that stand out and are no chance.
 const FEWEST: usize = 3;
 
@@ -109,6 +114,32 @@ fn code(context: &Context) -> f64 {
     channels.fold(0.0, f64::max) / context.ellipse.amplitude()
 }
 
+/// Which sector of the period a sample lies in.
+fn sector(context: &Context, k: usize) -> usize {
+    let turns = context.alpha[k].rem_euclid(TAU) / TAU;
+    ((turns * SECTORS as f64) as usize).min(SECTORS - 1)
+}
+
+/// How many times as loud as in the whole period the noise is in each sector of it, at least once: the noise of a weak channel
+/// is large where that channel makes the radius.
+fn by_angle(context: &Context, radial: &[f64], sigma: f64) -> Vec<f64> {
+    let mut sizes: Vec<Vec<f64>> = vec![vec![]; SECTORS];
+    for (k, r) in radial.iter().enumerate() {
+        if context.weight[k] > 0.0 {
+            sizes[sector(context, k)].push(r.abs());
+        }
+    }
+    let louder = |mut sizes: Vec<f64>| {
+        if sizes.len() < IN_A_SECTOR {
+            return 1.0;
+        }
+        let middle = sizes.len() / 2;
+        let (_, median, _) = sizes.select_nth_unstable_by(middle, f64::total_cmp);
+        (*median / 0.674_489_75 / sigma).max(1.0)
+    };
+    sizes.into_iter().map(louder).collect()
+}
+
 /// What of a radial residual, in amplitudes, is no white noise; nothing where the ADC is coarser than the noise.
 pub(crate) fn no_noise(context: &Context, radial: &[f64]) -> Vec<Unnamed> {
     let mut sizes: Vec<f64> = (radial.iter().zip(&context.weight))
@@ -135,7 +166,11 @@ pub(crate) fn no_noise(context: &Context, radial: &[f64]) -> Vec<Unnamed> {
             });
         }
     };
-    let far = |k: &usize| radial[*k].abs() > FAR * sigma && context.weight[*k] > 0.0;
+    let louder = by_angle(context, radial, sigma);
+    let far = |k: &usize| {
+        let sigma = sigma * louder[sector(context, *k)];
+        radial[*k].abs() > FAR * sigma && context.weight[*k] > 0.0
+    };
     let far: Vec<usize> = (0..radial.len()).filter(far).collect();
     if let Some(first) = far.first().filter(|_| far.len() >= FEWEST) {
         // Each is less likely than one in 10⁸.

@@ -138,7 +138,7 @@ pub(crate) fn findings(system: &System, residual: &Residual) -> (Vec<Finding>, V
         let plain = [1.0, 1.0, 0.0, 0.0];
         let with = squares.fit([&plain[..], &[0.0]].concat(), &both);
         let amount = with.x[BASE + 1];
-        if amount <= 0.0 || with.rank < BASE + 2 {
+        if amount <= 0.0 {
             continue;
         }
         let mut own = Squares {
@@ -148,6 +148,10 @@ pub(crate) fn findings(system: &System, residual: &Residual) -> (Vec<Finding>, V
         own.cut(&with.x, &both);
         let with = own.fit(with.x.clone(), &both);
         let without = own.fit(plain.to_vec(), &both);
+        // At constant speed the noise of a clock is white noise of the angle, and of the two one number is seen.
+        if with.rank <= without.rank {
+            continue;
+        }
         let inflation = own.inflation(&with, &both);
         let gain = (with.likelihood - without.likelihood) / inflation;
         let log_p = after_trials(log_tail(2.0 * gain, 1), TRIALS);

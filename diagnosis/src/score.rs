@@ -107,9 +107,12 @@ pub(crate) fn likely(system: &System, scored: &Scored) -> bool {
     }
     let samples: f64 = system.context.weight.iter().sum();
     let large = LARGEST * (2.0 * samples).sqrt() / system.noise();
-    !matches!(scored.candidate.domain, Domain::Speed | Domain::Angle)
-        || scored.size < large
-        || 2.0 * scored.gain > SEEN * scored.size.powi(2)
+    // At constant speed, a line at the signals' own frequency is an offset or a gain of them, and hardly seen.
+    let hidden = matches!(
+        scored.candidate.domain,
+        Domain::Speed | Domain::Angle | Domain::Line
+    );
+    !hidden || scored.size < large || 2.0 * scored.gain > SEEN * scored.size.powi(2)
 }
 
 /// Of candidates with functions of their own, those that explain something, or could rival a gain of `most`.

@@ -102,6 +102,7 @@ pub(crate) fn begin(
         unnamed: vec![],
         left: vec![],
         again: vec![],
+        coded: false,
     };
     // Functions that were made for the known causes and that no shape uses.
     keep_used(system, catalogue.atoms, &mut found);

@@ -76,6 +76,8 @@ pub(crate) struct Selection {
     pub(crate) left: Vec<Unnamed>,
     /// Where to look anew from, the likeliest first: something is too large for the tangents of this context.
     pub(crate) again: Vec<Start>,
+    /// The errors of the codes are seen in the noise.
+    pub(crate) coded: bool,
 }
 
 impl Selection {
@@ -108,6 +110,7 @@ impl Selection {
             unnamed: vec![],
             left: vec![],
             again: vec![],
+            coded: false,
         }
     }
 

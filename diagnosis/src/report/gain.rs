@@ -136,11 +136,15 @@ fn repaired(finding: &Finding) -> Gain {
         Some(Place::Gap { .. }) if samples == 0 => "nothing: too much is missing".into(),
         Some(Place::Gap { .. }) => done("put back into the time base"),
         Some(Place::Repeat { inserted: true, .. }) => done("taken out of the time base"),
-        Some(Place::Code { .. }) => "nothing: the codes are taken as they are".into(),
+        Some(Place::Code { .. } | Place::Missing { .. }) => {
+            "nothing: the codes are taken as they are".into()
+        }
         _ => done("left out of every fit"),
     };
     let change = match finding.place {
-        Some(Place::Code { .. }) => "mend it at the converter or its link".into(),
+        Some(Place::Code { .. } | Place::Missing { .. }) => {
+            "mend it at the converter or its link".into()
+        }
         Some(Place::Gap { .. }) => format!(
             "{} filled in, and {} not count",
             agree(samples, "its place is", "their places are"),

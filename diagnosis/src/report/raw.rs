@@ -20,7 +20,8 @@ pub(super) fn of(finding: &Finding, found: &Diagnosis, recording: &Recording) ->
     match finding.place {
         Some(Place::Gap { .. } | Place::Repeat { .. }) => jump::of(finding, found, recording),
         Some(Place::Sample(k)) => vec![trace(recording, k)],
-        Some(Place::Code { channel, step }) => codes(recording, channel, step),
+        Some(Place::Code { channel, step }) => codes(recording, channel, step, None),
+        Some(Place::Missing { channel, code }) => codes(recording, channel, 1, Some(code)),
         None => vec![],
     }
 }
@@ -75,15 +76,16 @@ fn curve(channels: &[&[[f64; 2]]; 2], at: usize) -> Vec<[f64; 2]> {
     if a.0 > b.0 { a.1 } else { b.1 }
 }
 
-/// How often codes come, over a range of them, and over the places of what repeats every `step` codes.
-fn codes(recording: &Recording, channel: usize, step: i64) -> Vec<Plot> {
+/// How often codes come, over a range of them that holds what repeats every `step` codes, about the code of that number or
+/// the middle one.
+fn codes(recording: &Recording, channel: usize, step: i64, about: Option<i64>) -> Vec<Plot> {
     let all: Vec<i64> = recording
         .codes()
         .map(|(cos, sin)| if channel == 0 { cos } else { sin })
         .collect();
     let mut sorted = all.clone();
     sorted.sort_unstable();
-    let Some(middle) = sorted.get(sorted.len() / 2).copied() else {
+    let Some(middle) = about.or(sorted.get(sorted.len() / 2).copied()) else {
         return vec![];
     };
     let reach = (2 * step).max(CODES);
