@@ -6,6 +6,7 @@ use nonius_recording::Recording;
 use crate::edges::{Edges, edges};
 use crate::finding::{Finding, Parameter, Place};
 use crate::missing;
+use crate::rail;
 use crate::timebase;
 use crate::units;
 
@@ -32,6 +33,8 @@ pub(crate) fn check(recording: &Recording, weight: Vec<f64>) -> Checked {
     };
     timebase::repeated(recording, &mut checked);
     glitches(recording, &mut checked);
+    let clipped = rail::rails(recording, &mut checked.weight);
+    checked.findings.extend(clipped);
     // A sample that is wrong holds any code.
     let weight = &checked.weight;
     let sound = || recording.codes().zip(weight).filter(|(_, w)| **w > 0.0);

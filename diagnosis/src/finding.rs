@@ -149,6 +149,13 @@ pub enum Place {
         /// Codes.
         step: i64,
     },
+    /// At the code of a rail that clips a channel (0 is cos).
+    Rail {
+        /// Which channel.
+        channel: usize,
+        /// The signed code about mid-scale.
+        code: i64,
+    },
     /// At a code of a channel (0 is cos) that never comes.
     Missing {
         /// Which channel.

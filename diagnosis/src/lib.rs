@@ -37,6 +37,7 @@ mod one_over_f;
 mod pair;
 mod part;
 mod polygon;
+mod rail;
 mod reference;
 mod repair;
 mod report;

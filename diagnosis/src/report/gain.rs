@@ -150,6 +150,7 @@ fn repaired(finding: &Finding) -> Gain {
             agree(samples, "its place is", "their places are"),
             agree(samples, "does", "do")
         ),
+        Some(Place::Rail { .. }) => "what is clipped is not fitted, nor what is beside it".into(),
         Some(Place::Sample(_)) => "each glitch and the samples beside it".into(),
         _ => "what is known to be wrong is not fitted".into(),
     };

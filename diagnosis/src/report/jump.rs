@@ -22,7 +22,9 @@ type Numbered = (usize, Option<f64>);
 fn numbered(place: Place, samples: usize) -> Option<(usize, Vec<Numbered>)> {
     let at = match place {
         Place::Gap { sample, .. } | Place::Repeat { sample, .. } => sample,
-        Place::Sample(_) | Place::Code { .. } | Place::Missing { .. } => return None,
+        Place::Sample(_) | Place::Code { .. } | Place::Missing { .. } | Place::Rail { .. } => {
+            return None;
+        }
     };
     let range = at.saturating_sub(AROUND)..(at + AROUND).min(samples);
     let time = |k: usize| {

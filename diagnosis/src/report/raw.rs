@@ -21,7 +21,9 @@ pub(super) fn of(finding: &Finding, found: &Diagnosis, recording: &Recording) ->
         Some(Place::Gap { .. } | Place::Repeat { .. }) => jump::of(finding, found, recording),
         Some(Place::Sample(k)) => vec![trace(recording, k)],
         Some(Place::Code { channel, step }) => codes(recording, channel, step, None),
-        Some(Place::Missing { channel, code }) => codes(recording, channel, 1, Some(code)),
+        Some(Place::Missing { channel, code } | Place::Rail { channel, code }) => {
+            codes(recording, channel, 1, Some(code))
+        }
         None => vec![],
     }
 }

@@ -1,0 +1,194 @@
+//! Codes of the ADC: what they do wrong has its own name, and what they do to everything else has none.
+
+use std::f64::consts::TAU;
+
+use nonius_diagnosis::{Diagnosis, diagnose};
+use nonius_recording::{Overrides, Recording};
+use rand::{SeedableRng, rngs::StdRng};
+use rand_distr::{Distribution, StandardNormal};
+
+use crate::harness::names;
+
+const SAMPLES: usize = 20_000;
+const RATE: f64 = 20e3;
+/// Amplitudes of the channels in the unit of the columns; the ADC spans −1 to 1.
+const AMPLITUDES: [f64; 2] = [0.81, 0.78];
+
+/// A sensor behind an ADC.
+struct Seen {
+    bits: u32,
+    amplitudes: [f64; 2],
+    /// Noise of each channel in the unit of the columns, and in parts of the channel.
+    noise: f64,
+    share: f64,
+    /// Scale periods after a time in seconds.
+    periods: fn(f64) -> f64,
+    /// What becomes of a code, counted from mid-scale, of channel 0 (cos) or 1 (sin).
+    code: fn(i64, usize) -> i64,
+}
+
+const PLAIN: Seen = Seen {
+    bits: 14,
+    amplitudes: AMPLITUDES,
+    noise: 0.0008,
+    share: 0.0,
+    periods: evenly,
+    code: |code, _| code,
+};
+
+/// Forty scale periods a second: a whole number of samples in each.
+fn evenly(t: f64) -> f64 {
+    40.0 * t + 0.1
+}
+
+/// To and fro.
+fn reversing(t: f64) -> f64 {
+    2.5 * (TAU * 2.7 * t + 0.3).sin() + 3.0 * t
+}
+
+fn diagnosed(seen: &Seen, seed: u64) -> Diagnosis {
+    let mut random = StdRng::seed_from_u64(seed);
+    let mut normal = || -> f64 { StandardNormal.sample(&mut random) };
+    let half = 2f64.powi(seen.bits as i32 - 1);
+    let mut text = format!(
+        "# adc_bits: {}\n# full_scale: 1\ntime_s,cos,sin\n",
+        seen.bits
+    );
+    for k in 0..SAMPLES {
+        let t = k as f64 / RATE;
+        let alpha = TAU * (seen.periods)(t);
+        let pair = [alpha.cos(), (alpha - 0.02).sin()];
+        let [c, s] = [0, 1].map(|which| {
+            let own = seen.amplitudes[which] * pair[which] * (1.0 + seen.share * normal());
+            let code = ((own + 0.011 + seen.noise * normal()) * half).round() as i64;
+            (seen.code)(code, which) as f64 / half
+        });
+        text += &format!("{t:.6},{c},{s}\n");
+    }
+    let read = Recording::read_from(text.as_bytes(), "test", &Overrides::default());
+    let found = diagnose(&read.expect("a recording")).expect("signals that draw an ellipse");
+    crate::words::well_said(&found);
+    found
+}
+
+/// Exactly these names, and nothing is left.
+fn is_named(seen: &Seen, expected: &[&str]) {
+    for seed in 0..3 {
+        let found = diagnosed(seen, seed);
+        let left = &found.unexplained;
+        assert_eq!(names(&found), expected, "{seed}: {}", left.signature);
+        assert!(!left.significant, "{seed}: {}", left.signature);
+    }
+}
+
+/// A bit that is lost makes an error that repeats with the scale period: at an even speed that is a comb of lines, and none of
+/// them is interference, vibration or a ripple.
+#[test]
+fn a_stuck_bit_has_no_companions() {
+    let stuck = Seen {
+        code: |code, which| if which == 0 { code & !(1 << 5) } else { code },
+        ..PLAIN
+    };
+    is_named(&stuck, &["stuck_bit"]);
+    let reversing = Seen {
+        periods: reversing,
+        ..stuck
+    };
+    is_named(&reversing, &["stuck_bit"]);
+}
+
+/// An ADC whose noise is a tenth of its code is no cause, and the steps of its codes are no error of the sensor.
+#[test]
+fn a_quiet_adc_shows_nothing() {
+    for bits in [6, 8] {
+        for periods in [evenly, reversing] {
+            let quiet = Seen {
+                bits,
+                noise: 0.1 / 2f64.powi(bits as i32 - 1),
+                periods,
+                ..PLAIN
+            };
+            is_named(&quiet, &[]);
+        }
+    }
+}
+
+/// Of an ADC that never gives some codes, the codes beside them come more often.
+#[test]
+fn codes_that_never_come() {
+    let missing = Seen {
+        bits: 9,
+        periods: reversing,
+        code: |code, which| {
+            let lost = which == 1 && [-160, -51, 32, 127].contains(&code);
+            if lost { code + 1 } else { code }
+        },
+        ..PLAIN
+    };
+    for seed in 0..3 {
+        let found = diagnosed(&missing, seed);
+        assert_eq!(names(&found), ["adc_nonlinearity"]);
+        let count = found.findings[0].parameter("missing_codes");
+        assert_eq!(count, Some(4.0), "{}", found.findings[0].evidence);
+    }
+}
+
+/// The noise of a weak channel is ten times as large a part of it, and so is that of the radius where that channel makes it.
+#[test]
+fn a_weak_channel_has_no_glitches() {
+    let weak = Seen {
+        amplitudes: [0.81, 0.08],
+        periods: reversing,
+        ..PLAIN
+    };
+    is_named(&weak, &[]);
+}
+
+/// Noise in proportion to the signal goes with the angle, which an even speed shows as well as any other.
+#[test]
+fn noise_with_the_signal_at_an_even_speed() {
+    let noisy = Seen {
+        noise: 0.0004,
+        share: 0.002,
+        ..PLAIN
+    };
+    is_named(&noisy, &["amplitude_noise"]);
+}
+
+/// A drive that is slower at once bends the signals at one sample, and that sample is sound.
+#[test]
+fn a_step_of_the_speed_is_no_glitch() {
+    let stepped = Seen {
+        noise: 0.0002,
+        periods: |t| 400.0 * (t.min(0.5) + 0.3 * (t - 0.5).max(0.0)),
+        ..PLAIN
+    };
+    is_named(&stepped, &[]);
+}
+
+/// A channel whose amplifier goes no further at three quarters of the range holds one code there, and what is clipped is left out
+/// with nothing else beside it.
+#[test]
+fn a_channel_clipped_at_a_rail() {
+    let clipped = Seen {
+        code: |code, which| if which == 0 { code.min(6500) } else { code },
+        ..PLAIN
+    };
+    let both = Seen {
+        periods: reversing,
+        code: |code, which| {
+            if which == 1 {
+                code.clamp(-6100, 6200)
+            } else {
+                code
+            }
+        },
+        ..PLAIN
+    };
+    is_named(&clipped, &["saturation"]);
+    is_named(&both, &["saturation", "saturation"]);
+    let rail = &diagnosed(&clipped, 0).findings[0];
+    let threshold = (6500.0 / 8192.0 - 0.011) / AMPLITUDES[0];
+    let found = rail.parameter("threshold").expect("a threshold");
+    assert!((found - threshold).abs() < 1e-3, "{found}");
+}
