@@ -5,6 +5,7 @@
 use std::f64::consts::{PI, TAU};
 
 use nonius_quantity::{Quantity, Unit, digits};
+use nonius_recording::AdcSource;
 
 use crate::cause::Domain;
 use crate::causes::speed_varies;
@@ -71,12 +72,11 @@ fn quiet(step: f64, noise: f64) -> Error {
     Error::new(step, even() * (-2.0 * PI * PI * own / (step * step)).exp())
 }
 
-/// The largest of the errors that the checks found, and of what a quiet ADC makes.
-fn error(system: &System, digital: &[Finding]) -> Error {
+/// The largest of the errors that the checks found.
+fn known(system: &System, digital: &[Finding]) -> Error {
     let context = system.context;
-    let code = code(context);
     let lsb = context.adc.cos.lsb.max(context.adc.sin.lsb) / context.ellipse.amplitude();
-    let known = |f: &Finding| {
+    let error = |f: &Finding| {
         Some(match f.cause.as_str() {
             "stuck_bit" => Error::new(lsb * 2f64.powf(f.parameter("bit")?), 0.5),
             "coarse_quantisation" => Error::new(lsb * f.parameter("step_lsb")?, even()),
@@ -88,8 +88,8 @@ fn error(system: &System, digital: &[Finding]) -> Error {
             _ => return None,
         })
     };
-    let start = quiet(code, system.noise());
-    digital.iter().filter_map(known).fold(start, Error::or)
+    let all = digital.iter().filter_map(error);
+    all.fold(Error::default(), Error::or)
 }
 
 /// Whether a frequency is an order of the signals, of those that steps of a share of the amplitude make, beyond half the sample
@@ -113,6 +113,17 @@ fn is_an_order(context: &Context, hertz: f64, step: f64) -> bool {
     })
 }
 
+/// What a cause explains; motion is not seen in the radius, which is all that is sure where the axis vibrates.
+fn gain(system: &System, found: &Selection, i: usize) -> f64 {
+    let own = &found.accepted[i];
+    if own.candidate.domain != Domain::Motion {
+        return gain_of(system, found, &[i]);
+    }
+    let mut others = found.fit.shapes.clone();
+    others.drain(own.range());
+    found.fit.solution.gain() - system.fit(others).solution.gain()
+}
+
 /// Takes names back that are smaller than the error of the codes and may be its doing, and what has no name likewise: that error
 /// is in the data as it is. A sentence that says so, where anything was.
 pub(crate) fn beside(
@@ -121,14 +132,25 @@ pub(crate) fn beside(
     digital: &[Finding],
 ) -> Option<String> {
     let context = system.context;
-    let error = error(system, digital);
+    let known = known(system, digital);
+    let quiet = quiet(code(context), system.noise());
+    // A step that was only estimated from the values is none to judge by.
+    let described = context.adc.cos.source == AdcSource::Described;
+    let error = if described && quiet.whole > IN_NOISE * system.noise() {
+        quiet.or(known)
+    } else {
+        known
+    };
+    if error.whole == 0.0 {
+        return None;
+    }
     let samples: f64 = context.weight.iter().sum();
     let size = |gain: f64| system.noise() * (2.0 * gain.max(0.0) / samples).sqrt();
     let all = 0..found.accepted.len();
-    let sizes: Vec<f64> = all.map(|i| size(gain_of(system, found, &[i]))).collect();
+    let sizes: Vec<f64> = all.map(|i| size(gain(system, found, i))).collect();
     let repeats = |i: usize| home(found.accepted[i].candidate.domain) == Domain::Angle;
-    // Many at once are the pattern that the codes make.
-    let small = (0..sizes.len()).filter(|i| repeats(*i) && sizes[*i] < error.whole);
+    // Many at once are the pattern that lost codes make. A quiet ADC loses none, and a sensor may have many harmonics.
+    let small = (0..sizes.len()).filter(|i| repeats(*i) && sizes[*i] < known.whole);
     let many = small.count() > MANY;
     let limit = |i: usize| {
         let candidate = &found.accepted[i].candidate;
@@ -137,9 +159,15 @@ pub(crate) fn beside(
             Domain::Line | Domain::Motion => {
                 frequency.is_some_and(|f| is_an_order(context, *f, error.step))
             }
-            _ => many && repeats(i),
+            _ => false,
         };
-        if ordered { error.whole } else { error.low }
+        if ordered {
+            error.whole
+        } else if many && repeats(i) {
+            known.whole.max(error.low)
+        } else {
+            error.low
+        }
     };
     let taken: Vec<usize> = (0..sizes.len()).filter(|i| sizes[*i] < limit(*i)).collect();
     for i in &taken {
