@@ -16,8 +16,8 @@ use crate::settle::settle;
 /// Names of the inputs that are registered at the end of cycle 0.
 pub const SAMPLED: [&str; 4] = ["adc_cos", "adc_sin", "preset", "calibrate"];
 
-/// Longest chain in a cycle, in about tenths of nanoseconds of an iCE40 HX.
-pub(crate) const DEPTH: u32 = 115;
+/// Longest chain in a cycle, in about tenths of nanoseconds of an iCE40 HX: the first, or a longer one that saves clocks.
+const DEPTHS: [u32; 2] = [115, 125];
 
 /// When and where each node is computed.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -68,7 +68,7 @@ fn shifter(graph: &Graph, id: NodeId) -> Option<Shifter> {
     }
 }
 
-/// Combinational delay of a node in units of [`DEPTH`].
+/// Combinational delay of a node in units of [`DEPTHS`].
 pub(crate) fn delay(graph: &Graph, id: NodeId) -> u32 {
     let width = graph.node(id).format.width;
     match graph.node(id).op {
@@ -104,19 +104,51 @@ fn urgency(graph: &Graph) -> Vec<u32> {
 #[must_use]
 pub fn schedule_for(graph: &Graph, wanted: Multipliers) -> Schedule {
     let most = wanted.count(graph.products());
-    let fastest = schedule(graph, most);
-    match wanted {
+    let fastest = Listed::new(graph, most);
+    let clocks = fastest.schedule.clocks;
+    let chosen = match wanted {
         Multipliers::Count(_) => fastest,
         Multipliers::All(_) => (1..most)
-            .map(|fewer| schedule(graph, fewer))
-            .find(|fewer| fewer.clocks <= fastest.clocks)
+            .map(|fewer| Listed::new(graph, fewer))
+            .find(|fewer| fewer.schedule.clocks <= clocks)
             .unwrap_or(fastest),
-    }
+    };
+    chosen.settled(graph)
 }
 
 /// Lists the graph on `multipliers` multipliers, or on fewer where never so many products are waiting.
 #[must_use]
 pub fn schedule(graph: &Graph, multipliers: usize) -> Schedule {
+    Listed::new(graph, multipliers).settled(graph)
+}
+
+/// A schedule with every value as early as it can be, and the longest chain that it allows itself.
+struct Listed {
+    schedule: Schedule,
+    depth: u32,
+}
+
+impl Listed {
+    fn new(graph: &Graph, multipliers: usize) -> Self {
+        let [short, long] = DEPTHS.map(|depth| Self {
+            schedule: list(graph, multipliers, depth),
+            depth,
+        });
+        if long.schedule.clocks < short.schedule.clocks {
+            long
+        } else {
+            short
+        }
+    }
+
+    fn settled(mut self, graph: &Graph) -> Schedule {
+        settle(graph, &mut self.schedule, self.depth);
+        self.schedule
+    }
+}
+
+/// With chains no longer than `depth`.
+fn list(graph: &Graph, multipliers: usize, depth: u32) -> Schedule {
     let n = graph.nodes.len();
     let urgency = urgency(graph);
     let mut lister = Lister {
@@ -126,6 +158,7 @@ pub fn schedule(graph: &Graph, multipliers: usize) -> Schedule {
         shift: vec![None; n],
         shifters: vec![],
         multipliers,
+        depth,
     };
     let mut issue = vec![None; n];
     for id in graph.ids() {
@@ -165,16 +198,14 @@ pub fn schedule(graph: &Graph, multipliers: usize) -> Schedule {
     let clocks = ready.iter().max().copied().unwrap_or(0) + 1;
     // The first ones are taken first.
     let used = issue.iter().flatten().map(|(m, _)| m + 1).max();
-    let mut schedule = Schedule {
+    Schedule {
         ready,
         issue,
         shift: lister.shift,
         shifters: lister.shifters,
         multipliers: used.unwrap_or(0),
         clocks,
-    };
-    settle(graph, &mut schedule);
-    schedule
+    }
 }
 
 struct Lister<'a> {
@@ -184,6 +215,7 @@ struct Lister<'a> {
     shift: Vec<Option<usize>>,
     shifters: Vec<Shifter>,
     multipliers: usize,
+    depth: u32,
 }
 
 impl Lister<'_> {
@@ -212,7 +244,7 @@ impl Lister<'_> {
             };
             let start = op.operands().iter().map(chained).max().unwrap_or(0);
             let end = start + delay(self.graph, id);
-            if start > 0 && end > DEPTH {
+            if start > 0 && end > self.depth {
                 continue;
             }
             if let Some(wanted) = shifter(self.graph, id) {

@@ -3,7 +3,7 @@
 use nonius_model::graph::{Graph, NodeId, Op};
 
 use crate::netlist::{last_use, width};
-use crate::schedule::{DEPTH, Schedule, delay};
+use crate::schedule::{Schedule, delay};
 
 /// Cycle of the first read of each node.
 fn first_use(graph: &Graph, schedule: &Schedule) -> Vec<usize> {
@@ -21,8 +21,8 @@ fn first_use(graph: &Graph, schedule: &Schedule) -> Vec<usize> {
     first
 }
 
-/// Whether every chain of `cycle` fits into a clock.
-fn fits(graph: &Graph, schedule: &Schedule, cycle: usize) -> bool {
+/// Whether no chain of `cycle` is longer than `depth`.
+fn fits(graph: &Graph, schedule: &Schedule, cycle: usize, depth: u32) -> bool {
     let mut arrival = vec![0u32; graph.nodes.len()];
     for id in graph.ids() {
         if schedule.ready[id.index()] != cycle {
@@ -32,7 +32,7 @@ fn fits(graph: &Graph, schedule: &Schedule, cycle: usize) -> bool {
         let start = operands.iter().map(|o| arrival[o.index()]).max();
         let start = start.unwrap_or(0);
         arrival[id.index()] = start + delay(graph, id);
-        if start > 0 && arrival[id.index()] > DEPTH {
+        if start > 0 && arrival[id.index()] > depth {
             return false;
         }
     }
@@ -40,7 +40,7 @@ fn fits(graph: &Graph, schedule: &Schedule, cycle: usize) -> bool {
 }
 
 /// Moves values to the cycle of their first reader where no more register bits are needed for what they are made of.
-pub(crate) fn settle(graph: &Graph, schedule: &mut Schedule) {
+pub(crate) fn settle(graph: &Graph, schedule: &mut Schedule, depth: u32) {
     let ids: Vec<NodeId> = graph.ids().collect();
     loop {
         let mut moved = false;
@@ -80,7 +80,7 @@ pub(crate) fn settle(graph: &Graph, schedule: &mut Schedule) {
                 continue;
             }
             schedule.ready[id.index()] = to;
-            if fits(graph, schedule, to) {
+            if fits(graph, schedule, to, depth) {
                 moved = true;
             } else {
                 schedule.ready[id.index()] = from;
