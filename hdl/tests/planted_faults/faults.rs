@@ -108,7 +108,7 @@ pub(crate) fn faults() -> Vec<Fault> {
         }),
         swap(
             "last bit of the lock limit",
-            &["wire e_below_lock_error ="],
+            &["wire e_in_window ="],
             "6'sd7",
             "6'sd8",
         ),
@@ -132,7 +132,7 @@ pub(crate) fn faults() -> Vec<Fault> {
         ),
         swap(
             "what is not small holds before it was ever small",
-            &["wire rho_too_large ="],
+            &["wire calm_and_rho_not_small ="],
             "calm & ",
             "",
         ),
