@@ -244,6 +244,7 @@ fn a_long_recording_of_white_noise_has_none() {
 #[test]
 fn weak_noise_is_found_in_a_long_recording() {
     let still: OfTime = |_| 0.0;
-    let found = diagnosed_of(LONG, &Colour::Flicker(0.00004), 1, still, still);
+    // More samples than are looked at one by one.
+    let found = diagnosed_of(90_000, &Colour::Flicker(0.00008), 1, still, still);
     assert_eq!(names(&found), ["flicker_noise"]);
 }
