@@ -334,12 +334,13 @@ fn glitches(recording: &Recording, checked: &mut Checked) {
     if found.is_empty() || found.len() > n / 50 {
         return;
     }
+    let mut left_out = 0;
     for (k, _) in &found {
         for near in k.saturating_sub(1)..=(k + 1).min(n - 1) {
+            left_out += usize::from(checked.weight[near] > 0.0);
             checked.weight[near] = 0.0;
         }
     }
-    let left_out = checked.weight.iter().filter(|w| **w == 0.0).count();
     let largest = found.iter().map(|f| f.1).fold(0.0, f64::max);
     let largest = Parameter::exact("largest", largest, units::of_columns(recording));
     let share = found.len() as f64 / n as f64;

@@ -4,7 +4,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use nonius_quantity::{Quantity, Unit, digits};
+use nonius_quantity::{Quantity, Unit};
 use nonius_recording::AdcSource;
 
 use crate::cause::Domain;
@@ -179,7 +179,7 @@ pub(crate) fn beside(
     found.coded = error.whole > IN_NOISE * system.noise();
     let dropped = before - found.unnamed.len() - found.left.len();
     (dropped + taken.len() > 0).then(|| {
-        let rms = Quantity::new(digits(error.whole, 2), 0.0, Unit::Percent).brief();
+        let rms = Quantity::rounded(error.whole, 2, Unit::Percent).brief();
         format!("the codes err by {rms} of the amplitude rms, and what is smaller than that and may be their doing has no name")
     })
 }

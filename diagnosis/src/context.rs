@@ -2,14 +2,12 @@
 
 use std::f64::consts::TAU;
 
-use nonius_calibration::{Ellipse, Method, Options, calibrate};
+use nonius_calibration::Ellipse;
 use nonius_recording::{AdcPair, Recording};
 
+use crate::first;
 use crate::solve::dot;
 use crate::spline::Spline;
-
-/// Most samples that the first ellipse is fitted to; the model of all samples has the five parameters again.
-const FIRST: usize = 8192;
 
 /// From so many bad samples in a row on, their own angle tells how far the scale moves meanwhile.
 const MANY: usize = 8;
@@ -112,17 +110,7 @@ impl Context {
     /// # Errors
     /// Where no ellipse can be fitted.
     pub fn new(recording: &Recording, weight: Vec<f64>) -> Result<Self, ContextError> {
-        let every = weight.len().div_ceil(FIRST).max(1);
-        let kept = |values: &[f64]| -> Vec<f64> {
-            let pairs = values.iter().zip(&weight).filter(|(_, w)| **w > 0.0);
-            pairs.map(|(v, _)| *v).step_by(every).collect()
-        };
-        let fit = calibrate(
-            &kept(&recording.cos),
-            &kept(&recording.sin),
-            Method::Unbiased,
-            &Options::default(),
-        )?;
+        let ellipse = first::ellipse(recording, &weight)?;
         let first = recording.time_s.first().copied().unwrap_or_default();
         let codes: (Vec<i64>, Vec<i64>) = recording.codes().unzip();
         let temperature = recording
@@ -132,7 +120,7 @@ impl Context {
         let mut this = Self {
             time: recording.time_s.iter().map(|t| t - first).collect(),
             rate: recording.metadata.sample_rate_hz,
-            ellipse: fit.ellipse,
+            ellipse,
             raw: [recording.cos.clone(), recording.sin.clone()],
             c: vec![],
             s: vec![],

@@ -1,10 +1,10 @@
 //! Samples that are missing without a gap in time: the angle jumps by what it moves in whole samples.
 
-use nonius_calibration::{Method, Options, calibrate};
 use nonius_recording::Recording;
 
 use crate::checks::{Checked, ninth, repeats};
 use crate::context::{against, unwrapped};
+use crate::first;
 use crate::solve::dot;
 
 /// Samples on either side of a jump that are compared, and the order of the curve through them; on slow axes more of them
@@ -18,8 +18,6 @@ const WHOLE: f64 = 0.15;
 const MOST: f64 = 32.0;
 /// So many times the samples on a side, to either side, tell how large the noise is just there.
 const AROUND: usize = 8;
-/// Most samples that the ellipse is fitted to.
-const ENOUGH: usize = 8192;
 /// So many of the sides do to compare a sensor with its reference: that the axis shakes is in both.
 const WITH_REFERENCE: usize = 4;
 /// Standard deviations by which the sensor has to be seen to jump with its reference.
@@ -122,13 +120,10 @@ fn bridge(values: &mut [f64], weight: &[f64]) {
 
 /// The angle of a recording that draws an ellipse, continuous, radians.
 pub(crate) fn angle(recording: &Recording, weight: &[f64]) -> Option<Vec<f64>> {
-    let every = recording.samples().div_ceil(ENOUGH).max(1);
-    let kept = |values: &[f64]| -> Vec<f64> { values.iter().copied().step_by(every).collect() };
-    let (cos, sin) = (kept(&recording.cos), kept(&recording.sin));
-    let fit = calibrate(&cos, &sin, Method::Unbiased, &Options::default()).ok()?;
+    let ellipse = first::ellipse(recording, &vec![1.0; recording.samples()]).ok()?;
     let pairs = recording.cos.iter().zip(&recording.sin);
     let angle = pairs.map(|(c, s)| {
-        let (c, s) = fit.ellipse.corrected(*c, *s);
+        let (c, s) = ellipse.corrected(*c, *s);
         s.atan2(c)
     });
     let mut angle = unwrapped(angle.collect());

@@ -2,11 +2,12 @@
 
 use std::f64::consts::TAU;
 
-use nonius_quantity::{Quantity, Unit, digits};
+use nonius_quantity::{Quantity, Unit};
 use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
 
 use crate::context::Context;
+use crate::lines::median;
 use crate::score::SHOWN;
 use crate::statistics::after_trials;
 use crate::unexplained::{Unnamed, What, like};
@@ -77,11 +78,11 @@ impl Bartlett {
 impl Bartlett {
     /// How the spectrum differs from that of white noise, for so many samples per second.
     pub(crate) fn words(&self, rate: f64) -> String {
-        let hertz = Quantity::new(digits(self.at * rate / 2.0, 2), 0.0, Unit::Prefixed("Hz"));
+        let hertz = Quantity::rounded(self.at * rate / 2.0, 2, Unit::Prefixed("Hz"));
         let side = if self.low { "below" } else { "above" };
         format!(
             "{} more of its power is {side} {} than of white noise",
-            Quantity::new(digits(self.distance, 2), 0.0, Unit::Percent).brief(),
+            Quantity::rounded(self.distance, 2, Unit::Percent).brief(),
             hertz.brief()
         )
     }
@@ -120,6 +121,11 @@ fn sector(context: &Context, k: usize) -> usize {
     ((turns * SECTORS as f64) as usize).min(SECTORS - 1)
 }
 
+/// Standard deviation of normal noise of these sizes.
+fn spread(sizes: &[f64]) -> f64 {
+    median(sizes) / 0.674_489_75
+}
+
 /// How many times as loud as in the whole period the noise is in each sector of it, at least once: the noise of a weak channel
 /// is large where that channel makes the radius.
 fn by_angle(context: &Context, radial: &[f64], sigma: f64) -> Vec<f64> {
@@ -129,29 +135,25 @@ fn by_angle(context: &Context, radial: &[f64], sigma: f64) -> Vec<f64> {
             sizes[sector(context, k)].push(r.abs());
         }
     }
-    let louder = |mut sizes: Vec<f64>| {
+    let louder = |sizes: &Vec<f64>| {
         if sizes.len() < IN_A_SECTOR {
             return 1.0;
         }
-        let middle = sizes.len() / 2;
-        let (_, median, _) = sizes.select_nth_unstable_by(middle, f64::total_cmp);
-        (*median / 0.674_489_75 / sigma).max(1.0)
+        (spread(sizes) / sigma).max(1.0)
     };
-    sizes.into_iter().map(louder).collect()
+    sizes.iter().map(louder).collect()
 }
 
 /// What of a radial residual, in amplitudes, is no white noise; nothing where the ADC is coarser than the noise.
 pub(crate) fn no_noise(context: &Context, radial: &[f64]) -> Vec<Unnamed> {
-    let mut sizes: Vec<f64> = (radial.iter().zip(&context.weight))
+    let sizes: Vec<f64> = (radial.iter().zip(&context.weight))
         .filter(|(_, w)| **w > 0.0)
         .map(|(r, _)| r.abs())
         .collect();
-    let middle = sizes.len() / 2;
     if sizes.is_empty() {
         return vec![];
     }
-    let (_, median, _) = sizes.select_nth_unstable_by(middle, f64::total_cmp);
-    let sigma = *median / 0.674_489_75;
+    let sigma = spread(&sizes);
     if sigma.is_nan() || sigma <= CODES * code(context) {
         return vec![];
     }
@@ -192,7 +194,7 @@ pub(crate) fn no_noise(context: &Context, radial: &[f64]) -> Vec<Unnamed> {
         bartlett.p_value,
         format!(
             "the radial residual of {} of the amplitude rms is not white: {} (Bartlett's test)",
-            Quantity::new(digits(rms, 2), 0.0, Unit::Percent).brief(),
+            Quantity::rounded(rms, 2, Unit::Percent).brief(),
             bartlett.words(context.rate)
         ),
     );

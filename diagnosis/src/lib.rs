@@ -21,6 +21,7 @@ mod doubt;
 mod edges;
 mod exact;
 mod finding;
+mod first;
 mod flicker;
 mod generic;
 mod held;

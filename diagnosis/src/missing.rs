@@ -3,6 +3,7 @@
 use nonius_quantity::{agree, counted};
 
 use crate::finding::{Finding, Parameter, Place};
+use crate::lines::median;
 
 /// Codes on either side that tell how often one is expected.
 const BESIDE: usize = 4;
@@ -32,15 +33,6 @@ fn counts(codes: &[i64]) -> Option<(i64, Vec<f64>)> {
     Some((low, counts))
 }
 
-/// Median; zero of nothing.
-fn median(mut values: Vec<f64>) -> f64 {
-    let middle = values.len() / 2;
-    if values.is_empty() {
-        return 0.0;
-    }
-    *values.select_nth_unstable_by(middle, f64::total_cmp).1
-}
-
 /// Codes that are missing between the lowest and the highest, for samples that count. The turning points of a channel, where
 /// codes come more often the nearer they are, are left out.
 pub(crate) fn codes(codes: &[i64]) -> Vec<i64> {
@@ -56,13 +48,14 @@ pub(crate) fn codes(codes: &[i64]) -> Vec<i64> {
     // The middle of the counts nearby: one of them that has twice as many, or none, changes nothing.
     let expected = |i: usize| {
         let near = (i - BESIDE..=i + BESIDE).filter(|j| *j != i);
-        median(near.map(|j| counts[j]).collect())
+        let near: Vec<f64> = near.map(|j| counts[j]).collect();
+        median(&near)
     };
     let expected: Vec<f64> = inside.clone().map(expected).collect();
     // Samples of slow motion come in groups, so that counts scatter more than those of single samples.
     let pairs = inside.clone().zip(&expected).filter(|(_, e)| **e > 0.0);
-    let off = pairs.map(|(i, e)| (counts[i] - e).powi(2) / e);
-    let scatter = (median(off.collect()) / MEDIAN).max(1.0);
+    let off: Vec<f64> = pairs.map(|(i, e)| (counts[i] - e).powi(2) / e).collect();
+    let scatter = (median(&off) / MEDIAN).max(1.0);
     let limit = scatter * (n as f64 / BY_CHANCE).ln();
     let missing: Vec<i64> = inside
         .zip(&expected)

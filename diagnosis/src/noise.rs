@@ -4,7 +4,7 @@
 //! likelihood). A name is given where one shape holds what knots over all three explain, and where what is called random
 //! is no line.
 
-use nonius_quantity::{Quantity, Unit, digits};
+use nonius_quantity::{Quantity, Unit};
 
 use crate::context::Context;
 use crate::finding::{Chip, Finding, Gain, Parameter};
@@ -247,7 +247,7 @@ fn refusal(
         if n as f64 * (-line).exp() < A_LINE && line > MUCH * gain {
             return Some(format!(
                 "the sampling time wanders periodically, at {}; {}",
-                Quantity::new(digits(hertz, 3), 0.0, Unit::Prefixed("Hz")).brief(),
+                Quantity::rounded(hertz, 3, Unit::Prefixed("Hz")).brief(),
                 like(name, "that is random")
             ));
         }

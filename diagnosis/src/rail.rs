@@ -2,11 +2,11 @@
 //! lowest code comes far more often than the ones beside it, every time that the signal passes there. What is clipped says
 //! nothing but where the rail is: it is left out, and the rest of the signals is as it was.
 
-use nonius_calibration::{Method, Options, calibrate};
-use nonius_quantity::counted;
+use nonius_quantity::{agree, counted};
 use nonius_recording::{Adc, Recording};
 
 use crate::finding::{Finding, Parameter, Place};
+use crate::first;
 
 /// So many times as often as each of the codes beside it, a rail's code comes: the top of a sine at most 3.2 times.
 const PLATEAU: f64 = 8.0;
@@ -21,8 +21,6 @@ const SAMPLES: usize = 20;
 const MOST: f64 = 0.5;
 /// Part of its width by which more is left out on either side of what is clipped.
 const WIDER: f64 = 0.05;
-/// Most samples that the ellipse is fitted to.
-const ENOUGH: usize = 8192;
 /// Single rails, as the catalogue calls them.
 const RAILS: [[&str; 2]; 2] = [["cos_upper", "cos_lower"], ["sin_upper", "sin_lower"]];
 
@@ -130,18 +128,15 @@ fn finding(rail: &Rail, adc: &Adc, offset: f64, amplitude: f64, left_out: usize)
     }
     let ends = adc.codes();
     let end = rail.code == if rail.lower { ends.0 } else { ends.1 };
+    let count = rail.clipped.len();
     let evidence = format!(
-        "the {} channel is clipped at its {} rail, {} of the amplitude {} its offset: {} its {} code, {}{}",
+        "the {} channel is clipped at its {} rail, {} of the amplitude {} its offset: {} {} its {} code, {}{}",
         ["cos", "sin"][rail.channel],
         if rail.lower { "lower" } else { "upper" },
         parameters[0].brief(),
         if rail.lower { "below" } else { "above" },
-        counted(rail.clipped.len(), "sample")
-            + if rail.clipped.len() == 1 {
-                " has"
-            } else {
-                " have"
-            },
+        counted(count, "sample"),
+        agree(count, "has", "have"),
         if rail.lower { "lowest" } else { "highest" },
         rail.code,
         if end {
@@ -185,21 +180,15 @@ pub(crate) fn rails(recording: &Recording, weight: &mut Vec<f64>) -> Vec<Finding
         leave_out(recording, rail, &mut without);
         left_out.push((before - without.iter().sum::<f64>()) as usize);
     }
-    let sound: Vec<usize> = (0..without.len()).filter(|k| without[*k] > 0.0).collect();
-    if found.is_empty() || (sound.len() as f64) < (1.0 - MOST) * counts.len() as f64 {
+    let sound = without.iter().filter(|w| **w > 0.0).count();
+    if found.is_empty() || (sound as f64) < (1.0 - MOST) * counts.len() as f64 {
         return vec![];
     }
-    let every = sound.len().div_ceil(ENOUGH).max(1);
-    let kept = |values: &[f64]| -> Vec<f64> {
-        let places = sound.iter().step_by(every);
-        places.map(|k| values[*k]).collect()
-    };
-    let (cos, sin) = (kept(&recording.cos), kept(&recording.sin));
-    let Ok(fit) = calibrate(&cos, &sin, Method::Unbiased, &Options::default()) else {
+    let Ok(e) = first::ellipse(recording, &without) else {
         return vec![];
     };
     *weight = without;
-    let (e, adc) = (fit.ellipse, recording.metadata.adc);
+    let adc = recording.metadata.adc;
     let said = |(rail, left_out): (&Rail, usize)| {
         let (adc, offset, amplitude) = if rail.channel == 0 {
             (&adc.cos, e.b_c, e.a_c)

@@ -4,12 +4,11 @@
 use std::f64::consts::{PI, TAU};
 use std::ops::Range;
 
-use nonius_calibration::{Method, Options, calibrate};
 use nonius_quantity::{agree, counted};
 use nonius_recording::{Ellipse, Recording};
 
-/// Most samples that the ellipse is fitted to.
-const ENOUGH: usize = 8192;
+use crate::first;
+
 /// A signal has a radius between these, in amplitudes. Where zero lies there, zeros may be a signal.
 const SIGNAL: Range<f64> = 0.5..1.5;
 /// Samples beside a run that tell how fast the scale moves there.
@@ -45,18 +44,10 @@ pub(crate) fn left_out(recording: &Recording) -> Option<Heard> {
     for run in &runs {
         weight[run.clone()].fill(0.0);
     }
-    let heard: Vec<usize> = (0..n).filter(|k| weight[*k] > 0.0).collect();
-    if runs.is_empty() || heard.len() < 2 {
+    if runs.is_empty() {
         return None;
     }
-    let every = heard.len().div_ceil(ENOUGH);
-    let kept = |values: &[f64]| -> Vec<f64> {
-        let places = heard.iter().step_by(every);
-        places.map(|k| values[*k]).collect()
-    };
-    let (cos, sin) = (kept(&recording.cos), kept(&recording.sin));
-    let fit = calibrate(&cos, &sin, Method::Unbiased, &Options::default()).ok()?;
-    let ellipse = fit.ellipse;
+    let ellipse = first::ellipse(recording, &weight).ok()?;
     if SIGNAL.contains(&(1.0 + ellipse.radial_residual(0.0, 0.0))) {
         return None;
     }

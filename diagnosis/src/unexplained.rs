@@ -1,6 +1,6 @@
 //! What no cause explains, in words: how large it is, where it shows, and what it looks like.
 
-use nonius_quantity::{Quantity, Unit, digits};
+use nonius_quantity::{Quantity, Unit};
 use serde::Serialize;
 
 use crate::cause::Domain;
@@ -84,9 +84,9 @@ impl Unnamed {
         // In white noise, of what its log-likelihood says.
         let likely = noise * (self.gain.max(0.0) / samples.max(1.0)).sqrt();
         let size = place.rms.unwrap_or(likely);
-        let size = Quantity::new(digits(size, 2), 0.0, Unit::Percent).brief();
+        let size = Quantity::rounded(size, 2, Unit::Percent).brief();
         let hertz = hertz.map_or_else(String::new, |f| {
-            let f = Quantity::new(digits(f, 4), 0.0, Unit::Prefixed("Hz"));
+            let f = Quantity::rounded(f, 4, Unit::Prefixed("Hz"));
             format!(", {}", f.brief())
         });
         let (does, place) = (does(domain), place.text);

@@ -14,6 +14,7 @@ use nonius_hdl::verilator::{Effort, simulate};
 use nonius_hdl::{ChipDir, Run};
 use nonius_model::spec::Spec;
 use rayon::prelude::*;
+use tempfile::TempDir;
 
 /// Samples of each stimulus: enough to lock and to calibrate.
 const ROWS: usize = 140;
@@ -74,9 +75,7 @@ const ALLOWED: f64 = 1.25;
 fn without_recall_the_chip_is_not_much_larger_than_a_hand_made_one() {
     let mut spec = shipped::optical();
     spec.calibration.recall = Some(false);
-    let dir = tempfile::tempdir().expect("a scratch folder");
-    chip::write_with(&spec, ROWS, dir.path(), |name| PLAYED.contains(&name));
-    synthesise(dir.path(), &spec.name);
+    let dir = netlist(&spec, |_| ());
     let netlist = fs::read_to_string(dir.path().join("netlist.v")).expect("a netlist");
     let cells = netlist.matches("SB_LUT4 ").count();
     println!("{cells} LUT4");
@@ -84,11 +83,17 @@ fn without_recall_the_chip_is_not_much_larger_than_a_hand_made_one() {
     assert!(cells as f64 <= ALLOWED * PROTOTYPE as f64, "{cells} LUT4");
 }
 
-fn synthesised(spec: &Spec, change: impl Fn(&Path)) -> Run {
+/// A chip, changed, as a netlist.
+fn netlist(spec: &Spec, change: impl Fn(&Path)) -> TempDir {
     let dir = tempfile::tempdir().expect("a scratch folder");
     chip::write_with(spec, ROWS, dir.path(), |name| PLAYED.contains(&name));
     change(dir.path());
     synthesise(dir.path(), &spec.name);
+    dir
+}
+
+fn synthesised(spec: &Spec, change: impl Fn(&Path)) -> Run {
+    let dir = netlist(spec, change);
     ports_only(dir.path());
     let chip = ChipDir::open(dir.path()).expect("a chip");
     let limit = Duration::from_secs(900);

@@ -1,5 +1,6 @@
 //! A measured number: value, standard error, unit.
 
+use crate::plain::digits;
 use crate::prefix::prefix;
 
 /// Digits of a number whose error allows more, or says nothing about them.
@@ -59,6 +60,12 @@ impl<'a> Quantity<'a> {
     #[must_use]
     pub fn new(value: f64, error: f64, unit: Unit<'a>) -> Self {
         Self { value, error, unit }
+    }
+
+    /// So many digits of a number without an error.
+    #[must_use]
+    pub fn rounded(value: f64, n: usize, unit: Unit<'a>) -> Self {
+        Self::new(digits(value, n), 0.0, unit)
     }
 
     /// The error, where it says something.

@@ -1,7 +1,7 @@
 //! What a cause does against what it depends on: means over bins, of what is measured and of what is simulated alike.
 
 use nonius_plot::{Axis, Look, Plot, Series};
-use nonius_quantity::{Quantity, Unit, digits, prefixed};
+use nonius_quantity::{Quantity, Unit, prefixed};
 
 use crate::context::Context;
 
@@ -105,7 +105,7 @@ impl Against {
             Self::Signal(_) => "sin, in amplitudes".into(),
             Self::Code(_, bit) => format!("code modulo {}", 2i64.pow(bit.min(40) + 1)),
             Self::Line(hertz) => {
-                let hertz = Quantity::new(digits(hertz, 5), 0.0, Unit::Prefixed("Hz"));
+                let hertz = Quantity::rounded(hertz, 5, Unit::Prefixed("Hz"));
                 format!("phase of the line at {}, cycles", hertz.brief())
             }
         }

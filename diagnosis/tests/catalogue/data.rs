@@ -74,6 +74,19 @@ fn rows_of_zeros_hold_no_signal() {
     }
 }
 
+/// A glitch leaves out itself and its neighbours, not the rows without signal that were left out before it.
+#[test]
+fn a_glitch_beside_rows_of_zeros_counts_its_own_samples() {
+    let found = damaged(&PLAIN, |rows| {
+        for row in &mut rows[..400] {
+            (row[1], row[2]) = (0.0, 0.0);
+        }
+        rows[9000][1] += 0.2;
+    });
+    assert_eq!(names(&found), ["glitches"]);
+    assert_eq!(found.findings[0].gain.repaired_samples, Some(3));
+}
+
 /// A single row of zeros within a recording is a sample that is far off like any other.
 #[test]
 fn a_single_row_of_zeros_is_a_glitch() {

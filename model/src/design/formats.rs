@@ -374,8 +374,7 @@ pub(super) fn constants(
             exp2((6.0 * spec.sensor.noise_rms).max(0.05).log2().ceil() as i64),
             f.min(8),
         ),
-        // Above what a promised sensor leaves of e in lock, below what a stop or a start makes of it.
-        completion_error: Constant::rounded(0.0625, 4),
+        completion_error: Constant::rounded(Calibration::CATCHES_UP, 4),
         travel_samples_last: whole(travel_samples(spec).into()),
         gamma_gear_settled: whole(Calibration::SETTLED.into()),
         gamma_gear_last: whole(structure.calibration.gears().into()),

@@ -190,7 +190,7 @@ pub fn config(spec: &Spec) -> Result<Config, ReferenceError> {
             // A loop of type 1 always lags.
             settled: (k.settles() && spec.tracking.filter_type == 2)
                 .then_some(Calibration::SETTLED),
-            e: 0.0625,
+            e: Calibration::CATCHES_UP,
         }),
         gamma: Gamma {
             first,

@@ -109,6 +109,8 @@ impl Calibration {
     pub const HELD: u32 = 32;
     /// The same of those of which something is known, where the design does not say.
     pub const HELD_KNOWN: u32 = 256;
+    /// |e| from which on the loop catches up with a stop or a start, radians: above what a promised sensor leaves of it in lock.
+    pub const CATCHES_UP: f64 = 0.0625;
     /// Halvings of the phase's step then, in the final form of five parameters.
     pub const PHASE_HALVINGS: u32 = 2;
 
