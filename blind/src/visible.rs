@@ -102,7 +102,7 @@ impl Visible {
                 column /= size;
             }
         }
-        let mut normal = nuisance.tr_mul(&nuisance);
+        let mut normal = products(&nuisance, calibration.len());
         for j in 0..columns {
             normal[(j, j)] += 1e-12;
         }
@@ -153,6 +153,23 @@ impl Visible {
         let across = pairs().map(|((c, s), v)| s * v[0] - c * v[1]);
         DVector::from_iterator(2 * n, tangential.into_iter().chain(across))
     }
+}
+
+/// Products of all nuisances. Those of motion, which come after the first ones, have nothing across it, and are many: as a product of
+/// matrices that takes a tenth of the time that it would as one of each column with each.
+fn products(nuisance: &DMatrix<f64>, first: usize) -> DMatrix<f64> {
+    let (rows, columns) = nuisance.shape();
+    let mut normal = DMatrix::zeros(columns, columns);
+    let calibration = nuisance.tr_mul(&nuisance.columns(0, first));
+    normal
+        .view_mut((0, 0), (columns, first))
+        .copy_from(&calibration);
+    let mut right = normal.view_mut((0, 0), (first, columns));
+    right.copy_from(&calibration.transpose());
+    let motion = nuisance.view((0, first), (rows / 2, columns - first));
+    let mut motions = normal.view_mut((first, first), (columns - first, columns - first));
+    motions.gemm(1.0, &motion.transpose(), &motion, 0.0);
+    normal
 }
 
 /// Changes of the two channels with each calibration parameter, by differences.

@@ -1,20 +1,19 @@
 //! The columns of a block of samples side by side, and their products.
 
-use std::ops::Range;
+use nalgebra::DMatrix;
 
-use nalgebra::{DMatrix, DMatrixView, Dyn};
-
-use crate::solve::dot;
 use crate::whiten::ORDER;
 
 /// Samples of a block: its functions fit the cache.
 pub(crate) const CHUNK: usize = 1024;
 /// Between the columns of a block: the past of each stands before it.
 pub(crate) const STRIDE: usize = CHUNK + ORDER;
-/// Columns that are multiplied together.
-const PANEL: usize = 48;
-/// Fewest columns, and samples, that are worth a matrix product.
-const WORTH: usize = 6;
+/// Samples whose products are summed at once: those of all columns fit the second cache.
+const STRETCH: usize = 256;
+/// Columns that are multiplied with [`RIGHT`] others at once: as many sums as there are registers.
+const LEFT: usize = 4;
+/// See [`LEFT`].
+const RIGHT: usize = 3;
 
 /// The columns of a row in a block: atoms in the order asked for, then the data.
 #[derive(Default)]
@@ -40,50 +39,95 @@ impl Part {
         }
     }
 
-    /// Adds the products of columns `a` with columns `b` to a matrix of all by all.
-    fn products(&self, white: bool, a: Range<usize>, b: Range<usize>, sums: &mut DMatrix<f64>) {
-        // Fewer samples than that nalgebra would take through its vector product, which reads strided rows as columns.
-        if a.len().min(b.len()).min(self.samples) < WORTH {
-            for i in a {
-                let left = self.column(white, i);
-                for j in b.clone() {
-                    sums[(i, j)] += dot(left, self.column(white, j));
+    /// Adds all products of columns from `fresh` on with all columns; only those above the diagonal count.
+    pub(crate) fn add_products(&self, white: bool, fresh: usize, sums: &mut DMatrix<f64>) {
+        for from in (0..self.samples).step_by(STRETCH) {
+            let stretch = from..(from + STRETCH).min(self.samples);
+            let column = |i: usize| &self.column(white, i.min(self.columns - 1))[stretch.clone()];
+            for j in (fresh..self.columns).step_by(RIGHT) {
+                let right = std::array::from_fn(|b| column(j + b));
+                let last = (j + RIGHT).min(self.columns);
+                for i in (0..last).step_by(LEFT) {
+                    let tile = tile(std::array::from_fn(|a| column(i + a)), right);
+                    // Past the last column it stands again.
+                    for (row, i) in tile.iter().zip(i..last) {
+                        for (product, j) in row.iter().zip(j..last) {
+                            sums[(i, j)] += product;
+                        }
+                    }
                 }
             }
-            return;
         }
-        let values = self.values(white);
-        let n = Dyn(self.samples);
-        let (left, right) = (
-            &values[a.start * STRIDE + ORDER..],
-            &values[b.start * STRIDE + ORDER..],
-        );
-        // Lying down: the transpose, without moving a number.
-        let left: DMatrixView<f64, Dyn, Dyn> = DMatrixView::from_slice_with_strides_generic(
-            left,
-            Dyn(a.len()),
-            n,
-            Dyn(STRIDE),
-            Dyn(1),
-        );
-        let right: DMatrixView<f64, Dyn, Dyn> = DMatrixView::from_slice_with_strides_generic(
-            right,
-            n,
-            Dyn(b.len()),
-            Dyn(1),
-            Dyn(STRIDE),
-        );
-        sums.view_mut((a.start, b.start), (a.len(), b.len()))
-            .gemm(1.0, &left, &right, 1.0);
     }
+}
 
-    /// Adds all products of columns from `fresh` on with all columns; only those above the diagonal of panels count.
-    pub(crate) fn add_products(&self, white: bool, fresh: usize, sums: &mut DMatrix<f64>) {
-        for b in (fresh..self.columns).step_by(PANEL) {
-            let b = b..(b + PANEL).min(self.columns);
-            for a in (0..b.end).step_by(PANEL) {
-                self.products(white, a..(a + PANEL).min(b.end), b.clone(), sums);
-            }
+/// Products of columns of the same samples. The columns are long and few: a matrix product for all shapes would spend most of its
+/// time on arranging them anew. Nothing is fused, so every processor finds the same sums.
+#[multiversion::multiversion(targets("x86_64+avx2"))]
+fn tile(left: [&[f64]; LEFT], right: [&[f64]; RIGHT]) -> [[f64; RIGHT]; LEFT] {
+    let count = right[0].len() / LANES;
+    let ([a0, a1, a2, a3], [b0, b1, b2]) = (
+        left.map(|c| lanes(c, count)),
+        right.map(|c| lanes(c, count)),
+    );
+    // Each has a register, which the compiler sees only where all are named.
+    let [mut s00, mut s01, mut s02] = [[0.0; LANES]; RIGHT];
+    let [mut s10, mut s11, mut s12] = [[0.0; LANES]; RIGHT];
+    let [mut s20, mut s21, mut s22] = [[0.0; LANES]; RIGHT];
+    let [mut s30, mut s31, mut s32] = [[0.0; LANES]; RIGHT];
+    for ((((((x0, x1), x2), x3), y0), y1), y2) in
+        a0.iter().zip(a1).zip(a2).zip(a3).zip(b0).zip(b1).zip(b2)
+    {
+        (
+            add(&mut s00, x0, y0),
+            add(&mut s01, x0, y1),
+            add(&mut s02, x0, y2),
+        );
+        (
+            add(&mut s10, x1, y0),
+            add(&mut s11, x1, y1),
+            add(&mut s12, x1, y2),
+        );
+        (
+            add(&mut s20, x2, y0),
+            add(&mut s21, x2, y1),
+            add(&mut s22, x2, y2),
+        );
+        (
+            add(&mut s30, x3, y0),
+            add(&mut s31, x3, y1),
+            add(&mut s32, x3, y2),
+        );
+    }
+    let rows = [
+        [s00, s01, s02],
+        [s10, s11, s12],
+        [s20, s21, s22],
+        [s30, s31, s32],
+    ];
+    let mut sums = rows.map(|row| row.map(|lanes| lanes.iter().sum::<f64>()));
+    for (row, left) in sums.iter_mut().zip(left) {
+        for (sum, right) in row.iter_mut().zip(right) {
+            let rest = left.iter().zip(right).skip(count * LANES);
+            *sum += rest.map(|(x, y)| x * y).sum::<f64>();
         }
+    }
+    sums
+}
+
+/// Samples that are multiplied at once.
+const LANES: usize = 4;
+
+/// So many groups of samples.
+#[inline(always)]
+fn lanes(column: &[f64], count: usize) -> &[[f64; LANES]] {
+    &column.as_chunks::<LANES>().0[..count]
+}
+
+/// Adds products.
+#[inline(always)]
+fn add(sums: &mut [f64; LANES], x: &[f64; LANES], y: &[f64; LANES]) {
+    for lane in 0..LANES {
+        sums[lane] += x[lane] * y[lane];
     }
 }

@@ -56,7 +56,7 @@ fn main() -> ExitCode {
 /// With a folder for the page the long campaign, without one the short.
 fn run(docs: Option<&Path>) -> Result<bool, Box<dyn Error>> {
     let Some(docs) = docs else {
-        let some: Vec<Variant> = everything().into_iter().step_by(20).collect();
+        let some: Vec<Variant> = everything().into_iter().step_by(50).collect();
         let lines: Result<Vec<String>, String> =
             some.par_iter().map(|v| run_one(v, SHORT)).collect();
         let page = lines?.concat();

@@ -41,10 +41,10 @@ fn agrees_on(
 }
 
 /// Nobody's linter has anything to say, without waivers: Verilator -Wall, Icarus -Wall, Yosys check. Of all
-/// variants every sixth; what a simulator warns of when it builds the others is seen below.
+/// variants every twelfth; what a simulator warns of when it builds the others is seen below.
 #[test]
 fn variants_are_clean() {
-    let some: Vec<Variant> = variants::everything().into_iter().step_by(6).collect();
+    let some: Vec<Variant> = variants::everything().into_iter().step_by(12).collect();
     some.par_iter().for_each(|Variant { what, spec }| {
         let dir = tempfile::tempdir().expect("scratch folder");
         write(spec, 2, dir.path());
@@ -87,18 +87,18 @@ fn shipped_designs_in_icarus_and_verilator() {
     });
 }
 
-/// Every search with its largest parameter set in Verilator and each third in Icarus, each second with the smaller one; in the
+/// Every search with its largest parameter set in Verilator and each fourth in Icarus, each third with the smaller one; in the
 /// long campaign all in both.
 #[test]
 fn searches_in_icarus_and_verilator() {
     let searches = variants::searches().into_iter();
     let (largest, smaller): (Vec<_>, Vec<_>) = searches.partition(Variant::is_largest);
-    agree(&largest, 3);
-    let some: Vec<Variant> = smaller.into_iter().step_by(2).collect();
+    agree(&largest, 4);
+    let some: Vec<Variant> = smaller.into_iter().step_by(3).collect();
     agree(&some, some.len());
 }
 
-/// Loops, ADCs and numbers of multipliers, here every third, and designs with every word said; in the long campaign all.
+/// Loops, ADCs and numbers of multipliers, here every fifth, and designs with every word said; in the long campaign all.
 #[test]
 fn every_other_variant_in_icarus_and_verilator() {
     let others = [
@@ -110,7 +110,7 @@ fn every_other_variant_in_icarus_and_verilator() {
         variants::adcs(),
         variants::multipliers(),
     ];
-    let others: Vec<Variant> = others.into_iter().flatten().step_by(3).collect();
+    let others: Vec<Variant> = others.into_iter().flatten().step_by(5).collect();
     agree(&others, 4);
     agree(&variants::words(), 2);
     // Narrow loops take longer to lock.
@@ -119,9 +119,11 @@ fn every_other_variant_in_icarus_and_verilator() {
         .for_each(|variant| agrees(variant, 300, &VERILATOR));
 }
 
+/// Each way to place the products and each type of loop; in the long campaign all.
 #[test]
 fn skews_in_icarus_and_verilator() {
-    agree(&variants::skewed(), 5);
+    let some: Vec<Variant> = variants::skewed().into_iter().step_by(2).collect();
+    agree(&some, 3);
 }
 
 /// Rows enough for the last gear, a hold in it and a return; fewer in the simulator that is slower.
