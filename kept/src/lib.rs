@@ -50,6 +50,31 @@ pub fn near(file: &Path, text: &str, slack: impl Fn(f64) -> f64, how: &str) {
     }
 }
 
+/// Every file of tests of a package is a module of the program that `root` is the text of, but for those that are programs of their
+/// own.
+///
+/// # Panics
+/// One is not.
+#[track_caller]
+pub fn every_module(package: &str, root: &str, alone: &[&str]) {
+    let tests = Path::new(package).join("tests");
+    let files = fs::read_dir(&tests).unwrap_or_else(|e| panic!("{}: {e}", tests.display()));
+    for file in files {
+        let path = file
+            .unwrap_or_else(|e| panic!("{}: {e}", tests.display()))
+            .path();
+        let name = path
+            .file_stem()
+            .and_then(|n| n.to_str())
+            .unwrap_or_default();
+        let source = path.extension().is_some_and(|e| e == "rs");
+        if source && !alone.contains(&name) && name != "all" {
+            let here = root.contains(&format!("\nmod {name};\n"));
+            assert!(here, "{}: no module of all.rs", path.display());
+        }
+    }
+}
+
 /// Words and numbers, one after the other.
 fn parts(text: &str) -> impl Iterator<Item = &str> {
     let number = |c: char| c.is_ascii_digit() || c == '.' || c == '-';

@@ -2,20 +2,18 @@
 //!
 //! The table is kept in docs/accuracy.md; NONIUS_BLESS=1 writes it anew.
 
-mod support;
-
 use std::fmt::Write;
 use std::path::Path;
 
+use crate::support::{Encoder, shipped, wrapped};
 use nonius_model::bits::Bits;
 use nonius_model::chip::Chip;
 use nonius_model::design::Design;
 use nonius_model::kernel::{Input, State};
 use nonius_model::signal::Signal;
 use nonius_model::spec::{Coding, Spec};
-use support::{Encoder, shipped, wrapped};
 
-const HOW: &str = "NONIUS_BLESS=1 cargo test -p nonius-model --test accuracy";
+const HOW: &str = "NONIUS_BLESS=1 cargo test -p nonius-model accuracy";
 
 /// After convergence, on a slow sweep with the same codes, the bit-true chip differs from the unrounded one by at
 /// most a tenth of what quantising the input changes in the unrounded one.

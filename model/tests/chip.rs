@@ -1,13 +1,10 @@
 //! The chip as a whole: it locks, follows, calibrates, and its three readings agree.
 
-mod graph_support;
-mod support;
-
-use graph_support::graph_equals_chip;
+use crate::graph_support::graph_equals_chip;
+use crate::support::{Encoder, optical, wrapped};
 use nonius_model::chip::Chip;
 use nonius_model::design::Design;
 use nonius_model::spec::{CalibrationMethod, CalibrationStart};
-use support::{Encoder, optical, wrapped};
 
 /// From rest into any speed up to the promised one, from any phase, with a miscalibrated sensor.
 #[test]

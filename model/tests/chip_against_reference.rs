@@ -3,18 +3,15 @@
 //! The chip makes decisions that the paper does not know (γ shifts gear, each sector of travel counts once, what was found is applied
 //! where a period ends, the modes are equalised). The reference is told them sample by sample; everything else it computes from the physical design.
 
-mod agreement;
-mod support;
-
 use std::f64::consts::TAU;
 
-use agreement::{Difference, WorstCase, compare, equaliser};
+use crate::agreement::{Difference, WorstCase, compare, equaliser};
+use crate::support::shipped::variants::third_and_fifth;
+use crate::support::{Encoder, optical};
 use nonius_model::chip::Chip;
 use nonius_model::design::Design;
 use nonius_model::reference::gate::{Gate, GateState, Window};
 use nonius_model::spec::{Coding, Spec};
-use support::shipped::variants::third_and_fifth;
-use support::{Encoder, optical};
 
 /// Each structure of the chip that differs in an equation.
 fn structures() -> Vec<(String, Spec)> {
@@ -78,7 +75,7 @@ fn structures() -> Vec<(String, Spec)> {
     binary.sensor.amplitude = 0.3;
     list.push(("offset binary, 14 bits, amplitude 0.3".into(), binary));
     for name in ["magnetic", "interferometer"] {
-        list.push((name.into(), support::shipped::spec(name)));
+        list.push((name.into(), crate::support::shipped::spec(name)));
     }
     list
 }

@@ -1,10 +1,8 @@
 //! Eight and nine parameters on the chip: what the radius shows and what only the completion does.
 
-mod chip_support;
-
 use std::f64::consts::TAU;
 
-use chip_support::{Bench, optical, order, rms};
+use crate::chip_support::{Bench, optical, order, rms};
 use nonius_kept::figure;
 use nonius_model::spec::{CalibrationMethod, Spec};
 

@@ -1,11 +1,9 @@
 //! What the flags and the zero preset say to the machine.
 
-mod support;
-
+use crate::support::{Encoder, optical};
 use nonius_model::bits::Bits;
 use nonius_model::chip::Chip;
 use nonius_model::design::Design;
-use support::{Encoder, optical};
 
 /// A locked chip behind an ideal sensor, and where the sensor is, in periods.
 struct Machine {

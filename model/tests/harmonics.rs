@@ -2,17 +2,15 @@
 //!
 //! The numbers are kept in docs/harmonics-measured.md; NONIUS_BLESS=1 writes it anew.
 
-mod chip_support;
-
 use std::f64::consts::TAU;
 use std::fmt::Write;
 use std::path::Path;
 
-use chip_support::shipped::{
+use crate::chip_support::shipped::{
     self,
     variants::{harmonics, third_and_fifth},
 };
-use chip_support::{Bench, optical, rms};
+use crate::chip_support::{Bench, optical, rms};
 use nonius_model::bits::Bits;
 use nonius_model::chip::Chip;
 use nonius_model::design::Design;
@@ -198,7 +196,7 @@ fn the_table_holds_at_every_phase() -> String {
 
 #[test]
 fn what_the_page_says() {
-    let how = "NONIUS_BLESS=1 cargo test -p nonius-model --test harmonics";
+    let how = "NONIUS_BLESS=1 cargo test -p nonius-model harmonics";
     let page = format!(
         "# Stored harmonics, measured\n\nWritten by `{how}`; do not edit.\n\n\
          ## The chip behind a sensor with third and fifth harmonics of free phase\n\n\

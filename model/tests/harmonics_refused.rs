@@ -1,12 +1,10 @@
 //! Harmonics that no table mends are refused with their field and its line.
 
-mod support;
-
+use crate::support::shipped::variants::third_and_fifth;
+use crate::support::{optical, shipped};
 use nonius_model::design::{Design, DesignError, ORDER_MAX};
 use nonius_model::spec::{Harmonic, Place, Spec};
 use proptest::prelude::*;
-use support::shipped::variants::third_and_fifth;
-use support::{optical, shipped};
 
 fn text() -> String {
     shipped::text("optical")

@@ -1,12 +1,10 @@
 //! What on-line calibration of the bit-true chip reaches, figure by figure.
 
-mod chip_support;
-
 use std::f64::consts::TAU;
 
-use chip_support::loss::sensor_for;
-use chip_support::shipped::variants::searches_of;
-use chip_support::{Bench, course, course_at, fast, largest, optical};
+use crate::chip_support::loss::sensor_for;
+use crate::chip_support::shipped::variants::searches_of;
+use crate::chip_support::{Bench, course, course_at, fast, largest, optical};
 use nonius_kept::figure;
 use nonius_model::spec::{CalibrationMethod, Spec};
 use rayon::prelude::*;

@@ -1,12 +1,10 @@
 //! Calibration that is broken off, and a signal that falls out while the sensor changes.
 
-mod chip_support;
-
 use std::f64::consts::TAU;
 
-use chip_support::bent::{RATE, bent_sensor, slow};
-use chip_support::loss::{PERIOD, sensor_for};
-use chip_support::{Bench, largest, optical};
+use crate::chip_support::bent::{RATE, bent_sensor, slow};
+use crate::chip_support::loss::{PERIOD, sensor_for};
+use crate::chip_support::{Bench, largest, optical};
 use nonius_kept::figure;
 use rayon::prelude::*;
 

@@ -1,13 +1,11 @@
 //! Loss of signal and return to it, at every sample from the first of the loss on: what it does to the parameters.
 
-mod chip_support;
-
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 use std::path::Path;
 
-use chip_support::loss::{Loss, PERIOD, Seen, Settled, each_settled, watch, watch_for};
-use chip_support::shipped::variants::{Variant, searches};
+use crate::chip_support::loss::{Loss, PERIOD, Seen, Settled, each_settled, watch, watch_for};
+use crate::chip_support::shipped::variants::{Variant, searches};
 use rayon::prelude::*;
 
 /// Samples without a signal.
@@ -82,7 +80,7 @@ followed in the fade of 100 periods as if the sensor had changed; the periods of
 |---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|
 ";
 
-const HOW: &str = "NONIUS_BLESS=1 cargo test -p nonius-model --test on_line_loss";
+const HOW: &str = "NONIUS_BLESS=1 cargo test -p nonius-model on_line_loss";
 
 /// A loss within a third of a period, or at standstill, leaves the parameters where they were, but for their own noise. Fades of
 /// three to five hundred periods, which for some of the way are small changes of amplitude like any, and of up to a thousand before the

@@ -1,10 +1,8 @@
 //! An axis that goes from place to place: parameters stay while it gathers speed, brakes and rests.
 
-mod chip_support;
-
 use std::f64::consts::TAU;
 
-use chip_support::{Bench, largest, optical, sensor};
+use crate::chip_support::{Bench, largest, optical, sensor};
 use nonius_kept::figure;
 use rayon::prelude::*;
 

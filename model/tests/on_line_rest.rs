@@ -4,13 +4,11 @@
 //! lasts. The sum of squares moves them with every sector, each once between two clearings of the map, which is cleared where the
 //! position is a whole period from where it was last: there it takes no more than what is left of one map.
 
-mod chip_support;
-
 use std::f64::consts::TAU;
 
-use chip_support::Bench;
-use chip_support::bent::{RATE, bent_sensor, noise, parameters, slow};
-use chip_support::shipped::variants::{Variant, searches};
+use crate::chip_support::Bench;
+use crate::chip_support::bent::{RATE, bent_sensor, noise, parameters, slow};
+use crate::chip_support::shipped::variants::{Variant, searches};
 use nonius_kept::figure;
 use rayon::prelude::*;
 

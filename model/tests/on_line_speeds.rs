@@ -1,10 +1,8 @@
 //! Lock and calibration at speeds commensurate with the sample rate, down to four samples a period.
 
-mod chip_support;
-
 use std::f64::consts::TAU;
 
-use chip_support::{Bench, fast, rms, sensor};
+use crate::chip_support::{Bench, fast, rms, sensor};
 use nonius_kept::figure;
 use nonius_model::spec::{CalibrationMethod, Spec};
 use rayon::prelude::*;

@@ -1,10 +1,8 @@
 //! The start by least squares: Θ in two periods of travel.
 
-mod chip_support;
-
 use std::f64::consts::TAU;
 
-use chip_support::{Bench, course, fast, rms, sensor};
+use crate::chip_support::{Bench, course, fast, rms, sensor};
 use nonius_kept::figure;
 use nonius_model::spec::{CalibrationMethod, CalibrationStart, Spec};
 

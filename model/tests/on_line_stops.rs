@@ -2,13 +2,11 @@
 //!
 //! While the loop catches up by e, the residual holds e²/2, which is no error of the sensor. A period that ends then takes it along.
 
-mod chip_support;
-
 use std::f64::consts::TAU;
 
-use chip_support::Bench;
-use chip_support::bent::{RATE, bent_sensor, noise, parameters, slow};
-use chip_support::shipped::variants::{Variant, searches};
+use crate::chip_support::Bench;
+use crate::chip_support::bent::{RATE, bent_sensor, noise, parameters, slow};
+use crate::chip_support::shipped::variants::{Variant, searches};
 use nonius_kept::figure;
 use rand::{Rng, SeedableRng, rngs::StdRng};
 use rayon::prelude::*;

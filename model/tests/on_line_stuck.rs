@@ -1,13 +1,11 @@
 //! A channel that is stuck at any level for any time leaves nothing in the parameters; a sensor that has
 //! changed for good is learned again.
 
-mod chip_support;
-
 use std::f64::consts::TAU;
 
-use chip_support::loss::{Loss, PERIOD, each_settled, sensor_for, watch};
-use chip_support::shipped::variants::{Variant, searches};
-use chip_support::{Bench, largest, optical};
+use crate::chip_support::loss::{Loss, PERIOD, each_settled, sensor_for, watch};
+use crate::chip_support::shipped::variants::{Variant, searches};
+use crate::chip_support::{Bench, largest, optical};
 use nonius_kept::figure;
 use rand::{Rng, SeedableRng, rngs::StdRng};
 use rayon::prelude::*;

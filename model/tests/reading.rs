@@ -1,10 +1,8 @@
 //! What is no design is told with its place and the way out; no text makes the reader panic.
 
-mod support;
-
+use crate::support::shipped;
 use nonius_model::spec::{Place, Spec};
 use proptest::prelude::*;
-use support::shipped;
 
 fn text() -> String {
     shipped::text("optical")

@@ -1,11 +1,9 @@
 //! What the paper argues against: the open-loop arctangent, and the extremes of the signals.
 
-mod reference_support;
-
+use crate::reference_support::{MISCALIBRATED, Noise, TS};
 use nonius_model::reference::Parameters;
 use nonius_model::reference::baseline::{Baseline, OpenLoop};
 use nonius_model::reference::extremes::PeriodExtremes;
-use reference_support::{MISCALIBRATED, Noise, TS};
 
 const SPEED: f64 = 0.05;
 

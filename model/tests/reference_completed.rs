@@ -1,7 +1,6 @@
 //! The completed gradient: what the radius cannot show, one scalar sensitivity can.
 
-mod reference_support;
-
+use crate::reference_support::{Noise, TS, miscalibration, order, type_2, wrapped};
 use nalgebra::Complex;
 use nonius_model::reference::completed::CompletedConfig;
 use nonius_model::reference::gate::Gate;
@@ -9,7 +8,6 @@ use nonius_model::reference::gradient::Form;
 use nonius_model::reference::interpolator::{Gamma, Search};
 use nonius_model::reference::start::Start;
 use nonius_model::reference::{Config, Parameters, Reference, Steps};
-use reference_support::{Noise, TS, miscalibration, order, type_2, wrapped};
 
 const COMPLETED: Search = Search::Completed(CompletedConfig {
     gamma_v: 0.02,

@@ -1,16 +1,14 @@
 //! Section 5.5: the gradient of the residual, and what its approximations cost.
 
-mod reference_support;
-
 use std::f64::consts::TAU;
 
+use crate::reference_support::{MISCALIBRATED, TS, type_2};
 use nalgebra::RowSVector;
 use nonius_model::reference::gradient::{Observation, Recursion};
 use nonius_model::reference::loops::Loop;
 use nonius_model::reference::sum_of_squares::{gradient, objective};
 use nonius_model::reference::{Parameters, Sensor, Theta};
 use proptest::prelude::*;
-use reference_support::{MISCALIBRATED, TS, type_2};
 
 /// A Θ of this set, away from the calibrated one by `size`.
 fn near(set: Parameters, theta: Theta, size: f64) -> Theta {

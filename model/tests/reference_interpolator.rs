@@ -1,17 +1,14 @@
 //! The paper's system as a whole: Figure 7, every search, and the guards that the paper leaves out.
 
-mod reference_support;
-mod support;
-
 use std::f64::consts::TAU;
 
+use crate::reference_support::{MISCALIBRATED, Noise, TS, miscalibration, type_2, wrapped};
 use nonius_model::reference::gate::{Gate, Window};
 use nonius_model::reference::gradient::Form;
 use nonius_model::reference::interpolator::{Gamma, Search};
 use nonius_model::reference::start::Start;
 use nonius_model::reference::sum_of_squares::{Smoothing, SumOfSquares, gradient, search};
 use nonius_model::reference::{Config, Parameters, Reference, Sensor, Theta, from_spec, heydemann};
-use reference_support::{MISCALIBRATED, Noise, TS, miscalibration, type_2, wrapped};
 
 const SPEED: f64 = 0.05;
 const FINAL: Search = Search::Residual(Form::Final);
@@ -309,7 +306,7 @@ fn parameters_stay_within_their_bounds() {
 /// The reference of a shipped design runs on its signals: it locks, calibrates, and follows to the noise.
 #[test]
 fn a_design_makes_a_reference() {
-    let spec = support::optical();
+    let spec = crate::support::optical();
     let normalise = from_spec::Normalise::of(&spec);
     let mut reference =
         Reference::new(from_spec::config(&spec).expect("a design that the paper knows"))

@@ -1,9 +1,8 @@
 //! Section 4: what the paper says of its three loops.
 
-mod reference_support;
-
 use std::f64::consts::TAU;
 
+use crate::reference_support::TS;
 use nalgebra::{Complex, Matrix2, Vector2};
 use nonius_model::reference::ReferenceError;
 use nonius_model::reference::loops::{
@@ -11,7 +10,6 @@ use nonius_model::reference::loops::{
 };
 use nonius_model::reference::poles::Poles;
 use proptest::prelude::*;
-use reference_support::TS;
 
 const METHODS: [Method; 5] = [
     Method::One(FilterType::One { pole: 0.6 }),

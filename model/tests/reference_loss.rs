@@ -1,13 +1,10 @@
 //! Loss of signal and return in `f64`: the reference of a design holds its parameters as the chip does.
 
-mod reference_support;
-mod support;
-
 use std::f64::consts::TAU;
 
+use crate::reference_support::{MISCALIBRATED, Noise, miscalibration};
 use nonius_model::reference::{Reference, from_spec};
 use nonius_model::spec::{CalibrationMethod, Spec};
-use reference_support::{MISCALIBRATED, Noise, miscalibration};
 
 /// Samples of a period of travel.
 const PERIOD: u32 = 151;
@@ -56,7 +53,7 @@ fn a_fading_signal_does_not_take_the_parameters_with_it() {
         (CalibrationMethod::SumOfSquares, 5),
         (CalibrationMethod::Batch, 5),
     ] {
-        let mut spec = support::optical();
+        let mut spec = crate::support::optical();
         spec.calibration.method = method;
         spec.calibration.parameters = parameters;
         for (periods, more) in [(0, 2e-4), (3, 5e-3), (10, 5e-3), (33, 5e-3)] {
@@ -78,7 +75,7 @@ fn recalled_parameters_know_nothing_of_a_fade() {
         (CalibrationMethod::Final, 5),
         (CalibrationMethod::SumOfSquares, 5),
     ] {
-        let mut spec = support::optical();
+        let mut spec = crate::support::optical();
         spec.calibration.method = method;
         spec.calibration.parameters = parameters;
         let left = |periods: u32, recall: bool| {

@@ -1,7 +1,5 @@
 //! Section 5.4 is singular: one direction of the eight cubic parameters changes no radius, but turns the angle.
 
-mod reference_support;
-
 use std::f64::consts::TAU;
 
 use nalgebra::{DMatrix, DVector};

@@ -1,13 +1,11 @@
 //! Equations (1), (4), (5) and the parameters of sections 5.2 to 5.4.
 
-mod reference_support;
-
 use std::f64::consts::TAU;
 
+use crate::reference_support::{MISCALIBRATED, Noise};
 use nonius_model::reference::sensor::Scale;
 use nonius_model::reference::{Parameters, Sensor, extremes, heydemann};
 use proptest::prelude::*;
-use reference_support::{MISCALIBRATED, Noise};
 
 prop_compose! {
     fn sensors()(

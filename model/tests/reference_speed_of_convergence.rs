@@ -1,17 +1,15 @@
 //! How many periods of travel the on-line searches take, with 12-bit codes and 0.1 % noise: the paper's single γ, γ with
 //! the modes equalised, and a start by recursive least squares.
 
-mod reference_support;
-
 use std::f64::consts::TAU;
 
+use crate::reference_support::{Noise, miscalibration, type_2};
 use nonius_model::reference::gate::{Gate, Window};
 use nonius_model::reference::gradient::Form;
 use nonius_model::reference::interpolator::{Gamma, Search};
 use nonius_model::reference::recursive::StartConfig;
 use nonius_model::reference::start::Start;
 use nonius_model::reference::{Config, Parameters, Reference, Sensor, Steps};
-use reference_support::{Noise, miscalibration, type_2};
 
 const SET: Parameters = Parameters::Five;
 /// Samples of a period: the fewest promised.

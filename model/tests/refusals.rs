@@ -1,13 +1,11 @@
 //! Designs that cannot work are refused with the field and the way out.
 
-mod support;
-
+use crate::support::{Encoder, optical, shipped, wrapped};
 use nonius_model::design::{Design, DesignError, Words};
 use nonius_model::spec::{
     CalibrationMethod, CalibrationStart, Multipliers, Overrides, Place, Spec, keys,
 };
 use proptest::prelude::*;
-use support::{Encoder, optical, shipped, wrapped};
 
 #[test]
 fn numbers_in_messages_are_short() {

@@ -1,16 +1,14 @@
 //! The words that the analysis chooses are as short as the budget lets them be, and longer where more is asked.
 
-mod support;
-
 use std::collections::{BTreeMap, BTreeSet};
 
+use crate::support::codes;
+use crate::support::shipped::variants::with_every_word;
+use crate::support::shipped::words::{all_said, key, say, with};
 use nonius_model::chip::Chip;
 use nonius_model::design::Design;
 use nonius_model::spec::{Overrides, Spec};
 use proptest::prelude::*;
-use support::codes;
-use support::shipped::variants::with_every_word;
-use support::shipped::words::{all_said, key, say, with};
 
 /// One bit less than chosen, of any word of any chip, misses the budget or cannot be built, as values of a table coarser than what
 /// is read of them. What costs no accuracy has what else decides it.

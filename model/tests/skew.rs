@@ -1,10 +1,8 @@
 //! A sine that is sampled later than the cosine: the chip that knows by how much, against the one that does not.
 
-mod chip_support;
-
 use std::f64::consts::TAU;
 
-use chip_support::{Bench, optical, rms, shipped};
+use crate::chip_support::{Bench, optical, rms, shipped};
 use nonius_model::bits::Bits;
 use nonius_model::chip::Chip;
 use nonius_model::design::{Design, PHASE_MAX};

@@ -1,19 +1,16 @@
 //! Every word length that the analysis chooses may be overridden; what cannot be is refused with its limits.
 
-mod graph_support;
-mod support;
-
 use std::collections::BTreeSet;
 
-use graph_support::graph_equals_chip;
+use crate::graph_support::graph_equals_chip;
+use crate::support::shipped::variants::{self, with_every_word};
+use crate::support::shipped::words::{all_said, key, say, with};
+use crate::support::{codes, optical, wrapped};
 use nonius_model::chip::Chip;
 use nonius_model::design::{Design, DesignError};
 use nonius_model::kernel::Input;
 use nonius_model::spec::{CalibrationMethod, Overrides};
 use proptest::prelude::*;
-use support::shipped::variants::{self, with_every_word};
-use support::shipped::words::{all_said, key, say, with};
-use support::{codes, optical, wrapped};
 
 #[test]
 fn what_the_analysis_chooses_may_be_said() {
