@@ -11,7 +11,7 @@ use crate::support::{Encoder, optical};
 use nonius_model::chip::Chip;
 use nonius_model::design::Design;
 use nonius_model::reference::gate::{Gate, GateState, Window};
-use nonius_model::spec::{Coding, Spec};
+use nonius_model::spec::{CalibrationMethod, Coding, Spec};
 
 /// Each structure of the chip that differs in an equation.
 fn structures() -> Vec<(String, Spec)> {
@@ -67,6 +67,30 @@ fn structures() -> Vec<(String, Spec)> {
         spec.correction.channel_skew_s = delay;
         spec.correction.harmonics = third_and_fifth();
         let name = format!("method {method}, {parameters} parameters, harmonics, skew {delay} s");
+        list.push((name, spec));
+    }
+    // Searches that remember: recursion (11) through each kind of loop filter, and the mean gradient of the squares.
+    for (method, filter_type, search, parameters) in [
+        (3, 2, CalibrationMethod::Exact, 5),
+        (3, 2, CalibrationMethod::Exact, 4),
+        (1, 1, CalibrationMethod::Exact, 5),
+        (2, 1, CalibrationMethod::Exact, 5),
+        (3, 2, CalibrationMethod::SumOfSquares, 5),
+        (3, 2, CalibrationMethod::SumOfSquares, 4),
+    ] {
+        let mut spec = optical();
+        spec.tracking.method = method;
+        spec.tracking.filter_type = filter_type;
+        spec.calibration.method = search;
+        spec.calibration.parameters = parameters;
+        if search == CalibrationMethod::Exact {
+            spec.calibration.lag = Some(false);
+        }
+        if filter_type == 1 {
+            spec.sensor.speed_max_periods_per_s = 1.5e3;
+        }
+        let name =
+            format!("method {method} type {filter_type}, {search:?}, {parameters} parameters");
         list.push((name, spec));
     }
     let mut binary = optical();

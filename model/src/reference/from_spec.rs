@@ -78,22 +78,22 @@ pub fn harmonics(spec: &Spec) -> Harmonics {
 
 /// The gradient's modes are 1/2 for offsets, 1/4 and 1/2 for gains, 1/8 for the phase: brought to about one speed as the
 /// chip does, whose gains and phase carry the square of the amplitude at its input to a power of two. The final form of four
-/// parameters takes half of each gain's gradient from the other's; that of five has its phase twice as fast until γ has settled, half as fast then.
+/// parameters takes half of each gain's gradient from the other's; that of five has its phase twice as fast until γ has settled, half as fast then. The exact
+/// gradient has twice the modes, for what turns the pair counts too, and the sum of squares, which lags, has gains and phase half as fast.
 fn equaliser(spec: &Spec, parameters: Parameters) -> Steps {
     let octaves = 2.0 * (spec.sensor.amplitude / spec.adc.full_scale).log2();
     let nearest = (octaves - octaves.round()).exp2();
-    let (gain, phase) = match (spec.calibration.method, parameters.count()) {
-        (_, 8 | 9) => (2.0 * nearest, 4.0),
+    let (offset, gain, phase) = match (spec.calibration.method, parameters.count()) {
+        (_, 8 | 9) => (1.0, 2.0 * nearest, 4.0),
         (CalibrationMethod::Final, _) => {
             let below = (octaves + (-octaves - 0.3).round()).exp2();
-            (2.0 * below, 16.0 * below)
+            (1.0, 2.0 * below, 16.0 * below)
         }
-        (CalibrationMethod::Exact | CalibrationMethod::SumOfSquares, _) => {
-            (2.0 * nearest, 8.0 * nearest)
-        }
-        (CalibrationMethod::Batch, _) => (2.0, 8.0),
+        (CalibrationMethod::Exact, _) => (0.5, nearest, 2.0 * nearest),
+        (CalibrationMethod::SumOfSquares, _) => (1.0, nearest, 4.0 * nearest),
+        (CalibrationMethod::Batch, _) => (1.0, 2.0, 8.0),
     };
-    let mut equaliser = Theta::repeat(1.0);
+    let mut equaliser = Theta::repeat(offset);
     let [gain_c, _, gain_s, _] = parameters.linear();
     (equaliser[gain_c], equaliser[gain_s]) = (gain, gain);
     if let Some(at) = parameters.phase() {

@@ -13,8 +13,9 @@ use nonius_model::kernel::{Input, Method, State};
 use nonius_model::reference::gradient::Form;
 use nonius_model::reference::interpolator::Search;
 use nonius_model::reference::start::Start;
+use nonius_model::reference::sum_of_squares::Smoothing;
 use nonius_model::reference::{Config, Lag, Parameters, Reference, Steps, Theta, from_spec};
-use nonius_model::spec::Coding;
+use nonius_model::spec::{CalibrationMethod, Coding, Spec};
 
 use crate::support::{Encoder, wrapped};
 
@@ -28,14 +29,14 @@ pub(crate) struct Shown {
 
 /// What both readings of the chip show of their registers and decisions.
 pub(crate) trait Reading {
-    fn step(&mut self, codes: [i64; 2], middle: i64, bits: u32) -> Shown;
+    fn step(&mut self, codes: [i64; 2], middle: i64, bits: u32, calibrate: bool) -> Shown;
     fn position(&self) -> f64;
     fn registers(&self) -> State<f64>;
 }
 
 impl Reading for Chip<Bits> {
-    fn step(&mut self, [cos, sin]: [i64; 2], middle: i64, _: u32) -> Shown {
-        let p = self.step_codes(cos + middle, sin + middle, false, true);
+    fn step(&mut self, [cos, sin]: [i64; 2], middle: i64, _: u32, calibrate: bool) -> Shown {
+        let p = self.step_codes(cos + middle, sin + middle, false, calibrate);
         Shown {
             fresh: p.fresh,
             whole_period: p.whole_period,
@@ -56,7 +57,7 @@ impl Reading for Chip<Bits> {
 }
 
 impl Reading for Chip<f64> {
-    fn step(&mut self, codes: [i64; 2], middle: i64, bits: u32) -> Shown {
+    fn step(&mut self, codes: [i64; 2], middle: i64, bits: u32, calibrate: bool) -> Shown {
         let [adc_cos, adc_sin] = codes.map(|code| (code + middle) as f64 / 2f64.powi(bits as i32));
         let p = Self::step(
             self,
@@ -64,7 +65,7 @@ impl Reading for Chip<f64> {
                 adc_cos,
                 adc_sin,
                 preset: false,
-                calibrate: true,
+                calibrate,
             },
         );
         Shown {
@@ -111,11 +112,16 @@ fn reference(design: &Design, registers: &State<f64>, position: f64) -> Referenc
         bound: Theta::from_fn(|i, _| design.structure.formats.deviation[i].format.max()),
         skew: spec.correction.channel_skew_s,
         harmonics: from_spec::harmonics(spec),
-        search: match spec.calibration.parameters {
-            0 => Search::None,
+        search: match (spec.calibration.parameters, spec.calibration.method) {
+            (0, _) => Search::None,
+            (_, CalibrationMethod::Exact) => Search::Residual(Form::Exact),
+            (_, CalibrationMethod::SumOfSquares) => {
+                let kept = 0.5f64.powi(spec.calibration.forgetting as i32);
+                Search::SumOfSquares(Smoothing::Forgetting { lambda: 1.0 - kept })
+            }
             _ => Search::Residual(Form::Final),
         },
-        // Of the final form only what stands along the radius.
+        // Of the final form only what stands along the radius; the other searches are compared without.
         lag: spec.calibration.allows_for_lag().then_some(Lag {
             settled: None,
             e: 0.0,
@@ -147,24 +153,38 @@ pub(crate) struct Difference {
 /// Samples of a comparison.
 pub(crate) const SAMPLES: u32 = 60_000;
 
-/// What the chip equalises the modes with: gains by 2, offsets by 1, phase by 16, gains and phase by a power of two near the inverse
-/// square of the amplitude; without phase, half of each gain's gradient off the other's; the phase by 4 from the fifth gear on.
-pub(crate) fn equaliser(spec: &nonius_model::spec::Spec) -> Steps {
+/// What the chip equalises the modes of offsets, gains and phase with, gains and phase by a power of two near the inverse square of the
+/// amplitude as well. Final form: 1, 2 and 16, and without phase half of each gain's gradient off the other's. The exact gradient: 1/2, 1
+/// and 2. The sum of squares: 1, 1 and 4; its gradient is eight times that along the radius, and a sum of as many samples as are not
+/// forgotten.
+pub(crate) fn equaliser(spec: &Spec) -> Steps {
     let mut amplitude: f64 = spec.sensor.amplitude / spec.adc.full_scale;
     while amplitude < 0.5 {
         amplitude *= 2.0;
     }
-    let inverse = (-2.0 * amplitude.log2() - 0.3).round().exp2();
+    let octaves = -2.0 * amplitude.log2();
+    let last = spec.calibration.method == CalibrationMethod::Final;
+    let inverse = if last { octaves - 0.3 } else { octaves }.round().exp2();
+    let [offset, gain, phase] = match spec.calibration.method {
+        CalibrationMethod::Final => [1.0, 2.0, 16.0],
+        CalibrationMethod::Exact => [0.5, 1.0, 2.0],
+        CalibrationMethod::SumOfSquares => [1.0, 1.0, 4.0]
+            .map(|of_radius| of_radius * 0.5f64.powi(3 + spec.calibration.forgetting as i32)),
+        CalibrationMethod::Batch => unreachable!("a batch is not compared here"),
+    };
+    let (gain, phase) = (gain * inverse, phase * inverse);
     let mut steps = Steps::zeros();
-    let diagonal = [2.0 * inverse, 1.0, 2.0 * inverse, 1.0, 16.0 * inverse];
-    for (i, step) in diagonal.into_iter().enumerate() {
+    for (i, step) in [gain, offset, gain, offset, phase].into_iter().enumerate() {
         steps[(i, i)] = step;
     }
-    if spec.calibration.parameters == 4 {
-        (steps[(0, 2)], steps[(2, 0)]) = (-inverse, -inverse);
+    if last && spec.calibration.parameters == 4 {
+        (steps[(0, 2)], steps[(2, 0)]) = (-gain / 2.0, -gain / 2.0);
     }
     steps
 }
+
+/// Samples for which a search that remembers stands still when the comparison begins: what it remembers of before is gone then.
+const REMEMBERED: u32 = 3000;
 
 /// Runs both over `motion` (turns at sample k). The comparison begins where the chip has locked in its
 /// last gear: there the reference is put in the chip's state, once.
@@ -193,6 +213,8 @@ pub(crate) fn compare(
     let mut found = Difference::default();
     let mut start = Theta::zeros();
     let mut compared = 0u32;
+    let last = spec.calibration.method == CalibrationMethod::Final;
+    let still = if last { 0 } else { REMEMBERED };
     for k in 0..SAMPLES {
         let k = f64::from(k);
         let codes = encoder.codes_of([motion(k), motion(k + late)]);
@@ -202,7 +224,7 @@ pub(crate) fn compare(
             whole_period,
             e,
             rho,
-        } = chip.step(codes, middle, spec.adc.bits);
+        } = chip.step(codes, middle, spec.adc.bits, compared >= still);
         let after = chip.registers();
         let Some(paper) = &mut paper else {
             if after.locked && after.loop_gear == last_gear {
@@ -214,11 +236,12 @@ pub(crate) fn compare(
         assert!(after.locked, "lock lost at sample {k}");
         let first = -f64::from(spec.calibration.gamma_first as i32) - before.gamma_gear;
         let mut gamma = equaliser * first.exp2();
-        if before.gamma_gear >= 4.0 {
+        if last && before.gamma_gear >= 4.0 {
             gamma[(4, 4)] /= 4.0;
         }
-        // From the fifth gear on, where a period of travel ends.
-        let due = before.gamma_gear < 4.0 || whole_period && fresh;
+        // From the fifth gear on, where a period of travel ends; a mean acts with each sample.
+        let waits = spec.calibration.method != CalibrationMethod::SumOfSquares;
+        let due = !waits || before.gamma_gear < 4.0 || whole_period && fresh;
         let y = codes.map(|code| code as f64 / half * unit);
         let fresh = fresh && spec.calibration.is_on();
         let seen = paper.step_with(y, (fresh.then_some(&gamma), due), false);
