@@ -9,7 +9,7 @@ use nonius_model::design::Design;
 use nonius_model::graph::{Evaluation, Graph};
 use nonius_model::spec::Overrides;
 use rand::{Rng, SeedableRng, rngs::StdRng};
-use shipped::variants::{kinds, with_every_word};
+use shipped::variants::{fixed, forgetful, kinds, lagging, searches, with_every_word};
 use shipped::words::{key, say};
 
 #[test]
@@ -109,6 +109,37 @@ fn chips_of_other_words_are_scheduled_and_written() {
         }
     }
     assert_eq!(done.len(), Overrides::KEYS.len());
+}
+
+/// The clocks and products of the page of costs are those of today's schedule; its cells take minutes of Yosys, and are measured by the
+/// command that the page names.
+#[test]
+fn the_page_of_costs_has_the_clocks_of_now() {
+    let page = std::fs::read_to_string("../docs/on-line-costs.md").expect("the page");
+    let chips = [fixed()]
+        .into_iter()
+        .chain(searches())
+        .chain(forgetful())
+        .chain(lagging());
+    let mut rows = 0;
+    for chip in chips {
+        let graph = &chip.design().graph;
+        let begins = format!(
+            "| {} | {} | {} | ",
+            chip.what,
+            chip.spec.calibration.parameters,
+            graph.products()
+        );
+        let row = page.lines().find_map(|line| line.strip_prefix(&begins));
+        let row = row.unwrap_or_else(|| panic!("no row {begins}"));
+        let clocks = row.split(" | ").nth(1).and_then(|cell| cell.parse().ok());
+        assert_eq!(clocks, Some(schedule(graph, 1).clocks), "{begins}");
+        rows += 1;
+    }
+    assert_eq!(
+        rows,
+        page.lines().filter(|l| l.starts_with("| ")).count() - 1
+    );
 }
 
 #[test]

@@ -103,6 +103,13 @@ fn the_kept_figure_7_is_fresh() {
             more: 2e-6,
         },
     );
+    // And both are where Heydemann's least squares are: within what noise leaves of the last γ, and of a single one.
+    let (_, [paper, chip, heydemann]) = course[course.len() - 1];
+    for i in 0..5 {
+        let off = [paper[i], chip[i]].map(|theta| (theta - heydemann[i]).abs());
+        println!("theta {}: {off:?}", i + 1);
+        assert!(off[1] < 1e-4 && off[0] < 3e-4, "theta {}: {off:?}", i + 1);
+    }
 }
 
 /// Products beside those of the bare loop, counted in the recorded graph of every search and set. The paper promises six for

@@ -19,10 +19,13 @@ pub(crate) const SOURCES: [&str; 3] = ["paper", "chip", "heydemann"];
 /// Periods travelled, and θ1 … θ5 of each source.
 pub(crate) type Row = (f64, [[f64; 5]; 3]);
 
-/// The course of the parameters. The paper updates each sample with one γ; the chip is the design's.
+/// The course of the parameters of a sensor that stays what it is, at 0.1 % noise. The paper updates each sample with one γ; the chip
+/// is the design's.
 pub(crate) fn figure_7(spec: &Spec) -> Result<Vec<Row>, Box<dyn std::error::Error>> {
     let set = Parameters::Five;
-    let record: Vec<[f64; 2]> = samples(Scenario::Drift).take(10_000).map(|s| s.y).collect();
+    // The beginning, before it stands still.
+    let record = samples(Scenario::Standstill).take(10_000);
+    let record: Vec<[f64; 2]> = record.map(|s| s.y).collect();
     let target = set.from_five(heydemann::calibrate(&record)?.theta());
     let mut config = from_spec::config(spec)?;
     config.gamma = Gamma::constant(0.01);

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use plotters::chart::SeriesLabelPosition;
 use plotters::style::RGBColor;
 
 use crate::figure_7::{Row, SOURCES};
@@ -12,9 +13,10 @@ pub(crate) fn plot(rows: &[Row], path: &Path) -> Result<(), Box<dyn std::error::
     let drawn: Vec<Line> = (0..5 * SOURCES.len()).map(|n| line(n, rows)).collect();
     plot::lines(
         path,
-        "Five parameters: paper (thick), bit-true chip (light), Heydemann (dashed)",
+        "Five parameters: paper (thick), bit-true chip (thin, light), Heydemann (dashed)",
         ["periods travelled", "theta"],
-        (0.0..40.0, -0.2..1.3),
+        (0.0..80.0, -0.2..1.3),
+        SeriesLabelPosition::MiddleRight,
         &drawn,
     )
 }
@@ -35,6 +37,7 @@ fn line(n: usize, rows: &[Row]) -> Line {
         },
         colour: RGBColor(r, g, b),
         dashed: n >= 10,
+        width: if n < 5 { 4 } else { 2 },
         points: rows.iter().map(at).collect(),
     }
 }

@@ -2,8 +2,8 @@
 //!
 //! For a constant sensor of five parameters without harmonics, samples evenly over the period: of the whole run (what an
 //! unbiased estimator could reach that keeps all of it), and of so many samples as the chip's last γ averages over. A step γ
-//! against a gradient whose modes are brought to about 1 forgets like a mean of 2/γ samples, each of the 64 sectors once
-//! a period.
+//! against a gradient whose modes are brought to about 1/2 leaves as much of the noise as a mean of 4/γ samples, each of the
+//! 64 sectors once a period.
 
 use std::f64::consts::TAU;
 
@@ -17,7 +17,7 @@ use super::scenario::{SAMPLES, SENSOR, SPEED, Scenario};
 pub(crate) fn bounds(design: &Design, scenario: Scenario) -> Vec<(String, Bound)> {
     let spec = &design.spec;
     let lsb = 2.0 * spec.adc.full_scale / 2f64.powi(spec.adc.bits as i32) / spec.sensor.amplitude;
-    let averaged = 2usize << spec.calibration.gamma_last;
+    let averaged = 4usize << spec.calibration.gamma_last;
     let all = SAMPLES as usize;
     let bits = spec.adc.bits;
     [

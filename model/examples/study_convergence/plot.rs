@@ -11,6 +11,8 @@ pub(crate) struct Line {
     pub(crate) colour: RGBColor,
     /// Broken up, for what the others are to be compared with.
     pub(crate) dashed: bool,
+    /// Pixels.
+    pub(crate) width: u32,
     pub(crate) points: Vec<(f64, f64)>,
 }
 
@@ -28,6 +30,7 @@ pub(crate) fn lines(
     title: &str,
     axes: [&str; 2],
     (x, y): (Range<f64>, Range<f64>),
+    legend: SeriesLabelPosition,
     lines: &[Line],
 ) -> Result<(), Box<dyn std::error::Error>> {
     let mut svg = String::new();
@@ -47,7 +50,7 @@ pub(crate) fn lines(
             .y_desc(axes[1])
             .draw()?;
         for line in lines {
-            let style = line.colour.stroke_width(2);
+            let style = line.colour.stroke_width(line.width);
             let points = line.points.iter().copied();
             let drawn = if line.dashed {
                 chart.draw_series(DashedLineSeries::new(points, 5, 5, style))?
@@ -62,7 +65,7 @@ pub(crate) fn lines(
         }
         chart
             .configure_series_labels()
-            .position(SeriesLabelPosition::MiddleRight)
+            .position(legend)
             .background_style(WHITE.mix(0.8))
             .border_style(BLACK)
             .draw()?;

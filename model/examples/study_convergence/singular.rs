@@ -1,6 +1,7 @@
 //! The direction that no radius shows, drawn: what it does round the period, and how order 2 of the angle error fares
 //! with and without the completion.
 
+use plotters::chart::SeriesLabelPosition;
 use std::f64::consts::TAU;
 use std::path::Path;
 
@@ -41,6 +42,7 @@ pub(crate) fn effect(path: &Path) -> Result<(), Box<dyn std::error::Error>> {
                 ),
                 colour,
                 dashed,
+                width: 2,
                 points: points
                     .iter()
                     .map(|p| (p.0, if of == 1 { p.1 } else { p.2 }))
@@ -52,7 +54,8 @@ pub(crate) fn effect(path: &Path) -> Result<(), Box<dyn std::error::Error>> {
         path,
         "What one unit of v does to the corrected pair",
         ["alpha, degrees", "change, radians or radii"],
-        (0.0..360.0, -0.6..0.9),
+        (0.0..360.0, -0.6..1.1),
+        SeriesLabelPosition::UpperRight,
         &drawn,
     )
 }
@@ -108,6 +111,7 @@ pub(crate) fn order_2(path: &Path) -> Result<(), Box<dyn std::error::Error>> {
             name: name.into(),
             colour: COLOURS[i],
             dashed: false,
+            width: 2,
             points,
         });
     }
@@ -116,6 +120,7 @@ pub(crate) fn order_2(path: &Path) -> Result<(), Box<dyn std::error::Error>> {
         "Third harmonics of 3 %: order 2 of the angle error",
         ["periods travelled", "mrad"],
         (0.0..200.0, 0.0..80.0),
+        SeriesLabelPosition::MiddleRight,
         &drawn,
     )
 }
