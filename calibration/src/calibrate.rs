@@ -10,7 +10,7 @@ use crate::result::{Calibration, Correlations, Parameter};
 use crate::samples::{self, Samples};
 use crate::set::Set;
 use crate::unbiased::Fit;
-use crate::{conic, extremes, gradient, unbiased, words};
+use crate::{conic, extremes, gradient, nothing, unbiased, words};
 
 /// What an estimator says.
 struct Estimate {
@@ -248,7 +248,7 @@ pub fn undetermined(method: Method, cos: &[f64], sin: &[f64], why: &Error) -> Ca
         scatter: None,
         arc: 0.0,
         bound: None,
-        cannot_tell: vec![words::of_nothing(cos, sin, why)],
+        cannot_tell: vec![nothing::of_nothing(cos, sin, why)],
         remarks: vec![],
     }
 }
@@ -269,8 +269,21 @@ fn check(cos: &[f64], sin: &[f64], options: &Options) -> Result<(), Error> {
     if let Some(k) = pairs.position(|(c, s)| !c.is_finite() || !s.is_finite()) {
         return Err(Error::NotFinite(k));
     }
+    let constant = |values: &[f64]| values.iter().all(|v| *v == values[0]);
+    if constant(cos) && constant(sin) {
+        let why = format!(
+            "every value of cos is {} and of sin {}, as also where nothing is connected",
+            cos[0], sin[0]
+        );
+        return Err(Error::Standstill(why));
+    }
+    // Before any fit: among so few codes there is always something that looks like an ellipse.
+    if nonius_recording::at_rest(cos, sin) {
+        let why = "both channels stay within a few steps of the ADC about one place".into();
+        return Err(Error::Standstill(why));
+    }
     for (name, values) in [("cos", cos), ("sin", sin)] {
-        if values.iter().all(|v| *v == values[0]) {
+        if constant(values) {
             let why = format!("every value of {name} is {}", values[0]);
             return Err(Error::Standstill(why));
         }

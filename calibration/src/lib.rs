@@ -11,6 +11,7 @@ pub mod extremes;
 pub mod gradient;
 mod method;
 mod noise;
+mod nothing;
 mod report;
 mod result;
 mod samples;

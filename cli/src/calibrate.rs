@@ -149,7 +149,7 @@ pub(crate) fn run(args: &Calibrate) -> Result<()> {
             "--noise-ratio {ratio}: expected 0.01 to 100, the noise of the sine channel over that of the cosine channel"
         );
     }
-    let recording = Recording::read(&args.recording, &args.recording_args.overrides())?;
+    let recording = Recording::read_even_at_rest(&args.recording, &args.recording_args.overrides())?;
     crate::notes(&recording.notes);
     let options = Options {
         noise_ratio: args.noise_ratio,
