@@ -135,7 +135,8 @@ pub fn calibrate(
             untold
         },
     );
-    if method == Method::Unbiased && own_residual > words::ROUNDING {
+    // The bound beside every method is made of the ratio, but only one weighs the channels by it.
+    if (method == Method::Unbiased || fit.ratio_extreme) && own_residual > words::ROUNDING {
         cannot_tell.extend(words::of_ratio(&fit));
     }
     cannot_tell.extend(words::of_residuals(method, &fit, own_residual));
@@ -198,9 +199,12 @@ pub fn calibrate(
         ellipse: estimate.ellipse,
         theta: estimate.theta,
         noise: Some(fit.noise),
-        noise_ratio_error: (options.noise_ratio.is_none() && !fit.ratio_assumed)
+        noise_ratio_error: (options.noise_ratio.is_none()
+            && !fit.ratio_assumed
+            && !fit.ratio_extreme)
             .then(|| fit.log_ratio_error * fit.noise[1] / fit.noise[0])
             .filter(|e| e.is_finite()),
+        noise_ratio_extreme: fit.ratio_extreme,
         shape: fit.shape.clone(),
         scatter: fit.scatter,
         arc: 1.0 - gap,
@@ -244,6 +248,7 @@ pub fn undetermined(method: Method, cos: &[f64], sin: &[f64], why: &Error) -> Ca
         theta_correlations: None,
         noise: None,
         noise_ratio_error: None,
+        noise_ratio_extreme: false,
         shape: None,
         scatter: None,
         arc: 0.0,

@@ -3,6 +3,7 @@
 use crate::curve::{Curve, Parameters};
 use crate::gradient::Minimum;
 use crate::method::Method;
+use crate::noise::TESTED;
 use crate::unbiased::Fit;
 
 pub(crate) const NAMES: [&str; 5] = ["a_c", "b_c", "a_s", "b_s", "beta"];
@@ -150,6 +151,9 @@ pub(crate) fn of_residuals(method: Method, fit: &Fit, residual_rms: f64) -> Vec<
 }
 
 pub(crate) fn of_ratio(fit: &Fit) -> Option<String> {
+    if fit.ratio_extreme {
+        return Some(extreme_ratio(fit));
+    }
     fit.ratio_assumed.then(|| {
         "the ratio of the channels' noise cannot be told from these samples; equal noise was taken (--noise-ratio gives \
          another)"
@@ -157,15 +161,43 @@ pub(crate) fn of_ratio(fit: &Fit) -> Option<String> {
     })
 }
 
+/// Of a ratio at the end of what the residuals tell.
+fn extreme_ratio(fit: &Fit) -> String {
+    let (quiet, loud) = if fit.noise[1] / fit.ellipse.a_s > fit.noise[0] / fit.ellipse.a_c {
+        ("cos", "sin")
+    } else {
+        ("sin", "cos")
+    };
+    format!(
+        "the ratio of the channels' noise cannot be told from these samples: {loud} has {TESTED} or more times the noise of \
+         {quiet}, each in fractions of its amplitude, and the noise of {quiet} may be far smaller than what stands here; \
+         error bars and bounds are a rough guess (--noise-ratio gives the ratio where it is known)"
+    )
+}
+
 /// Of a ratio of the channels' noise that was given, where the samples say another one.
 pub(crate) fn of_given_ratio(given: f64, own: &Fit) -> Option<String> {
     /// Standard errors.
     const ANOTHER: f64 = 4.0;
+    if !own.converged || own.ratio_assumed {
+        return None;
+    }
     let ratio = own.noise[1] / own.noise[0];
+    let rest = "error bars and bounds are those of the ratio that was given";
+    if own.ratio_extreme {
+        // Of 8 and of 50 the samples say the same.
+        let gain = own.ellipse.a_s / own.ellipse.a_c;
+        let sense = (ratio / gain).ln().signum();
+        let limit = gain * TESTED.powf(sense);
+        let word = if sense > 0.0 { "more" } else { "less" };
+        return ((given / limit).ln() * sense < 0.0).then(|| {
+            format!("--noise-ratio {given}: the samples say {limit:.2} or {word}; {rest}")
+        });
+    }
     let off = (given / ratio).ln().abs() / own.log_ratio_error;
-    (own.converged && !own.ratio_assumed && off > ANOTHER).then(|| {
+    (off > ANOTHER).then(|| {
         format!(
-            "--noise-ratio {given}: the samples say {ratio:.2} ± {:.2}; error bars and bounds are those of the ratio that was given",
+            "--noise-ratio {given}: the samples say {ratio:.2} ± {:.2}; {rest}",
             ratio * own.log_ratio_error
         )
     })

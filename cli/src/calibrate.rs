@@ -86,7 +86,7 @@ struct Noise {
     sin_rms: f64,
     /// Of the sine over that of the cosine.
     ratio: f64,
-    /// Null where the ratio was given or assumed.
+    /// Null where the ratio was given, assumed, or further from 1 than the samples can tell.
     ratio_std_error: Option<f64>,
 }
 
