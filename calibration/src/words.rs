@@ -243,6 +243,16 @@ pub(crate) fn of_minimum(method: Method, minimum: &Minimum) -> Vec<String> {
     out
 }
 
+/// Of a search that maps all samples to nearly one place; `residual` is what it leaves, `noise` what noise alone leaves.
+pub(crate) fn of_collapse(method: Method, residual: f64, noise: f64) -> String {
+    format!(
+        "theta: the search of {} collapsed: it turns all samples into nearly one place of the circle, where the residual is \
+         {residual:.1e} of the amplitude rms and noise alone makes {noise:.1e}; its values are withheld, and a_c, b_c, a_s, \
+         b_s and beta are those of the nearest ellipse; move the scale by a whole period or more while recording",
+        method.name()
+    )
+}
+
 /// How an estimate lies beside the unbiased one, in standard errors of the latter.
 pub(crate) fn beside_unbiased(
     method: Method,

@@ -165,7 +165,12 @@ fn a_search_that_found_nothing_has_no_error_bars() {
         for method in ALL {
             let found = calibrate(&cos, &sin, method, &Options::default()).expect("a calibration");
             let said = found.cannot_tell.join(" ");
-            if said.contains("did not come to rest") || said.contains("of Theta cannot be told") {
+            let nothing = [
+                "did not come to rest",
+                "of Theta cannot be told",
+                "collapsed",
+            ];
+            if nothing.iter().any(|words| said.contains(words)) {
                 seen += 1;
                 assert!(found.parameters.iter().all(|p| p.std_error.is_none()));
                 let of = found.correlations.iter().chain(&found.theta_correlations);
@@ -294,6 +299,25 @@ fn a_ratio_beyond_the_tested_range_is_said() {
             assert!(given.cannot_tell.is_empty() && given.remarks.is_empty());
             let wrong = at(ratio, Some(1.0), swapped).remarks.join(" ");
             assert!(wrong.contains("the samples say"), "{wrong}");
+        }
+    }
+}
+
+/// A cubic that maps an arc to one point leaves no residual, and is no calibration.
+#[test]
+fn a_cubic_that_collapsed_on_an_arc_gives_no_values() {
+    for arc in [0.1, 0.25] {
+        let (cos, sin) = noisy(|k| 0.7 + std::f64::consts::TAU * arc * k / 4000.0);
+        for method in [Method::Poly8, Method::Poly9] {
+            let found = calibrate(&cos, &sin, method, &Options::default()).expect("an answer");
+            assert!(found.theta.is_empty() && found.parameters.len() == 5);
+            assert!(found.parameters.iter().all(|p| p.std_error.is_none()));
+            assert!(found.residual_rms > 5e-4, "{}", found.residual_rms);
+            let said = found.cannot_tell.join(" ");
+            assert!(
+                said.contains("collapsed") && !said.contains("rough guess"),
+                "{said}"
+            );
         }
     }
 }
