@@ -227,6 +227,17 @@ fn a_standstill_of_codes_is_an_answer() {
 }
 
 #[test]
+fn only_a_known_adc_has_its_rounding_in_the_report() {
+    let text = recording(2000, 7.3, [0.002; 2]);
+    let known = text.replacen("cos,sin", "# adc_bits: 12\n# full_scale: 1\ncos,sin", 1);
+    for (text, there) in [(text, false), (known, true)] {
+        let output = calibrate(&text, &[]);
+        let said = String::from_utf8_lossy(&output.stdout).into_owned();
+        assert_eq!(said.contains("ADC rounding"), there, "{said}");
+    }
+}
+
+#[test]
 fn distortion_drift_and_glitches_are_said() {
     let mut noise = noise();
     let (mut bent, mut drifting, mut glitched) = ["# sample_rate_hz: 1000\ncos,sin\n"; 3]
