@@ -139,7 +139,8 @@ mod tests {
     #[test]
     fn two_channels_that_rest_are_a_standstill_and_not_dead_wiring() {
         let toggles = |k: f64| f64::from(u8::from((k * 7.0).sin() > 0.3));
-        let cases: [(fn(f64) -> f64, fn(f64) -> f64); 3] = [
+        type Signal = fn(f64) -> f64;
+        let cases: [(Signal, Signal); 3] = [
             (|_| 0.0, |_| 0.0),
             (|_| 1200.0, |_| -500.0),
             (|_| 1200.0, toggles),
