@@ -1,46 +1,18 @@
 //! One calibration from beginning to end.
 
-use nalgebra::{DMatrix, SMatrix};
+use nalgebra::DMatrix;
 use nonius_recording::Ellipse;
 
 use crate::cramer_rao::{self, Bound};
-use crate::curve::{Curve, Parameters, theta_covariance};
+use crate::curve::{Curve, Parameters};
+use crate::estimate::{Estimate, estimate};
 use crate::method::{Error, Method, Options};
+use crate::residual::{collapsed, residual, white};
 use crate::result::{Calibration, Correlations, Parameter};
 use crate::samples::{self, Samples};
 use crate::set::Set;
 use crate::unbiased::Fit;
-use crate::{conic, extremes, gradient, unbiased, words};
-
-/// What an estimator says.
-struct Estimate {
-    ellipse: Ellipse,
-    covariance: Option<DMatrix<f64>>,
-    theta: Vec<f64>,
-    theta_covariance: Option<DMatrix<f64>>,
-    cannot_tell: Vec<String>,
-    /// It stands somewhere, but not where the samples would have it.
-    adrift: bool,
-    /// Of the amplitudes by the noise, in amplitudes.
-    bias: Option<[f64; 2]>,
-}
-
-impl Estimate {
-    /// Of a method that finds an ellipse.
-    fn of(ellipse: Ellipse, covariance: Option<SMatrix<f64, 5, 5>>) -> Self {
-        let sound = covariance.filter(|c| c.iter().all(|v| v.is_finite()));
-        let dynamic = |c: SMatrix<f64, 5, 5>| DMatrix::from_fn(5, 5, |i, j| c[(i, j)]);
-        Self {
-            theta: ellipse.theta().to_vec(),
-            theta_covariance: sound.map(|c| dynamic(theta_covariance(&ellipse, &c))),
-            ellipse,
-            covariance: sound.map(dynamic),
-            cannot_tell: vec![],
-            adrift: false,
-            bias: None,
-        }
-    }
-}
+use crate::{extremes, nothing, unbiased, words};
 
 /// Which error bars the samples tell.
 struct Told {
@@ -90,7 +62,7 @@ pub fn calibrate(
             return Err(Error::NoEllipse);
         }
     }
-    let estimate = estimate(method, c, s, &fit).ok_or(Error::NoEllipse)?;
+    let mut estimate = estimate(method, c, s, &fit).ok_or(Error::NoEllipse)?;
     let angles: Vec<f64> = c
         .iter()
         .zip(s)
@@ -99,11 +71,20 @@ pub fn calibrate(
     let radians: Vec<f64> = angles.iter().map(|a| a * std::f64::consts::TAU).collect();
     let bound = cramer_rao::bound(&fit.ellipse, &radians, fit.noise);
     let gap = samples::gap(&fit.ellipse, c, s);
-    let residual_rms = residual(method, &estimate.theta, c, s);
+    let mut residual_rms = residual(method, &estimate.theta, c, s);
     let own_residual = residual(Method::Unbiased, &fit.ellipse.theta(), c, s);
+    if method.set().cubic() && collapsed(method, &estimate.theta, &fit, c, s) {
+        let noise = white(&fit);
+        estimate = Estimate::of(fit.ellipse, None);
+        estimate.cannot_tell = vec![words::of_collapse(method, residual_rms, noise)];
+        (estimate.theta, estimate.adrift) = (vec![], true);
+        residual_rms = own_residual;
+    }
 
     let mut cannot_tell = estimate.cannot_tell;
-    cannot_tell.extend(words::of_method(method));
+    if !estimate.theta.is_empty() {
+        cannot_tell.extend(words::of_method(method));
+    }
     if !fit.converged && method == Method::Unbiased {
         cannot_tell.push(
             "a_c, b_c, a_s, b_s, beta: the geometric fit did not come to rest; the values are those of a conic, without \
@@ -135,7 +116,8 @@ pub fn calibrate(
             untold
         },
     );
-    if method == Method::Unbiased && own_residual > words::ROUNDING {
+    // The bound beside every method is made of the ratio, but only one weighs the channels by it.
+    if (method == Method::Unbiased || fit.ratio_extreme) && own_residual > words::ROUNDING {
         cannot_tell.extend(words::of_ratio(&fit));
     }
     cannot_tell.extend(words::of_residuals(method, &fit, own_residual));
@@ -165,7 +147,7 @@ pub fn calibrate(
         let beside = words::beside_unbiased(method, &estimate.ellipse.parameters(), &fit, untold);
         remarks.extend(beside);
     }
-    if method.set().cubic() {
+    if method.set().cubic() && !estimate.theta.is_empty() {
         remarks.push(format!(
             "an ellipse leaves a residual of {own_residual:.4e} of the amplitude rms"
         ));
@@ -198,9 +180,12 @@ pub fn calibrate(
         ellipse: estimate.ellipse,
         theta: estimate.theta,
         noise: Some(fit.noise),
-        noise_ratio_error: (options.noise_ratio.is_none() && !fit.ratio_assumed)
+        noise_ratio_error: (options.noise_ratio.is_none()
+            && !fit.ratio_assumed
+            && !fit.ratio_extreme)
             .then(|| fit.log_ratio_error * fit.noise[1] / fit.noise[0])
             .filter(|e| e.is_finite()),
+        noise_ratio_extreme: fit.ratio_extreme,
         shape: fit.shape.clone(),
         scatter: fit.scatter,
         arc: 1.0 - gap,
@@ -244,11 +229,12 @@ pub fn undetermined(method: Method, cos: &[f64], sin: &[f64], why: &Error) -> Ca
         theta_correlations: None,
         noise: None,
         noise_ratio_error: None,
+        noise_ratio_extreme: false,
         shape: None,
         scatter: None,
         arc: 0.0,
         bound: None,
-        cannot_tell: vec![words::of_nothing(cos, sin, why)],
+        cannot_tell: vec![nothing::of_nothing(cos, sin, why)],
         remarks: vec![],
     }
 }
@@ -269,51 +255,26 @@ fn check(cos: &[f64], sin: &[f64], options: &Options) -> Result<(), Error> {
     if let Some(k) = pairs.position(|(c, s)| !c.is_finite() || !s.is_finite()) {
         return Err(Error::NotFinite(k));
     }
+    let constant = |values: &[f64]| values.iter().all(|v| *v == values[0]);
+    if constant(cos) && constant(sin) {
+        let why = format!(
+            "every value of cos is {} and of sin {}, as also where nothing is connected",
+            cos[0], sin[0]
+        );
+        return Err(Error::Standstill(why));
+    }
+    // Before any fit: among so few codes there is always something that looks like an ellipse.
+    if nonius_recording::at_rest(cos, sin) {
+        let why = "both channels stay within a few steps of the ADC about one place".into();
+        return Err(Error::Standstill(why));
+    }
     for (name, values) in [("cos", cos), ("sin", sin)] {
-        if values.iter().all(|v| *v == values[0]) {
+        if constant(values) {
             let why = format!("every value of {name} is {}", values[0]);
             return Err(Error::Standstill(why));
         }
     }
     Ok(())
-}
-
-fn estimate(method: Method, cos: &[f64], sin: &[f64], fit: &Fit) -> Option<Estimate> {
-    match method {
-        Method::Unbiased => Some(Estimate::of(
-            fit.ellipse,
-            fit.converged.then_some(fit.covariance),
-        )),
-        Method::Heydemann => {
-            let found = conic::heydemann(cos, sin)?;
-            Some(Estimate::of(found, conic::covariance(cos, sin, &found)))
-        }
-        Method::Extremes => {
-            let found = extremes::extremes(cos, sin)?;
-            let repeats = extremes::repeats(cos, sin, &fit.ellipse, fit.noise);
-            let mut estimate = Estimate::of(found, repeats.as_ref().map(|r| r.covariance));
-            if let Some(repeats) = repeats {
-                let bias = [
-                    repeats.bias[0] / fit.ellipse.a_c,
-                    repeats.bias[2] / fit.ellipse.a_s,
-                ];
-                estimate.bias = Some(bias);
-            }
-            Some(estimate)
-        }
-        Method::Sumsq4 | Method::Sumsq5 | Method::Poly8 | Method::Poly9 => {
-            let minimum = gradient::minimise(method.set(), cos, sin, &fit.ellipse);
-            Some(Estimate {
-                cannot_tell: words::of_minimum(method, &minimum),
-                adrift: minimum.faint > 0 || !minimum.converged,
-                ellipse: minimum.ellipse.unwrap_or(fit.ellipse),
-                covariance: minimum.ellipse_covariance,
-                theta: minimum.theta,
-                theta_covariance: minimum.covariance,
-                bias: None,
-            })
-        }
-    }
 }
 
 /// Physical parameters, then Θ; `errors` are the covariances of both.
@@ -374,15 +335,6 @@ fn correlations(c: &DMatrix<f64>, told: &[bool]) -> Correlations {
     (0..n)
         .map(|i| (0..n).map(|j| one(i, j)).collect())
         .collect()
-}
-
-fn residual(method: Method, theta: &[f64], cos: &[f64], sin: &[f64]) -> f64 {
-    let radius = |(y_c, y_s): (&f64, &f64)| {
-        let (c, s) = method.set().correct(theta, *y_c, *y_s);
-        (c.hypot(s) - 1.0).powi(2)
-    };
-    let sum: f64 = cos.iter().zip(sin).map(radius).sum();
-    (sum / cos.len() as f64).sqrt()
 }
 
 /// Standard errors from as many samples over whole periods.

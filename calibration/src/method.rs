@@ -82,7 +82,9 @@ pub enum Error {
     #[error("{0} samples are too few; 16 or more are needed")]
     TooFew(usize),
     /// Nothing moves.
-    #[error("the signals stand still: {0}; move the scale by a period or more while recording")]
+    #[error(
+        "the signals stand still: {0}; move the scale by a whole period or more while recording"
+    )]
     Standstill(String),
     /// The columns differ in length.
     #[error("{0} samples of cos, {1} of sin")]
@@ -96,7 +98,7 @@ pub enum Error {
     /// No ellipse.
     #[error(
         "the samples draw no ellipse (noise about a standstill, too short an arc, or no sin/cos pair at all); move the \
-         scale by a period or more while recording"
+         scale by a whole period or more while recording"
     )]
     NoEllipse,
 }

@@ -16,8 +16,11 @@ const OWN: usize = 5;
 const SIGNIFICANT: f64 = 1e-3;
 /// Samples per shape that are needed to look for shapes.
 const SAMPLES: usize = 8 * COLUMNS;
-/// Beyond this ratio, each in fractions of its amplitude, one channel's noise is as good as none.
+/// Beyond this ratio, each in fractions of its amplitude, one channel's noise is as good as none; the estimate ends here.
 const EXTREME: f64 = 10.0;
+/// Up to this ratio the estimates were tested: beyond it they are pressed against [`EXTREME`], and nothing says how far off
+/// they are.
+pub(crate) const TESTED: f64 = 8.0;
 
 /// A sample's residual.
 #[derive(Clone, Copy, Debug, Default)]

@@ -50,6 +50,9 @@ fn statistics(out: &mut String, found: &Calibration, lsb: Option<[f64; 2]>) {
         let ratio = s / c;
         let error = match found.noise_ratio_error {
             Some(e) => format!("{ratio:.3} +/- {e:.3} (sin to cos, estimated)"),
+            None if found.noise_ratio_extreme => {
+                format!("{ratio:.3} (sin to cos, estimated, too far from 1 to be measured)")
+            }
             None => format!("{ratio:.3} (sin to cos, not estimated)"),
         };
         line("noise ratio", error);

@@ -48,8 +48,10 @@ pub struct Calibration {
     pub theta_correlations: Option<Correlations>,
     /// White noise of the channels, rms, in the unit of the columns; `None` where it cannot be told.
     pub noise: Option<[f64; 2]>,
-    /// Standard error of σ_s/σ_c; `None` where it was given or assumed.
+    /// Standard error of σ_s/σ_c; `None` where it was given, assumed or [extreme](Self::noise_ratio_extreme).
     pub noise_ratio_error: Option<f64>,
+    /// σ_s/σ_c was estimated and is too far from equal noise to be measured: it says which channel is quiet, not how quiet.
+    pub noise_ratio_extreme: bool,
     /// What repeats with the angle and is no ellipse.
     pub shape: Option<Shape>,
     /// How much further consecutive parts of the recording differ than the error bars of [`Method::Unbiased`] say.

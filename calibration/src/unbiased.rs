@@ -27,6 +27,8 @@ pub struct Fit {
     pub log_ratio_error: f64,
     /// The ratio could not be told and equal noise was taken.
     pub ratio_assumed: bool,
+    /// The ratio was estimated, and lies beyond those whose estimate was tested.
+    pub ratio_extreme: bool,
     /// What repeats with the angle and is no ellipse.
     pub shape: Option<Shape>,
     /// How much further consecutive parts of the recording differ than the standard errors say, for the parameter where
@@ -99,6 +101,7 @@ pub fn fit(cos: &[f64], sin: &[f64], start: &Ellipse, ratio: Option<f64>) -> Fit
         Some(found) if ratio.is_none() && !ratio_assumed => [found.cos.sqrt(), found.sin.sqrt()],
         _ => [white, white * metric],
     };
+    let own = (noise[1] / ellipse.a_s) / (noise[0] / ellipse.a_c);
     let covariance = round.covariance(&ellipse);
     let scatter = covariance.and_then(|c| round.scatter(&residuals, &c));
     Fit {
@@ -112,6 +115,7 @@ pub fn fit(cos: &[f64], sin: &[f64], start: &Ellipse, ratio: Option<f64>) -> Fit
             (None, None) => f64::INFINITY,
         },
         ratio_assumed,
+        ratio_extreme: ratio.is_none() && !ratio_assumed && own.ln().abs() > noise::TESTED.ln(),
         shape: shape.map(|(rms, order)| Shape {
             rms: rms * (1.0 + metric) / 2.0 / ellipse.amplitude(),
             order,

@@ -2,7 +2,8 @@
 
 use crate::curve::{Curve, Parameters};
 use crate::gradient::Minimum;
-use crate::method::{Error, Method};
+use crate::method::Method;
+use crate::noise::TESTED;
 use crate::unbiased::Fit;
 
 pub(crate) const NAMES: [&str; 5] = ["a_c", "b_c", "a_s", "b_s", "beta"];
@@ -150,6 +151,9 @@ pub(crate) fn of_residuals(method: Method, fit: &Fit, residual_rms: f64) -> Vec<
 }
 
 pub(crate) fn of_ratio(fit: &Fit) -> Option<String> {
+    if fit.ratio_extreme {
+        return Some(extreme_ratio(fit));
+    }
     fit.ratio_assumed.then(|| {
         "the ratio of the channels' noise cannot be told from these samples; equal noise was taken (--noise-ratio gives \
          another)"
@@ -157,15 +161,43 @@ pub(crate) fn of_ratio(fit: &Fit) -> Option<String> {
     })
 }
 
+/// Of a ratio at the end of what the residuals tell.
+fn extreme_ratio(fit: &Fit) -> String {
+    let (quiet, loud) = if fit.noise[1] / fit.ellipse.a_s > fit.noise[0] / fit.ellipse.a_c {
+        ("cos", "sin")
+    } else {
+        ("sin", "cos")
+    };
+    format!(
+        "the ratio of the channels' noise cannot be told from these samples: {loud} has {TESTED} or more times the noise of \
+         {quiet}, each in fractions of its amplitude, and the noise of {quiet} may be far smaller than what stands here; \
+         error bars and bounds are a rough guess (--noise-ratio gives the ratio where it is known)"
+    )
+}
+
 /// Of a ratio of the channels' noise that was given, where the samples say another one.
 pub(crate) fn of_given_ratio(given: f64, own: &Fit) -> Option<String> {
     /// Standard errors.
     const ANOTHER: f64 = 4.0;
+    if !own.converged || own.ratio_assumed {
+        return None;
+    }
     let ratio = own.noise[1] / own.noise[0];
+    let rest = "error bars and bounds are those of the ratio that was given";
+    if own.ratio_extreme {
+        // Of 8 and of 50 the samples say the same.
+        let gain = own.ellipse.a_s / own.ellipse.a_c;
+        let sense = (ratio / gain).ln().signum();
+        let limit = gain * TESTED.powf(sense);
+        let word = if sense > 0.0 { "more" } else { "less" };
+        return ((given / limit).ln() * sense < 0.0).then(|| {
+            format!("--noise-ratio {given}: the samples say {limit:.2} or {word}; {rest}")
+        });
+    }
     let off = (given / ratio).ln().abs() / own.log_ratio_error;
-    (own.converged && !own.ratio_assumed && off > ANOTHER).then(|| {
+    (off > ANOTHER).then(|| {
         format!(
-            "--noise-ratio {given}: the samples say {ratio:.2} ± {:.2}; error bars and bounds are those of the ratio that was given",
+            "--noise-ratio {given}: the samples say {ratio:.2} ± {:.2}; {rest}",
             ratio * own.log_ratio_error
         )
     })
@@ -211,6 +243,16 @@ pub(crate) fn of_minimum(method: Method, minimum: &Minimum) -> Vec<String> {
     out
 }
 
+/// Of a search that maps all samples to nearly one place; `residual` is what it leaves, `noise` what noise alone leaves.
+pub(crate) fn of_collapse(method: Method, residual: f64, noise: f64) -> String {
+    format!(
+        "theta: the search of {} collapsed: it turns all samples into nearly one place of the circle, where the residual is \
+         {residual:.1e} of the amplitude rms and noise alone makes {noise:.1e}; its values are withheld, and a_c, b_c, a_s, \
+         b_s and beta are those of the nearest ellipse; move the scale by a whole period or more while recording",
+        method.name()
+    )
+}
+
 /// How an estimate lies beside the unbiased one, in standard errors of the latter.
 pub(crate) fn beside_unbiased(
     method: Method,
@@ -233,76 +275,4 @@ pub(crate) fn beside_unbiased(
             method.name()
         )
     })
-}
-
-/// The samples as vectors from their mean.
-fn centred(cos: &[f64], sin: &[f64]) -> Vec<nalgebra::Vector2<f64>> {
-    let pairs = cos.iter().zip(sin);
-    let all: Vec<_> = pairs.map(|(c, s)| nalgebra::Vector2::new(*c, *s)).collect();
-    let mean = all.iter().sum::<nalgebra::Vector2<f64>>() / all.len() as f64;
-    all.into_iter().map(|y| y - mean).collect()
-}
-
-/// Standard deviation across the samples' main direction over that along it, 0 to 1.
-fn slimness(centred: &[nalgebra::Vector2<f64>]) -> f64 {
-    let spread: nalgebra::Matrix2<f64> = centred.iter().map(|y| y * y.transpose()).sum();
-    let values = spread.symmetric_eigenvalues();
-    (values.min().max(0.0) / values.max().max(f64::MIN_POSITIVE)).sqrt()
-}
-
-/// At how many places of the period the samples stand, seen from their mean: clusters that are a gap of 20° and more apart. A cloud
-/// about its mean, and an arc, have one. Near the mean noise alone makes the angle; places of a ring stand away from it.
-fn places(centred: &[nalgebra::Vector2<f64>]) -> usize {
-    /// Degrees.
-    const GAP: f64 = 20.0;
-    /// Share of the rms distance.
-    const AWAY: f64 = 0.5;
-    let rms = (centred.iter().map(|y| y.norm_squared()).sum::<f64>() / centred.len() as f64).sqrt();
-    let mut angles: Vec<f64> = centred
-        .iter()
-        .filter(|y| y.norm() > AWAY * rms)
-        .map(|y| y.y.atan2(y.x).to_degrees())
-        .collect();
-    angles.sort_by(f64::total_cmp);
-    let around = angles
-        .first()
-        .zip(angles.last())
-        .map(|(a, b)| a + 360.0 - b);
-    let between = angles.windows(2).map(|pair| pair[1] - pair[0]);
-    between
-        .chain(around)
-        .filter(|gap| *gap > GAP)
-        .count()
-        .max(1)
-}
-
-/// Where the samples draw no ellipse at all.
-pub(crate) fn of_nothing(cos: &[f64], sin: &[f64], why: &Error) -> String {
-    /// Slimmer than this is a line, rounder a cloud.
-    const LINE: f64 = 0.4;
-    const MOVE: &str = "move the scale by a period or more while recording";
-    let centred = centred(cos, sin);
-    let (slimness, places) = (slimness(&centred), places(&centred));
-    let (seen, advice) = match why {
-        Error::NoEllipse if slimness < LINE => (
-            "the samples lie on a line within their noise: the arc is too short, or both channels carry one signal"
-                .into(),
-            MOVE,
-        ),
-        Error::NoEllipse if places > 2 => (
-            format!(
-                "the samples stand at {places} places of the period only, which is too few: the speed was exactly {places} \
-                 samples a period"
-            ),
-            "record at another speed",
-        ),
-        Error::NoEllipse => (
-            "the samples are a cloud and no ring: the scale stands still, or the signals are no sin/cos pair".into(),
-            MOVE,
-        ),
-        other => (other.to_string(), MOVE),
-    };
-    format!(
-        "a_c, b_c, a_s, b_s, beta, theta: {seen}; {advice}; the values are half the sums and differences of the extremes"
-    )
 }

@@ -165,7 +165,12 @@ fn a_search_that_found_nothing_has_no_error_bars() {
         for method in ALL {
             let found = calibrate(&cos, &sin, method, &Options::default()).expect("a calibration");
             let said = found.cannot_tell.join(" ");
-            if said.contains("did not come to rest") || said.contains("of Theta cannot be told") {
+            let nothing = [
+                "did not come to rest",
+                "of Theta cannot be told",
+                "collapsed",
+            ];
+            if nothing.iter().any(|words| said.contains(words)) {
                 seen += 1;
                 assert!(found.parameters.iter().all(|p| p.std_error.is_none()));
                 let of = found.correlations.iter().chain(&found.theta_correlations);
@@ -256,5 +261,63 @@ fn a_noise_ratio_that_is_not_theirs_is_said() {
         let found = calibrate(&cos, &sin, Method::Unbiased, &options).expect("an ellipse");
         let told = found.remarks.iter().any(|r| r.contains("the samples say"));
         assert_eq!(told, said, "{given:?}: {:?}", found.remarks);
+    }
+}
+
+/// Sine noise of 3 to 50 times the cosine's: what is beyond the tested range is said, and has no error bar of the ratio.
+#[test]
+fn a_ratio_beyond_the_tested_range_is_said() {
+    let at = |ratio: f64, given: Option<f64>, swapped: bool| {
+        let mut random = StdRng::seed_from_u64(7);
+        let mut draw = || -> f64 { StandardNormal.sample(&mut random) };
+        let one = |k: i32| {
+            let (s, c) = (0.3 + std::f64::consts::TAU * 7.0 * f64::from(k) / 4000.0).sin_cos();
+            (c + 0.1 + 0.05 / ratio * draw(), s - 0.1 + 0.05 * draw())
+        };
+        let (cos, sin): (Vec<f64>, Vec<f64>) = (0..4000).map(one).unzip();
+        let (cos, sin) = if swapped { (sin, cos) } else { (cos, sin) };
+        let options = Options { noise_ratio: given };
+        calibrate(&cos, &sin, Method::Unbiased, &options).expect("a calibration")
+    };
+    for swapped in [false, true] {
+        let near = at(3.0, None, swapped);
+        assert!(near.noise_ratio_error.is_some() && near.cannot_tell.is_empty());
+        for ratio in [12.0, 25.0, 50.0] {
+            let far = at(ratio, None, swapped);
+            assert_eq!(far.noise_ratio_error, None, "{ratio}: {:?}", far.noise);
+            let loud = if swapped {
+                "cos has 8 or more"
+            } else {
+                "sin has 8 or more"
+            };
+            assert!(far.cannot_tell[0].contains(loud), "{:?}", far.cannot_tell);
+            let text = nonius_calibration::report(&far, None);
+            assert!(text.contains("too far from 1 to be measured"), "{text}");
+            // Given, it is not contradicted; equal noise is.
+            let truth = if swapped { 1.0 / ratio } else { ratio };
+            let given = at(ratio, Some(truth), swapped);
+            assert!(given.cannot_tell.is_empty() && given.remarks.is_empty());
+            let wrong = at(ratio, Some(1.0), swapped).remarks.join(" ");
+            assert!(wrong.contains("the samples say"), "{wrong}");
+        }
+    }
+}
+
+/// A cubic that maps an arc to one point leaves no residual, and is no calibration.
+#[test]
+fn a_cubic_that_collapsed_on_an_arc_gives_no_values() {
+    for arc in [0.1, 0.25] {
+        let (cos, sin) = noisy(|k| 0.7 + std::f64::consts::TAU * arc * k / 4000.0);
+        for method in [Method::Poly8, Method::Poly9] {
+            let found = calibrate(&cos, &sin, method, &Options::default()).expect("an answer");
+            assert!(found.theta.is_empty() && found.parameters.len() == 5);
+            assert!(found.parameters.iter().all(|p| p.std_error.is_none()));
+            assert!(found.residual_rms > 5e-4, "{}", found.residual_rms);
+            let said = found.cannot_tell.join(" ");
+            assert!(
+                said.contains("collapsed") && !said.contains("rough guess"),
+                "{said}"
+            );
+        }
     }
 }

@@ -74,6 +74,22 @@ fn unequal_noise_does_no_harm() {
     }
 }
 
+/// What is left of the bias grows with the ratio of the noise: small at 3 : 1, below the bound at 8 : 1, where the tested range
+/// ends.
+#[test]
+fn very_unequal_noise_biases_by_less_than_the_bound() {
+    for (ratio, least) in [(3.0, 0.3), (8.0, 1.0)] {
+        for noise in [[0.05 / ratio, 0.05], [0.05, 0.05 / ratio]] {
+            let tally = run(Method::Unbiased, noise, 40);
+            let bias = tally.bias().amax();
+            assert!(
+                bias < least + 4.0 * tally.bias_error().amax(),
+                "{noise:?}: {bias}"
+            );
+        }
+    }
+}
+
 /// The yardstick shows what it is for: the algebraic fits are biased by noise, the extremes by ten times as much.
 #[test]
 fn the_other_methods_are_biased_by_noise() {

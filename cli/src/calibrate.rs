@@ -7,7 +7,7 @@ use clap::{Args, ValueEnum};
 use nonius_calibration::{
     Calibration, Correlations, Method, Options, Parameter, calibrate, report, undetermined,
 };
-use nonius_recording::Recording;
+use nonius_recording::{AdcSource, Recording};
 use serde::Serialize;
 
 use crate::recording_args::RecordingArgs;
@@ -86,7 +86,7 @@ struct Noise {
     sin_rms: f64,
     /// Of the sine over that of the cosine.
     ratio: f64,
-    /// Null where the ratio was given or assumed.
+    /// Null where the ratio was given, assumed, or further from 1 than the samples can tell.
     ratio_std_error: Option<f64>,
 }
 
@@ -149,7 +149,8 @@ pub(crate) fn run(args: &Calibrate) -> Result<()> {
             "--noise-ratio {ratio}: expected 0.01 to 100, the noise of the sine channel over that of the cosine channel"
         );
     }
-    let recording = Recording::read(&args.recording, &args.recording_args.overrides())?;
+    let recording =
+        Recording::read_even_at_rest(&args.recording, &args.recording_args.overrides())?;
     crate::notes(&recording.notes);
     let options = Options {
         noise_ratio: args.noise_ratio,
@@ -166,7 +167,10 @@ pub(crate) fn run(args: &Calibrate) -> Result<()> {
         say!("{}", serde_json::to_string_pretty(&Json::of(&found))?);
     } else {
         let adc = recording.metadata.adc;
-        say_as_it_is!("{}", report(&found, Some([adc.cos.lsb, adc.sin.lsb])));
+        // The rounding of an ADC that was merely assumed is no finding.
+        let known = adc.cos.source != AdcSource::Assumed;
+        let lsb = known.then_some([adc.cos.lsb, adc.sin.lsb]);
+        say_as_it_is!("{}", report(&found, lsb));
     }
     Ok(())
 }

@@ -202,6 +202,41 @@ fn a_standstill_is_an_answer() {
     }
 }
 
+/// Codes of a 12-bit ADC, also constant ones: an answer and no error, with the cause and the way out, and no other cause.
+#[test]
+fn a_standstill_of_codes_is_an_answer() {
+    for sigma in [0.0, 0.15, 0.35, 0.7] {
+        let mut noise = noise();
+        let mut text =
+            String::from("# sample_rate_hz: 1000\n# adc_bits: 12\n# full_scale: 2048\ncos,sin\n");
+        for _ in 0..3000 {
+            let (c, s) = (1200.3 + sigma * noise(), -500.4 + sigma * noise());
+            writeln!(text, "{:.0},{:.0}", c.round(), s.round()).expect("text");
+        }
+        for method in METHODS {
+            let json = json(&text, &["--method", method]);
+            let said = sentences(&json).join(" ");
+            assert!(
+                said.contains("the scale stands still") && said.contains("a whole period"),
+                "{sigma} {said}"
+            );
+            let all = json["parameters"].as_array().expect("parameters");
+            assert!(all.iter().all(|p| p["std_error"].is_null()));
+        }
+    }
+}
+
+#[test]
+fn only_a_known_adc_has_its_rounding_in_the_report() {
+    let text = recording(2000, 7.3, [0.002; 2]);
+    let known = text.replacen("cos,sin", "# adc_bits: 12\n# full_scale: 1\ncos,sin", 1);
+    for (text, there) in [(text, false), (known, true)] {
+        let output = calibrate(&text, &[]);
+        let said = String::from_utf8_lossy(&output.stdout).into_owned();
+        assert_eq!(said.contains("ADC rounding"), there, "{said}");
+    }
+}
+
 #[test]
 fn distortion_drift_and_glitches_are_said() {
     let mut noise = noise();
@@ -249,13 +284,12 @@ fn what_is_wrong_is_refused_with_place_and_way_out() {
     refused(&lines.join("\n"), &[], &["r.csv:51", "oops"]);
     lines[50] = "0.1,NaN";
     refused(&lines.join("\n"), &[], &["r.csv:51"]);
-    let dead: String = text
-        .lines()
-        .take(2)
-        .chain(["0.1,0.5"; 100])
-        .map(|l| format!("{l}\n"))
-        .collect();
-    refused(&dead, &[], &["dead"]);
+    let dead = |line: &str| match line.split_once(',') {
+        Some((_, sin)) if sin != "sin" => format!("0.1,{sin}\n"),
+        _ => format!("{line}\n"),
+    };
+    let dead: String = text.lines().map(dead).collect();
+    refused(&dead, &[], &["'cos' is dead", "wiring"]);
     let dir = tempfile::tempdir().expect("scratch");
     let nowhere = support::nonius(dir.path(), &["calibrate", "nowhere.csv"]);
     support::refused(&nowhere, &["nowhere.csv"]);

@@ -3,6 +3,7 @@
 use crate::MIN_SAMPLES;
 use crate::error::ErrorKind;
 use crate::estimate::tidy;
+use crate::standstill;
 
 /// A channel with less than this share of the other's range is dead, if the other one turns.
 const DEAD_RANGE: f64 = 0.005;
@@ -16,17 +17,29 @@ pub(crate) struct Channel<'a> {
     pub(crate) option: &'static str,
 }
 
-/// Refuses recordings that are too short or have a dead channel.
+/// Refuses recordings that are too short or have a dead channel; constant channels where both rest are a standstill, and no
+/// dead wiring.
 pub(crate) fn usable(cos: &Channel<'_>, sin: &Channel<'_>) -> Result<(), ErrorKind> {
     let found = cos.values.len();
     if found < MIN_SAMPLES {
         return Err(ErrorKind::TooFew { found });
     }
     // Zeros in both channels at the start are an ADC that had not begun yet.
-    let rows = cos.values.iter().zip(sin.values);
-    let start = rows.take_while(|(c, s)| **c == 0.0 && **s == 0.0).count();
+    let start = standstill::start(cos.values, sin.values);
     let ranges = [cos, sin].map(|c| range(c.values.get(start..).unwrap_or_default()));
     let widths = ranges.map(|(low, high)| high - low);
+    if widths.contains(&0.0) && standstill::at_rest(cos.values, sin.values) {
+        let of = |i: usize| {
+            let (low, high) = ranges[i];
+            if low == high {
+                format!("is constant at {}", tidy(low))
+            } else {
+                format!("flickers within {} … {}", tidy(low), tidy(high))
+            }
+        };
+        let why = format!("'{}' {}, '{}' {}", cos.column, of(0), sin.column, of(1));
+        return Err(ErrorKind::Standstill { why });
+    }
     for (i, channel) in [cos, sin].into_iter().enumerate() {
         let other = [sin, cos][i];
         let (low, high) = ranges[i];
@@ -121,7 +134,28 @@ mod tests {
         let after_zeros = |k: f64| if k < 2.0 { 0.0 } else { 2.5 };
         let cos = |k: f64| if k < 2.0 { 0.0 } else { k.cos() };
         assert!(verdict(cos, after_zeros, 100).is_err());
-        assert!(verdict(|_| 0.0, |_| 0.0, 100).is_err());
+    }
+
+    #[test]
+    fn two_channels_that_rest_are_a_standstill_and_not_dead_wiring() {
+        let toggles = |k: f64| f64::from(u8::from((k * 7.0).sin() > 0.3));
+        type Signal = fn(f64) -> f64;
+        let cases: [(Signal, Signal); 3] = [
+            (|_| 0.0, |_| 0.0),
+            (|_| 1200.0, |_| -500.0),
+            (|_| 1200.0, toggles),
+        ];
+        for (cos, sin) in cases {
+            let error = verdict(cos, sin, 1000).expect_err("a refusal");
+            assert!(matches!(error, ErrorKind::Standstill { .. }), "{error}");
+            assert!(
+                error.to_string().starts_with("the scale stands still"),
+                "{error}"
+            );
+        }
+        // Beside one that moves it is dead.
+        let error = verdict(|_| 1200.0, |k| (40.0 * (k / 9.0).cos()).round(), 1000);
+        assert!(matches!(error, Err(ErrorKind::DeadChannel { .. })));
     }
 
     #[test]

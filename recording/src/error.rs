@@ -154,6 +154,11 @@ pub enum ErrorKind {
     )]
     NoInterval { interval: f64 },
     #[error(
+        "the scale stands still, or nothing is connected: {why}; move the scale by at least a whole period while \
+         recording, and check the wiring if this stays"
+    )]
+    Standstill { why: String },
+    #[error(
         "the column '{column}' is dead: {why}; check the wiring, or name another column with {option} COLUMN"
     )]
     DeadChannel {

@@ -21,6 +21,7 @@ mod motion;
 mod reader;
 mod recording;
 mod reference;
+mod standstill;
 mod step;
 mod survey;
 mod table;
@@ -32,6 +33,7 @@ pub use ellipse::{Ellipse, EllipseFit, FitMethod};
 pub use error::{Error, ErrorKind, Place};
 pub use motion::Motion;
 pub use recording::{OtherColumn, Recording};
+pub use standstill::at_rest;
 pub use survey::Survey;
 
 /// Fewest samples a recording may have.

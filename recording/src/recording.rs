@@ -42,6 +42,14 @@ pub struct Recording {
     pub notes: Vec<String>,
 }
 
+/// A file to read, and its name for messages.
+fn open(path: &Path) -> Result<(impl BufRead, String), Error> {
+    let name = path.display().to_string();
+    let file =
+        std::fs::File::open(path).map_err(|e| Error::new(Place::file(&name), ErrorKind::Io(e)))?;
+    Ok((std::io::BufReader::with_capacity(1 << 16, file), name))
+}
+
 /// Columns as they were read.
 #[derive(Debug, Default)]
 pub(crate) struct Columns {
@@ -63,14 +71,18 @@ impl Recording {
     /// # Errors
     /// Where the file cannot be read or is not a usable recording, with the place in the file.
     pub fn read(path: &Path, overrides: &Overrides) -> Result<Self, Error> {
-        let name = path.display().to_string();
-        let file = std::fs::File::open(path)
-            .map_err(|e| Error::new(Place::file(&name), ErrorKind::Io(e)))?;
-        Self::read_from(
-            std::io::BufReader::with_capacity(1 << 16, file),
-            &name,
-            overrides,
-        )
+        let (source, name) = open(path)?;
+        Self::read_from(source, &name, overrides)
+    }
+
+    /// As [`Recording::read`], and constant channels of a scale that stands still are a recording, too.
+    ///
+    /// # Errors
+    /// As for [`Recording::read`], less [`ErrorKind::Standstill`].
+    pub fn read_even_at_rest(path: &Path, overrides: &Overrides) -> Result<Self, Error> {
+        let (source, name) = open(path)?;
+        let (columns, declared) = reader::read(source, &name, overrides)?;
+        Self::assemble(columns, declared, &Place::file(&name), true)
     }
 
     /// Reads CSV text; `name` stands in messages in place of a file name.
@@ -83,7 +95,7 @@ impl Recording {
         overrides: &Overrides,
     ) -> Result<Self, Error> {
         let (columns, declared) = reader::read(source, name, overrides)?;
-        Self::assemble(columns, declared, &Place::file(name))
+        Self::assemble(columns, declared, &Place::file(name), false)
     }
 
     /// A recording from samples in memory, for example of a simulated sensor: times in seconds, and
@@ -125,13 +137,14 @@ impl Recording {
             ..Columns::default()
         };
         let declared = crate::declared::Lines::default().finish(false, overrides)?;
-        Self::assemble(columns, declared, &Place::file("samples"))
+        Self::assemble(columns, declared, &Place::file("samples"), false)
     }
 
     fn assemble(
         mut columns: Columns,
         mut declared: Declared,
         place: &Place,
+        even_at_rest: bool,
     ) -> Result<Self, Error> {
         let refuse = |kind| Error::new(place.clone(), kind);
         let channel = |values, column, option| Channel {
@@ -139,11 +152,13 @@ impl Recording {
             column,
             option,
         };
-        checks::usable(
+        match checks::usable(
             &channel(&columns.cos, &columns.cos_name, "--cos"),
             &channel(&columns.sin, &columns.sin_name, "--sin"),
-        )
-        .map_err(refuse)?;
+        ) {
+            Err(ErrorKind::Standstill { .. }) if even_at_rest => {}
+            checked => checked.map_err(refuse)?,
+        }
         let mut notes = std::mem::take(&mut declared.notes);
         let (time_s, sample_rate_hz) = match (columns.time_s, declared.sample_rate_hz) {
             (Some(time), given) => {

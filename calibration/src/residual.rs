@@ -1,0 +1,46 @@
+//! What a correction leaves of the radius, and whether it left anything to correct.
+
+use nalgebra::Vector2;
+
+use crate::curve::Curve;
+use crate::method::Method;
+use crate::unbiased::Fit;
+
+/// Rms of the corrected radius less one.
+pub(crate) fn residual(method: Method, theta: &[f64], cos: &[f64], sin: &[f64]) -> f64 {
+    let radius = |(y_c, y_s): (&f64, &f64)| {
+        let (c, s) = method.set().correct(theta, *y_c, *y_s);
+        (c.hypot(s) - 1.0).powi(2)
+    };
+    let sum: f64 = cos.iter().zip(sin).map(radius).sum();
+    (sum / cos.len() as f64).sqrt()
+}
+
+/// The smaller channel's white noise, in amplitudes.
+pub(crate) fn white(fit: &Fit) -> f64 {
+    let [c, s] = fit.noise;
+    (c / fit.ellipse.a_c).min(s / fit.ellipse.a_s)
+}
+
+/// Whether Θ draws the samples together: J is smallest where all of them are one point of the circle, and a cubic reaches
+/// it on an arc. The residual is then far below the noise, and the corrected pairs are far closer to each other than the
+/// ellipse has them.
+pub(crate) fn collapsed(
+    method: Method,
+    theta: &[f64],
+    fit: &Fit,
+    cos: &[f64],
+    sin: &[f64],
+) -> bool {
+    const FAR: f64 = 0.3;
+    let spread = |method: Method, theta: &[f64]| {
+        let pairs = cos.iter().zip(sin);
+        let pairs = pairs
+            .map(|(c, s)| Vector2::from(<[f64; 2]>::from(method.set().correct(theta, *c, *s))));
+        let all: Vec<Vector2<f64>> = pairs.collect();
+        let mean = all.iter().sum::<Vector2<f64>>() / all.len() as f64;
+        all.iter().map(|y| (y - mean).norm_squared()).sum::<f64>()
+    };
+    residual(method, theta, cos, sin) < FAR * white(fit)
+        && spread(method, theta) < FAR * FAR * spread(Method::Unbiased, &fit.ellipse.theta())
+}
