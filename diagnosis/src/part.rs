@@ -61,8 +61,8 @@ impl Part {
     }
 }
 
-/// Products of columns of the same samples. The columns are long and few: a matrix product for all shapes would spend most of its
-/// time on arranging them anew. Nothing is fused, so every processor finds the same sums.
+/// Products of columns of the same samples. The columns are long and few: a matrix product for all shapes would spend most of
+/// its time on arranging them anew. Nothing is fused, so every processor finds the same sums.
 #[multiversion::multiversion(targets("x86_64+avx2"))]
 fn tile(left: [&[f64]; LEFT], right: [&[f64]; RIGHT]) -> [[f64; RIGHT]; LEFT] {
     let count = right[0].len() / LANES;
@@ -78,26 +78,18 @@ fn tile(left: [&[f64]; LEFT], right: [&[f64]; RIGHT]) -> [[f64; RIGHT]; LEFT] {
     for ((((((x0, x1), x2), x3), y0), y1), y2) in
         a0.iter().zip(a1).zip(a2).zip(a3).zip(b0).zip(b1).zip(b2)
     {
-        (
-            add(&mut s00, x0, y0),
-            add(&mut s01, x0, y1),
-            add(&mut s02, x0, y2),
-        );
-        (
-            add(&mut s10, x1, y0),
-            add(&mut s11, x1, y1),
-            add(&mut s12, x1, y2),
-        );
-        (
-            add(&mut s20, x2, y0),
-            add(&mut s21, x2, y1),
-            add(&mut s22, x2, y2),
-        );
-        (
-            add(&mut s30, x3, y0),
-            add(&mut s31, x3, y1),
-            add(&mut s32, x3, y2),
-        );
+        add(&mut s00, x0, y0);
+        add(&mut s01, x0, y1);
+        add(&mut s02, x0, y2);
+        add(&mut s10, x1, y0);
+        add(&mut s11, x1, y1);
+        add(&mut s12, x1, y2);
+        add(&mut s20, x2, y0);
+        add(&mut s21, x2, y1);
+        add(&mut s22, x2, y2);
+        add(&mut s30, x3, y0);
+        add(&mut s31, x3, y1);
+        add(&mut s32, x3, y2);
     }
     let rows = [
         [s00, s01, s02],

@@ -3,10 +3,8 @@
 
 pub(crate) mod bent;
 pub(crate) mod loss;
-#[path = "../../../designs/shipped.rs"]
-pub(crate) mod shipped;
+pub(crate) use crate::support::shipped;
 
-#[allow(unused_imports, reason = "each test binary uses its own part")]
 pub(crate) use shipped::optical;
 
 use std::f64::consts::TAU;
