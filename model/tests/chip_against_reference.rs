@@ -77,6 +77,8 @@ fn structures() -> Vec<(String, Spec)> {
         (2, 1, CalibrationMethod::Exact, 5),
         (3, 2, CalibrationMethod::SumOfSquares, 5),
         (3, 2, CalibrationMethod::SumOfSquares, 4),
+        (3, 2, CalibrationMethod::Batch, 5),
+        (3, 2, CalibrationMethod::Batch, 4),
     ] {
         let mut spec = optical();
         spec.tracking.method = method;
@@ -104,9 +106,12 @@ fn structures() -> Vec<(String, Spec)> {
     list
 }
 
-/// A sweep with reversals up to the top speed.
+/// A sweep with reversals up to the top speed; of a batch, which is full with 64 sectors, so slow that none is jumped over.
 fn sweep(spec: &Spec) -> impl Fn(f64) -> f64 {
-    let top = 0.8 * spec.sensor.speed_max_periods_per_s / spec.adc.sample_rate_hz;
+    let mut top = 0.8 * spec.sensor.speed_max_periods_per_s / spec.adc.sample_rate_hz;
+    if spec.calibration.is_batch() {
+        top = top.min(1.0 / 80.0);
+    }
     let slow = TAU / 30_000.0;
     move |k| top / slow * (slow * k).sin() + 0.1
 }

@@ -115,6 +115,7 @@ fn reference(design: &Design, registers: &State<f64>, position: f64) -> Referenc
         search: match (spec.calibration.parameters, spec.calibration.method) {
             (0, _) => Search::None,
             (_, CalibrationMethod::Exact) => Search::Residual(Form::Exact),
+            (_, CalibrationMethod::Batch) => Search::SumOfSquares(Smoothing::Batch { samples: 64 }),
             (_, CalibrationMethod::SumOfSquares) => {
                 let kept = 0.5f64.powi(spec.calibration.forgetting as i32);
                 Search::SumOfSquares(Smoothing::Forgetting { lambda: 1.0 - kept })
@@ -156,7 +157,7 @@ pub(crate) const SAMPLES: u32 = 60_000;
 /// What the chip equalises the modes of offsets, gains and phase with, gains and phase by a power of two near the inverse square of the
 /// amplitude as well. Final form: 1, 2 and 16, and without phase half of each gain's gradient off the other's. The exact gradient: 1/2, 1
 /// and 2. The sum of squares: 1, 1 and 4; its gradient is eight times that along the radius, and a sum of as many samples as are not
-/// forgotten.
+/// forgotten. The batch: 1/2, 3/4 less a third of it of the other gain's, and 2.
 pub(crate) fn equaliser(spec: &Spec) -> Steps {
     let mut amplitude: f64 = spec.sensor.amplitude / spec.adc.full_scale;
     while amplitude < 0.5 {
@@ -170,16 +171,19 @@ pub(crate) fn equaliser(spec: &Spec) -> Steps {
         CalibrationMethod::Exact => [0.5, 1.0, 2.0],
         CalibrationMethod::SumOfSquares => [1.0, 1.0, 4.0]
             .map(|of_radius| of_radius * 0.5f64.powi(3 + spec.calibration.forgetting as i32)),
-        CalibrationMethod::Batch => unreachable!("a batch is not compared here"),
+        CalibrationMethod::Batch => [0.5, 0.75, 2.0].map(|of_radius| of_radius / 8.0),
     };
     let (gain, phase) = (gain * inverse, phase * inverse);
     let mut steps = Steps::zeros();
     for (i, step) in [gain, offset, gain, offset, phase].into_iter().enumerate() {
         steps[(i, i)] = step;
     }
-    if last && spec.calibration.parameters == 4 {
-        (steps[(0, 2)], steps[(2, 0)]) = (-gain / 2.0, -gain / 2.0);
-    }
+    let across = match spec.calibration.method {
+        CalibrationMethod::Final if spec.calibration.parameters == 4 => -gain / 2.0,
+        CalibrationMethod::Batch => -gain / 3.0,
+        _ => 0.0,
+    };
+    (steps[(0, 2)], steps[(2, 0)]) = (across, across);
     steps
 }
 
@@ -239,8 +243,8 @@ pub(crate) fn compare(
         if last && before.gamma_gear >= 4.0 {
             gamma[(4, 4)] /= 4.0;
         }
-        // From the fifth gear on, where a period of travel ends; a mean acts with each sample.
-        let waits = spec.calibration.method != CalibrationMethod::SumOfSquares;
+        // From the fifth gear on, where a period of travel ends; a mean acts with each sample, and a batch when it is full.
+        let waits = !spec.calibration.squares();
         let due = !waits || before.gamma_gear < 4.0 || whole_period && fresh;
         let y = codes.map(|code| code as f64 / half * unit);
         let fresh = fresh && spec.calibration.is_on();
