@@ -1,4 +1,5 @@
-//! The tests of the model in one program: as one for each file, half of the time of building them would be for what they share.
+//! The tests of the model in one program: one for each file would each be built and linked with all that
+//! they share.
 
 mod accuracy;
 mod agreement;

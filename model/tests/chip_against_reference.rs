@@ -13,6 +13,18 @@ use nonius_model::design::Design;
 use nonius_model::reference::gate::{Gate, GateState, Window};
 use nonius_model::spec::{CalibrationMethod, Coding, Spec};
 
+/// The optical design with another loop.
+fn with_loop(method: u32, filter_type: u32) -> Spec {
+    let mut spec = optical();
+    spec.tracking.method = method;
+    spec.tracking.filter_type = filter_type;
+    if filter_type == 1 {
+        // What lags at speed cannot be fast.
+        spec.sensor.speed_max_periods_per_s = 1.5e3;
+    }
+    spec
+}
+
 /// Each structure of the chip that differs in an equation.
 fn structures() -> Vec<(String, Spec)> {
     let mut list = Vec::new();
@@ -26,15 +38,9 @@ fn structures() -> Vec<(String, Spec)> {
         (3, 1, Some(0.97)),
     ] {
         for parameters in [0, 4, 5] {
-            let mut spec = optical();
-            spec.tracking.method = method;
-            spec.tracking.filter_type = filter_type;
+            let mut spec = with_loop(method, filter_type);
             spec.tracking.pole = pole;
             spec.calibration.parameters = parameters;
-            if filter_type == 1 {
-                // What lags at speed cannot be fast.
-                spec.sensor.speed_max_periods_per_s = 1.5e3;
-            }
             let pole = pole.map_or(String::new(), |p| format!(" pole {p}"));
             let name = format!("method {method} type {filter_type}{pole}, {parameters} parameters");
             list.push((name, spec));
@@ -47,14 +53,9 @@ fn structures() -> Vec<(String, Spec)> {
         (2, 1, 4, 4e-8),
         (3, 1, 5, 2e-10),
     ] {
-        let mut spec = optical();
-        spec.tracking.method = method;
-        spec.tracking.filter_type = filter_type;
+        let mut spec = with_loop(method, filter_type);
         spec.calibration.parameters = parameters;
         spec.correction.channel_skew_s = delay;
-        if filter_type == 1 {
-            spec.sensor.speed_max_periods_per_s = 1.5e3;
-        }
         let name =
             format!("method {method} type {filter_type}, {parameters} parameters, skew {delay} s");
         list.push((name, spec));
@@ -69,7 +70,8 @@ fn structures() -> Vec<(String, Spec)> {
         let name = format!("method {method}, {parameters} parameters, harmonics, skew {delay} s");
         list.push((name, spec));
     }
-    // Searches that remember: recursion (11) through each kind of loop filter, and the mean gradient of the squares.
+    // Searches that remember: recursion (11) through each kind of loop filter, the mean gradient of the squares,
+    // the sum over a period.
     for (method, filter_type, search, parameters) in [
         (3, 2, CalibrationMethod::Exact, 5),
         (3, 2, CalibrationMethod::Exact, 4),
@@ -80,16 +82,11 @@ fn structures() -> Vec<(String, Spec)> {
         (3, 2, CalibrationMethod::Batch, 5),
         (3, 2, CalibrationMethod::Batch, 4),
     ] {
-        let mut spec = optical();
-        spec.tracking.method = method;
-        spec.tracking.filter_type = filter_type;
+        let mut spec = with_loop(method, filter_type);
         spec.calibration.method = search;
         spec.calibration.parameters = parameters;
         if search == CalibrationMethod::Exact {
             spec.calibration.lag = Some(false);
-        }
-        if filter_type == 1 {
-            spec.sensor.speed_max_periods_per_s = 1.5e3;
         }
         let name =
             format!("method {method} type {filter_type}, {search:?}, {parameters} parameters");

@@ -51,6 +51,28 @@ fn up_to(per_period: f64, bandwidth: f64) -> Spec {
     spec
 }
 
+/// Nine parameters, whose accumulators are those of the optical design.
+fn nine() -> Spec {
+    let mut spec = up_to(5.0, 20e3);
+    spec.calibration.parameters = 9;
+    spec.formats.accumulator_fraction = Some(25);
+    spec
+}
+
+/// So many samples from a place of the period on, each so many periods after the last.
+fn travel(
+    bench: &mut Bench,
+    signals: &impl Fn(f64) -> (f64, f64),
+    turns: &mut f64,
+    (samples, step): (u32, f64),
+) {
+    for _ in 0..samples {
+        bench.step(signals(TAU * *turns));
+        *turns += step;
+        *turns -= turns.floor();
+    }
+}
+
 /// A design that may run at exactly four samples a period for very long: its accumulators are those of the optical one.
 fn for_long() -> Spec {
     let mut spec = up_to(4.0, 20e3);
@@ -162,11 +184,7 @@ fn four_samples_a_period_calibrate_what_they_see() {
         };
         let (first, mut turns) = (radius(&bench), place);
         let mut run = |bench: &mut Bench, samples: u32, step: f64| {
-            for _ in 0..samples {
-                bench.step(signals(TAU * turns));
-                turns += step;
-                turns -= turns.floor();
-            }
+            travel(bench, &signals, &mut turns, (samples, step));
         };
         run(&mut bench, 100_000, 0.25);
         let (half, left) = (radius(&bench), rms(&bench.miscalibration(&signals)));
@@ -192,20 +210,14 @@ fn four_samples_a_period_calibrate_what_they_see() {
 /// what stands in for it stays, until the speed is a little beside.
 #[test]
 fn eight_places_without_cos_4_alpha_leave_a_bend() {
-    let mut spec = up_to(5.0, 20e3);
-    spec.calibration.parameters = 9;
-    spec.formats.accumulator_fraction = Some(25);
+    let spec = nine();
     let mut worst = [0.0f64; 2];
     for signs in 0..16 {
         let signals = sensor(signs);
         let mut bench = Bench::new(&spec, 3);
         let mut turns = 1.0 / 16.0;
         for (worst, per_period) in worst.iter_mut().zip([8.0, 8.0 * 1.003]) {
-            for _ in 0..48_000 {
-                bench.step(signals(TAU * turns));
-                turns += 1.0 / per_period;
-                turns -= turns.floor();
-            }
+            travel(&mut bench, &signals, &mut turns, (48_000, 1.0 / per_period));
             *worst = worst.max(rms(&bench.miscalibration(&signals)));
         }
     }
@@ -219,8 +231,8 @@ fn eight_places_without_cos_4_alpha_leave_a_bend() {
     );
 }
 
-/// Nine parameters: eight places of the period tell them all but where cos 4α is 0 there, fewer do not. From new at exactly 5, 6 or 7 samples a period, what those
-/// places do not show stays; a speed a little beside that shows it, and exactly so many samples a period leave it alone again.
+/// Nine parameters: eight places of the period tell them all but where cos 4α is 0 there, fewer do not. From new at exactly
+/// 5, 6 or 7 samples a period, what those places do not show stays; a speed a little beside that shows it, and exactly so many samples a period leave it alone again.
 #[test]
 fn nine_parameters_need_eight_places() {
     let mut rows = vec![];
@@ -228,17 +240,11 @@ fn nine_parameters_need_eight_places() {
         let mut worst = [0.0f64; 4];
         for (signs, place) in (0..16).zip([0.013, 0.1, 0.125, 0.0].into_iter().cycle()) {
             let signals = sensor(signs);
-            let mut spec = up_to(5.0, 20e3);
-            spec.calibration.parameters = 9;
-            spec.formats.accumulator_fraction = Some(25);
-            let mut bench = Bench::new(&spec, 3);
+            let mut bench = Bench::new(&nine(), 3);
             let mut turns = place;
             let mut run = |bench: &mut Bench, periods: u32, per_period: f64| {
-                for _ in 0..(f64::from(periods) * per_period) as u64 {
-                    bench.step(signals(TAU * turns));
-                    turns += 1.0 / per_period;
-                    turns -= turns.floor();
-                }
+                let samples = (f64::from(periods) * per_period) as u32;
+                travel(bench, &signals, &mut turns, (samples, 1.0 / per_period));
                 rms(&bench.miscalibration(&signals))
             };
             let exactly = f64::from(per_period);

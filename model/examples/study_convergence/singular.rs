@@ -1,7 +1,6 @@
 //! The direction that no radius shows, drawn: what it does round the period, and how order 2 of the angle error fares
 //! with and without the completion.
 
-use plotters::chart::SeriesLabelPosition;
 use std::f64::consts::TAU;
 use std::path::Path;
 
@@ -10,6 +9,7 @@ use nonius_model::reference::gate::Gate;
 use nonius_model::reference::gradient::{Form, Observation};
 use nonius_model::reference::interpolator::Search;
 use nonius_model::reference::{Parameters, Reference, Sensor, Theta};
+use plotters::chart::SeriesLabelPosition;
 
 use crate::method::config;
 use crate::plot::{COLOURS, Line, lines};

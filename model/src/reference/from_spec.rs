@@ -78,8 +78,9 @@ pub fn harmonics(spec: &Spec) -> Harmonics {
 
 /// The gradient's modes are 1/2 for offsets, 1/4 and 1/2 for gains, 1/8 for the phase: brought to about one speed as the
 /// chip does, whose gains and phase carry the square of the amplitude at its input to a power of two. The final form of four
-/// parameters takes half of each gain's gradient from the other's; that of five has its phase twice as fast until γ has settled, half as fast then. The exact
-/// gradient has twice the modes, for what turns the pair counts too, and the sum of squares, which lags, has gains and phase half as fast. A batch is a step of Newton's at the first γ.
+/// parameters takes half of each gain's gradient from the other's; that of five has its phase twice as fast until γ has settled,
+/// half as fast then. The exact gradient has twice the modes, for what turns the pair counts too, and the sum of squares, which lags, has
+/// gains and phase half as fast. A batch is a step of Newton's at the first γ.
 fn equaliser(spec: &Spec, parameters: Parameters) -> Steps {
     let octaves = 2.0 * (spec.sensor.amplitude / spec.adc.full_scale).log2();
     let nearest = (octaves - octaves.round()).exp2();
@@ -100,13 +101,13 @@ fn equaliser(spec: &Spec, parameters: Parameters) -> Steps {
         equaliser[at] = phase;
     }
     let mut steps = Steps::from_diagonal(&equaliser);
-    if (spec.calibration.method, parameters.count()) == (CalibrationMethod::Final, 4) {
-        (steps[(gain_c, gain_s)], steps[(gain_s, gain_c)]) = (-gain / 2.0, -gain / 2.0);
-    }
-    if spec.calibration.method == CalibrationMethod::Batch && parameters.count() < 8 {
+    let across = match (spec.calibration.method, parameters.count()) {
+        (CalibrationMethod::Final, 4) => -gain / 2.0,
         // The inverse of the normal equations.
-        (steps[(gain_c, gain_s)], steps[(gain_s, gain_c)]) = (-nearest, -nearest);
-    }
+        (CalibrationMethod::Batch, 4 | 5) => -gain / 3.0,
+        _ => 0.0,
+    };
+    (steps[(gain_c, gain_s)], steps[(gain_s, gain_c)]) = (across, across);
     steps
 }
 

@@ -164,8 +164,10 @@ pub(crate) fn equaliser(spec: &Spec) -> Steps {
         amplitude *= 2.0;
     }
     let octaves = -2.0 * amplitude.log2();
-    let last = spec.calibration.method == CalibrationMethod::Final;
-    let inverse = if last { octaves - 0.3 } else { octaves }.round().exp2();
+    let final_form = spec.calibration.method == CalibrationMethod::Final;
+    let inverse = if final_form { octaves - 0.3 } else { octaves }
+        .round()
+        .exp2();
     let [offset, gain, phase] = match spec.calibration.method {
         CalibrationMethod::Final => [1.0, 2.0, 16.0],
         CalibrationMethod::Exact => [0.5, 1.0, 2.0],
@@ -217,8 +219,8 @@ pub(crate) fn compare(
     let mut found = Difference::default();
     let mut start = Theta::zeros();
     let mut compared = 0u32;
-    let last = spec.calibration.method == CalibrationMethod::Final;
-    let still = if last { 0 } else { REMEMBERED };
+    let final_form = spec.calibration.method == CalibrationMethod::Final;
+    let still = if final_form { 0 } else { REMEMBERED };
     for k in 0..SAMPLES {
         let k = f64::from(k);
         let codes = encoder.codes_of([motion(k), motion(k + late)]);
@@ -240,12 +242,11 @@ pub(crate) fn compare(
         assert!(after.locked, "lock lost at sample {k}");
         let first = -f64::from(spec.calibration.gamma_first as i32) - before.gamma_gear;
         let mut gamma = equaliser * first.exp2();
-        if last && before.gamma_gear >= 4.0 {
+        if spec.calibration.phase_settles() && before.gamma_gear >= 4.0 {
             gamma[(4, 4)] /= 4.0;
         }
         // From the fifth gear on, where a period of travel ends; a mean acts with each sample, and a batch when it is full.
-        let waits = !spec.calibration.squares();
-        let due = !waits || before.gamma_gear < 4.0 || whole_period && fresh;
+        let due = !spec.calibration.waits() || before.gamma_gear < 4.0 || whole_period && fresh;
         let y = codes.map(|code| code as f64 / half * unit);
         let fresh = fresh && spec.calibration.is_on();
         let seen = paper.step_with(y, (fresh.then_some(&gamma), due), false);
