@@ -325,6 +325,11 @@ pub(crate) fn gears() -> Vec<Variant> {
     .into()
 }
 
+/// What the page of costs has, in its order.
+pub(crate) fn costed() -> Vec<Variant> {
+    [vec![fixed()], searches(), forgetful(), lagging()].concat()
+}
+
 /// All of these.
 pub(crate) fn everything() -> Vec<Variant> {
     let mut list = shipped();

@@ -3,7 +3,7 @@
 use crate::method::Error;
 
 /// The samples as vectors from their mean.
-fn centred(cos: &[f64], sin: &[f64]) -> Vec<nalgebra::Vector2<f64>> {
+pub(crate) fn centred(cos: &[f64], sin: &[f64]) -> Vec<nalgebra::Vector2<f64>> {
     let pairs = cos.iter().zip(sin);
     let all: Vec<_> = pairs.map(|(c, s)| nalgebra::Vector2::new(*c, *s)).collect();
     let mean = all.iter().sum::<nalgebra::Vector2<f64>>() / all.len() as f64;

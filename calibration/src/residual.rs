@@ -1,9 +1,8 @@
 //! What a correction leaves of the radius, and whether it left anything to correct.
 
-use nalgebra::Vector2;
-
 use crate::curve::Curve;
 use crate::method::Method;
+use crate::nothing::centred;
 use crate::unbiased::Fit;
 
 /// Rms of the corrected radius less one.
@@ -35,11 +34,12 @@ pub(crate) fn collapsed(
     const FAR: f64 = 0.3;
     let spread = |method: Method, theta: &[f64]| {
         let pairs = cos.iter().zip(sin);
-        let pairs = pairs
-            .map(|(c, s)| Vector2::from(<[f64; 2]>::from(method.set().correct(theta, *c, *s))));
-        let all: Vec<Vector2<f64>> = pairs.collect();
-        let mean = all.iter().sum::<Vector2<f64>>() / all.len() as f64;
-        all.iter().map(|y| (y - mean).norm_squared()).sum::<f64>()
+        let corrected = pairs.map(|(c, s)| method.set().correct(theta, *c, *s));
+        let (c, s): (Vec<f64>, Vec<f64>) = corrected.unzip();
+        centred(&c, &s)
+            .iter()
+            .map(|y| y.norm_squared())
+            .sum::<f64>()
     };
     residual(method, theta, cos, sin) < FAR * white(fit)
         && spread(method, theta) < FAR * FAR * spread(Method::Unbiased, &fit.ellipse.theta())

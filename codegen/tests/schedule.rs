@@ -9,7 +9,7 @@ use nonius_model::design::Design;
 use nonius_model::graph::{Evaluation, Graph};
 use nonius_model::spec::Overrides;
 use rand::{Rng, SeedableRng, rngs::StdRng};
-use shipped::variants::{fixed, forgetful, kinds, lagging, searches, with_every_word};
+use shipped::variants::{costed, kinds, with_every_word};
 use shipped::words::{key, say};
 
 #[test]
@@ -116,13 +116,8 @@ fn chips_of_other_words_are_scheduled_and_written() {
 #[test]
 fn the_page_of_costs_has_the_clocks_of_now() {
     let page = std::fs::read_to_string("../docs/on-line-costs.md").expect("the page");
-    let chips = [fixed()]
-        .into_iter()
-        .chain(searches())
-        .chain(forgetful())
-        .chain(lagging());
     let mut rows = 0;
-    for chip in chips {
+    for chip in costed() {
         let graph = &chip.design().graph;
         let begins = format!(
             "| {} | {} | {} | ",

@@ -2,6 +2,7 @@
 
 use nalgebra::DMatrix;
 
+use crate::solve::dot;
 use crate::whiten::ORDER;
 
 /// Samples of a block: its functions fit the cache.
@@ -100,8 +101,7 @@ fn tile(left: [&[f64]; LEFT], right: [&[f64]; RIGHT]) -> [[f64; RIGHT]; LEFT] {
     let mut sums = rows.map(|row| row.map(|lanes| lanes.iter().sum::<f64>()));
     for (row, left) in sums.iter_mut().zip(left) {
         for (sum, right) in row.iter_mut().zip(right) {
-            let rest = left.iter().zip(right).skip(count * LANES);
-            *sum += rest.map(|(x, y)| x * y).sum::<f64>();
+            *sum += dot(&left[count * LANES..], &right[count * LANES..]);
         }
     }
     sums
