@@ -15,7 +15,7 @@ use std::sync::{Arc, LazyLock, Mutex};
 
 use chip::optical;
 use edit::{Fault, on_one_line};
-use faults::{faults, harmonic_faults, skew_faults};
+use faults::{dropping_faults, faults, harmonic_faults, skew_faults};
 use nonius_hdl::verify::{Options, verify};
 use nonius_model::design::Design;
 use nonius_model::spec::Spec;
@@ -240,6 +240,16 @@ fn vectors_catch_every_fault_in_the_correction_of_skew() {
     spec.correction.channel_skew_s = 1e-7;
     let chip = Sound::new(&spec);
     all_caught("the correction of skew", &chip, RTL, &skew_faults());
+}
+
+#[test]
+fn vectors_catch_every_fault_in_the_dropping_of_periods() {
+    let mut spec = optical();
+    spec.calibration.parameters = 9;
+    // Settled within the rows.
+    spec.calibration.gear_periods = Some(1);
+    let chip = Sound::new(&spec);
+    all_caught("the dropping of periods", &chip, RTL, &dropping_faults());
 }
 
 #[test]

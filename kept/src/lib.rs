@@ -10,6 +10,12 @@ pub use recordings::{recording, recordings};
 use std::fs;
 use std::path::Path;
 
+/// Whether the long form of a campaign is asked for: `NONIUS_LONG` is set. Its figures are no row of a page.
+#[must_use]
+pub fn long() -> bool {
+    std::env::var_os("NONIUS_LONG").is_some()
+}
+
 /// Whether kept files are to be written anew.
 #[must_use]
 pub fn blessed() -> bool {

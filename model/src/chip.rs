@@ -136,6 +136,7 @@ pub fn registers(structure: &Structure) -> (Vec<&'static str>, Vec<&'static str>
         "theta_6_deviation" | "theta_7_deviation" | "theta_8_deviation" => c.has_bend(),
         "gamma_gear" | "gear_periods" | "held_periods" | "travel_origin" | "travel_low"
         | "travel_high" | "disturbed" | "risen" | "held" => c.is_on(),
+        "astray" | "astray_before" | "astray_long" => structure.catches_up(),
         "rough" | "calm" => c.is_on() && c.settles(),
         "ahead_used" | "behind_used" => c.is_on() && !c.is_batch(),
         "loop_gear" => structure.loop_gears > 0,

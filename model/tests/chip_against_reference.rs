@@ -273,6 +273,7 @@ fn the_travel_gates_decide_alike() {
         let turns = 3.0 * (t / 3000.0).sin() + 0.9 * (t / 411.0).sin() + 0.2 * (t / 67.0).sin();
         let [cos, sin] = encoder.codes(turns);
         let (was_locked, position) = (chip.state.locked, chip.position());
+        let was_long = chip.state.astray_long;
         let chip_waits = chip.state.gamma_gear.to_f64() >= 4.0;
         let probes = chip.step_codes(cos, sin, false, true);
         if !was_locked {
@@ -282,6 +283,9 @@ fn the_travel_gates_decide_alike() {
         // The optical design, which waits for the end of a period from the fifth gear on.
         let expected = gate.step(0.0, 0.0, position * TAU, chip_waits);
         if was_locked {
+            // The gates know nothing of the loop; what it has to catch up with does not count, wherever in the period it is.
+            let far = chip_waits && probes.e.to_f64().abs() >= spec.small_error();
+            let expected = expected && (!far || was_long);
             assert_eq!(probes.fresh, expected, "sample {k}");
             counted += 1;
             fresh += u32::from(expected);

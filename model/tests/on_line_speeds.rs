@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use crate::chip_support::{Bench, fast, rms, sensor};
-use nonius_kept::figure;
+use nonius_kept::{figure, long};
 use nonius_model::spec::{CalibrationMethod, Spec};
 use rayon::prelude::*;
 
@@ -115,7 +115,16 @@ fn locks_from_rest_at_any_promised_speed() {
 /// the errors.
 #[test]
 fn four_samples_a_period_leave_the_parameters() {
-    let all = (0..16).flat_map(|signs| [0.0, 0.03125, 0.09375, 0.125].map(|place| (signs, place)));
+    let places = [[0.0, 0.09375], [0.03125, 0.125]];
+    let all = (0..16).flat_map(|signs| {
+        let odd = u32::count_ones(signs) as usize % 2;
+        let here = if long() {
+            places.concat()
+        } else {
+            places[odd].to_vec()
+        };
+        here.into_iter().map(move |place| (signs, place))
+    });
     let all: Vec<(u32, f64)> = all.collect();
     let worst = all.into_par_iter().map(|(signs, place)| {
         let signals = sensor(signs);
@@ -140,7 +149,7 @@ fn four_samples_a_period_leave_the_parameters() {
     });
     let [before, after] = worst.reduce(|| [0.0; 2], |a, b| [a[0].max(b[0]), a[1].max(b[1])]);
     figure(
-        "exactly 4 samples a period for 250 000 periods, calibrated before, accumulators of 25 bits as in the optical design, worst of all signs and four places: miscalibration before and after, mrad rms",
+        "exactly 4 samples a period for 250 000 periods, calibrated before, accumulators of 25 bits as in the optical design, worst of all signs at two of four places each: miscalibration before and after, mrad rms",
         &format!("{before:.2}; {after:.2}"),
         TEST,
     );
@@ -188,7 +197,7 @@ fn four_samples_a_period_calibrate_what_they_see() {
         };
         run(&mut bench, 100_000, 0.25);
         let (half, left) = (radius(&bench), rms(&bench.miscalibration(&signals)));
-        run(&mut bench, 900_000, 0.25);
+        run(&mut bench, 400_000, 0.25);
         let (seen, later) = (radius(&bench), rms(&bench.miscalibration(&signals)));
         run(&mut bench, 100_000, 0.2501);
         let after = rms(&bench.miscalibration(&signals));
@@ -251,7 +260,7 @@ fn nine_parameters_need_eight_places() {
             let first = rms(&bench.miscalibration(&signals));
             let seen = run(&mut bench, 6000, exactly);
             let beside = run(&mut bench, 6000, exactly * 1.003);
-            let again = run(&mut bench, 20_000, exactly);
+            let again = run(&mut bench, 10_000, exactly);
             for (worst, now) in worst.iter_mut().zip([first, seen, beside, again]) {
                 *worst = worst.max(now);
             }
@@ -275,7 +284,7 @@ fn nine_parameters_need_eight_places() {
             .join(", ")
     };
     figure(
-        "nine parameters, exactly 5, 6, 7, 8 and 64 samples a period for 6000 periods from new, and for 20 000 once calibrated: what is left of the miscalibration, mrad rms",
+        "nine parameters, exactly 5, 6, 7, 8 and 64 samples a period for 6000 periods from new, and for 10 000 once calibrated: what is left of the miscalibration, mrad rms",
         &format!("{}; {}", column(0), column(1)),
         TEST,
     );

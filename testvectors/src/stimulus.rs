@@ -225,6 +225,22 @@ pub fn named(design: &Design, rows: usize) -> Vec<Stimulus> {
             let gain = left * (1.0 - 6e-4 * drifting.max(0.0));
             faded(pair(top * k as f64, 1.0, 0.0), gain)
         }),
+        // At top speed, and once gamma has settled a little slower and back within a sample, again and again: in each of some
+        // periods of travel, then in one alone. The loop catches up by a tenth of a radian and more, in lock.
+        motion("jolts", &|k| {
+            let slower = 0.4 * spec.tracking.bandwidth_hz / spec.adc.sample_rate_hz;
+            let run = ((1.3 / top) as usize).max(1);
+            let slow = |n: usize| n / (2 * run) * run + (n % (2 * run)).min(run);
+            let busy = 8 * run;
+            let since = k.saturating_sub(2 * rows / 5);
+            let alone = since.saturating_sub(busy + 8 * run).min(4 * run);
+            let slowly = slow(since.min(busy)) + alone;
+            pair(
+                top * k as f64 - slower.min(top / 2.0) * slowly as f64,
+                1.0,
+                0.0,
+            )
+        }),
         // Over a period and back.
         motion("reversals", &|k| {
             let swing = k as f64 * top / 32.0;

@@ -81,6 +81,26 @@ fn the_fade_is_held_and_then_followed() {
     assert!(seen.contains(&"optical"), "{seen:?}");
 }
 
+/// Where the axis is jolted the loop catches up; after two periods with a jolt all samples count, until one has none.
+#[test]
+fn the_jolts_are_caught_up_with() {
+    let design = shipped::design("optical");
+    let states = played(&design, "jolts");
+    let long = |s: &State<Bits>| s.astray_long;
+    let first = states.iter().position(|s| s.astray).expect("a jolt");
+    let given_up = states.iter().position(long).expect("several");
+    assert!(first < given_up && states[first].gamma_gear.to_f64() >= 4.0);
+    let again = given_up
+        + states[given_up..]
+            .iter()
+            .position(|s| !s.astray_long)
+            .expect("travel");
+    let alone = states[again..].iter().position(|s| s.astray);
+    let alone = again + alone.expect("one jolt alone");
+    assert!(states[first..].iter().all(|s| s.locked));
+    assert!(!states[alone].astray_long && !states[ROWS - 1].astray_long);
+}
+
 /// The direction turns once, at speeds so small that its dead band counts.
 #[test]
 fn the_creep_turns_the_direction() {

@@ -6,7 +6,7 @@
 // far, is 2^-4 at first and 2^-9 after 5 gears.
 // After S. Balemi, "Automatic calibration of sinusoidal encoder signals", IFAC 2005; equation numbers are the paper's.
 //
-// Design 0b990403d2f8: 17 products on 1 multiplier, 20 clocks per sample.
+// Design f8cb77070171: 17 products on 1 multiplier, 20 clocks per sample.
 //
 // Formats: sW.F is a two's complement number of W bits, F of them behind the point; uW.F has no sign and is kept here
 // with a zero in front, so that every number is signed. Angles are in turns of a scale period. A signal that saturates
@@ -33,7 +33,7 @@
 //      |                          | nothing_proven_yet
 //    1 | loop_ab * error_previous | sin_value sin_slope y_c y_s counting whole_period travel_clear sector_added
 //      |                          | new_sector still_used_ahead used_up_ahead still_used_behind used_up_behind y_5
-//      |                          | known_in_lock held_or_known period_breaks_off lost_before
+//      |                          | known_in_lock held_or_known astray_goes_on period_breaks_off lost_before
 //    2 | theta_3 * y_s            | cos_value cos_slope drift
 //    3 | sin_slope * sin_inside   |
 //    4 | cos_slope * cos_inside   | sin_magnitude sin_hat
@@ -42,12 +42,14 @@
 //    7 | s * cos_hat              | c_exact c s_weak
 //    8 | c * sin_hat              | c_weak signal_present may_flip
 //    9 | c * cos_hat              | e_exact e_seen e
-//   10 | s * sin_hat              | e_in_window e_change
-//   11 | e * e                    | rho_exact rho rho_in_window in_window flip level_step half_turn sample_counts
-//      |                          | rho_high rho_large rho_not_small rho_rises proven_better may_recall
-//   12 | loop_a * e_change        | level_moved level_full level_empty narrower loop_gear_up full_in_last_gear counted
-//      |                          | rho_too_large residual_large disturbed_lately disturbed_or_held disturbed_or_astray
-//      |                          | hold_cause hold recall residual_rough radius_large rho_limited period_tick
+//   10 | s * sin_hat              | e_in_window e_change e_large far_behind catches_up astray_lately astray_period_ends
+//      |                          | astray_again
+//   11 | e * e                    | rho_exact rho rho_in_window radius_present in_window flip level_step half_turn
+//      |                          | loop_follows rho_high rho_large rho_not_small rho_rises proven_better may_recall
+//   12 | loop_a * e_change        | level_moved level_full level_empty narrower loop_gear_up full_in_last_gear
+//      |                          | sample_counts counted rho_too_large residual_large disturbed_lately
+//      |                          | disturbed_or_held disturbed_or_recalled hold_cause hold signal_in_doubt
+//      |                          | held_in_doubt recall residual_rough radius_large fresh rho_limited period_tick
 //      |                          | disturbed_period gamma_restart gear_passed gamma_shift gamma_gear_up
 //      |                          | gear_periods_up periods_end gear_periods_again held_periods_up free_period
 //      |                          | held_periods_step held_periods_stay within_period gear_ends_calm stays_calm
@@ -55,7 +57,7 @@
 //      |                          | last_gear_passed quiet_periods_pass quiet_periods_end proved gain_moved remember
 //      |                          | search_improves remember_better return_ends signal_changed still_known fades
 //      |                          | fade_ends
-//   13 | cos_hat * rho_limited    | kick fresh recall_any remember_recent return_goes_on together_again period_taught
+//   13 | cos_hat * rho_limited    | kick recall_any remember_recent return_goes_on together_again period_taught
 //      |                          | travel_ends search_ends theta_applies lock_falls
 //   14 | sin_hat * rho_limited    | speed alpha_hat_turned alpha_hat_sum carry backwards not_forwards rho_c gradient_2
 //   15 | y_c * rho_c              | count_before rho_s step_2 gradient_4
@@ -85,6 +87,7 @@
 //     lock_full              63                      The full lock level.
 //     lock_restart           31                      Lock level after a change of loop gear.
 //     loop_gear_last         3                       Last loop gear.
+//     catch_up_error         0.0625                  |e| from which the loop is catching up with motion, radians.
 //     gamma_gear_settled     4                       From this γ gear on γ has settled.
 //     gamma_gear_last        5                       Last γ gear.
 //     gear_periods_last      3                       Periods of travel per γ gear, less one.
@@ -104,6 +107,8 @@
 //     minus_direction_rate   -0.0000152587890625     Minus direction_rate: Rate below which the direction does not
 //                                                    change, turns per sample.
 //     minus_quarter          -0.25                   −¼.
+//     minus_catch_up_error   -0.0625                 Minus catch_up_error: |e| from which the loop is catching up with
+//                                                    motion, radians.
 //     minus_restart_residual -0.25                   Minus restart_residual: |ρ| above this begins the search again.
 //     minus_hold_residual    -0.0625                 Minus hold_residual: |ρ| above this is not small: it holds the
 //                                                    parameters once a gear has ended without.
@@ -175,6 +180,9 @@ module optical (
     reg calm; // A gear of γ has ended with a small residual since the search began.
     reg risen; // The radius was too large in this period of travel.
     reg held; // The residual was large in the period before: the parameters are held.
+    reg astray; // The loop was far behind the axis in the running period of travel, once γ had settled.
+    reg astray_before; // And in the last one.
+    reg astray_long; // And in two or more before this: it is not catching up.
     reg returning; // What was recalled is held until some periods have passed quietly (recall).
     reg fading; // The search began again where the residual had stayed: the signal may have faded (recall).
     reg known; // Parameters have been remembered in the last gear (recall).
@@ -249,8 +257,9 @@ module optical (
     reg signed [7:0] travel_low_next;
     reg ahead_used_next;
     reg behind_used_next;
-    reg sample_counts;
-    reg counted;
+    reg not_astray_long;
+    reg not_catches_up;
+    reg loop_follows;
     reg rho_high;
     reg rho_large;
     reg rho_not_small;
@@ -262,8 +271,8 @@ module optical (
     reg held_and_lost;
     reg not_apart;
     reg may_recall;
+    reg not_radius_present;
     reg recall;
-    reg not_hold;
     reg fresh;
     reg signed [14:0] rho_limited;
     reg signed [17:0] rho_c;
@@ -310,14 +319,20 @@ module optical (
     reg remember_recent;
     reg not_return_ends;
     reg fades;
+    reg fade_ends;
     reg returning_next;
-    reg not_fade_ends;
     reg fading_next;
     reg either_halfway_or_quiet_periods_pass;
     reg halfway_next;
     reg known_next;
     reg gain_moved_or_apart;
     reg apart_next;
+    reg astray_goes_on;
+    reg astray_next;
+    reg astray_before_and_astray_goes_on;
+    reg astray_before_next;
+    reg astray_long_and_astray_goes_on;
+    reg astray_long_next;
     reg period_breaks_off;
     reg theta_applies;
     reg lost_before;
@@ -482,7 +497,8 @@ module optical (
         ($signed(e[17:12]) < 6'sd7) & ($signed(~e[17:12]) < 6'sd7);
     wire rho_in_window = $signed(~rho_now[17:15]) < 3'sd1; // step 11, with minus_lock_residual
     wire signal_present_now = ~signal_lost_next_now; // step 8
-    wire in_window_now = (e_in_window & rho_in_window) & signal_present; // step 11
+    wire radius_present = rho_in_window & signal_present; // step 11
+    wire in_window_now = e_in_window & radius_present; // step 11
     wire may_flip_now = ~(locked | signal_lost_next_now); // step 8
     wire flip = ~($signed(~rho_now[17:16]) < 2'sd1) & may_flip; // step 11
 
@@ -601,8 +617,18 @@ module optical (
     wire still_used_behind = behind_used & ~(whole_period_now | sector_behind); // step 1
     wire used_up_behind = period_ahead | still_used_behind; // step 1
     wire behind_used_next_now = counting_now & used_up_behind; // step 1
-    wire sample_counts_now = counting & in_window_now; // step 11
-    wire counted_now = sample_counts & new_sector; // step 12
+
+    // The loop catches up
+    //   once gamma has settled, a sample with a large |e| does not count, unless two periods of travel had one
+    wire e_large = // step 10, with catch_up_error, minus_catch_up_error
+        ~(($signed(e[17:12]) < 6'sd1) & ($signed(~e[17:12]) < 6'sd1));
+    wire far_behind = gamma_settled & e_large; // step 10
+    wire not_astray_long_now = ~astray_long; // step 0
+    wire catches_up = far_behind & not_astray_long; // step 10
+    wire not_catches_up_now = ~catches_up; // step 10
+    wire loop_follows_now = in_window_now & not_catches_up; // step 11
+    wire sample_counts = counting & loop_follows; // step 12
+    wire counted = sample_counts & new_sector; // step 12
 
     // Hold
     //   from the first quiet period on a large residual, once a gear has ended calm one that is not small, and all
@@ -617,8 +643,8 @@ module optical (
     wire residual_large = rho_too_large & sample_counts; // step 12
     wire disturbed_lately = residual_large | disturbed; // step 12
     wire disturbed_or_held = disturbed_lately | held; // step 12
-    wire disturbed_or_astray = disturbed_or_held | level_moved_below_lock_full; // step 12
-    wire hold_cause = disturbed_or_astray | returning; // step 12
+    wire disturbed_or_recalled = disturbed_or_held | returning; // step 12
+    wire hold_cause = disturbed_or_recalled | level_moved_below_lock_full; // step 12
     wire gamma_gear_below_one_now = gamma_gear < 4'sd1; // step 0
     wire search_begun_now = ~gamma_gear_below_one_now | ~(gear_periods < 7'sd1); // step 0
     wire hold = hold_cause & search_begun; // step 12
@@ -629,11 +655,13 @@ module optical (
     wire not_apart_now = ~apart; // step 0
     wire proven_better = (not_apart | rho_rises) | held_and_lost; // step 11
     wire may_recall_now = proven_stand & proven_better; // step 11
-    wire recall_now = hold & may_recall; // step 12
+    wire not_radius_present_now = ~radius_present; // step 11
+    wire signal_in_doubt = disturbed_or_recalled | not_radius_present; // step 12
+    wire held_in_doubt = hold & signal_in_doubt; // step 12
+    wire recall_now = held_in_doubt & may_recall; // step 12
     wire residual_rough = rho_not_small & sample_counts; // step 12
     wire radius_large = rho_high & sample_counts; // step 12
-    wire not_hold_now = ~hold; // step 12
-    wire fresh_now = counted & not_hold; // step 13
+    wire fresh_now = counted & ~hold; // step 12
 
     // Radius, whatever the loop lags behind
     //   radius - 1 = rho + e^2/2
@@ -655,7 +683,7 @@ module optical (
     wire signed [31:0] sin_hat_times_rho_limited = product_0[31:0]; // s32.32, step 15
     wire signed [17:0] rho_s_rounded = sin_hat_times_rho_limited[31:14] + {17'b0, sin_hat_times_rho_limited[13]};
     wire signed [17:0] rho_s_now = rho_s_rounded; // s18.18, step 15
-    wire period_tick = counted_now & whole_period; // step 12
+    wire period_tick = counted & whole_period; // step 12
 
     // Parameter update
     //   theta -= gamma gradient, each component times a power of two that lets all parameters converge alike; once
@@ -819,7 +847,7 @@ module optical (
     wire signal_changed = restart_risen & not_fading; // step 12
     wire still_known = known & ~signal_changed; // step 12
     wire fades_now = (gamma_restart & held_long) | fading; // step 12
-    wire fade_ends = (recall_again_now | proved_now) | signal_changed; // step 12
+    wire fade_ends_now = (recall_again_now | proved_now) | signal_changed; // step 12
     wire together_again = proved | recall_any_now; // step 13
     wire signed [17:0] recent_1_next_bits = running_1_next[24:7]; // s18.18, step 19
     wire signed [17:0] recent_1_next = remember_recent ? recent_1_next_bits : recent_1; // s18.18, step 19
@@ -837,18 +865,26 @@ module optical (
     wire signed [16:0] proven_4_next = remember ? recent_4 : proven_4; // s17.18, step 19
     wire signed [16:0] proven_5_next = remember ? recent_5 : proven_5; // s17.18, step 19
     wire returning_next_now = return_goes_on | recall_again; // step 13
-    wire not_fade_ends_now = ~fade_ends; // step 12
-    wire fading_next_now = fades & not_fade_ends; // step 13
+    wire fading_next_now = fades & ~fade_ends; // step 13
     wire either_halfway_or_quiet_periods_pass_now = halfway ^ quiet_periods_pass; // step 12
     wire halfway_next_now = either_halfway_or_quiet_periods_pass & ~recall_any_now; // step 13
     wire known_next_now = still_known | proved_now; // step 12
     wire gain_moved_or_apart_now = gain_moved | apart; // step 12
     wire apart_next_now = gain_moved_or_apart & ~together_again; // step 13
+    wire astray_lately = astray | far_behind; // step 10
+    wire astray_goes_on_now = ~whole_period_now & counting_now; // step 1
+    wire astray_period_ends = whole_period & astray_lately; // step 10
+    wire astray_again = astray_period_ends & astray_before; // step 10
+    wire astray_next_now = astray_lately & astray_goes_on; // step 10
+    wire astray_before_and_astray_goes_on_now = astray_before & astray_goes_on_now; // step 1
+    wire astray_before_next_now = astray_period_ends | astray_before_and_astray_goes_on; // step 10
+    wire astray_long_and_astray_goes_on_now = astray_long & astray_goes_on_now; // step 1
+    wire astray_long_next_now = astray_again | astray_long_and_astray_goes_on; // step 10
 
     // Parameters as they are applied
     //   theta = what the search has found, once gamma has settled where a period of travel ends
     //   (paper section 5.5: static measurements may bias the estimates)
-    wire period_taught = fresh_now & whole_period; // step 13
+    wire period_taught = fresh & whole_period; // step 13
     wire period_breaks_off_now = travel_clear_now & ~whole_period_now; // step 1
     wire travel_ends = period_taught | period_breaks_off; // step 13
     wire search_ends = gamma_gear_below_gamma_gear_settled | travel_ends; // step 13
@@ -940,6 +976,7 @@ module optical (
             a_period_away <= a_period_away_now;
             sector_ahead <= sector_ahead_now;
             sector_behind <= sector_behind_now;
+            not_astray_long <= not_astray_long_now;
             gamma_gear_below_one <= gamma_gear_below_one_now;
             search_begun <= search_begun_now;
             not_fading <= not_fading_now;
@@ -977,6 +1014,9 @@ module optical (
             behind_used_next <= behind_used_next_now;
             y_5 <= y_5_now;
             held_or_known <= held_or_known_now;
+            astray_goes_on <= astray_goes_on_now;
+            astray_before_and_astray_goes_on <= astray_before_and_astray_goes_on_now;
+            astray_long_and_astray_goes_on <= astray_long_and_astray_goes_on_now;
             period_breaks_off <= period_breaks_off_now;
             lost_before <= lost_before_now;
         end
@@ -1018,27 +1058,31 @@ module optical (
             rho_exact_difference <= rho_exact_difference_now;
             e_in_window <= e_in_window_now;
             e_change <= e_change_now;
+            not_catches_up <= not_catches_up_now;
+            astray_next <= astray_next_now;
+            astray_before_next <= astray_before_next_now;
+            astray_long_next <= astray_long_next_now;
         end
         if (step == 5'd11) begin
             rho <= rho_now;
             in_window <= in_window_now;
             level_step <= level_step_now;
             half_turn <= half_turn_now;
-            sample_counts <= sample_counts_now;
+            loop_follows <= loop_follows_now;
             rho_high <= rho_high_now;
             rho_large <= rho_large_now;
             rho_not_small <= rho_not_small_now;
             calm_and_rho_not_small <= calm_and_rho_not_small_now;
             may_recall <= may_recall_now;
+            not_radius_present <= not_radius_present_now;
         end
         if (step == 5'd12) begin
             level_empty <= level_empty_now;
             loop_gear_up <= loop_gear_up_now;
             lock_level_next_chosen <= lock_level_next_chosen_now;
             locked_next <= locked_next_now;
-            counted <= counted_now;
             recall <= recall_now;
-            not_hold <= not_hold_now;
+            fresh <= fresh_now;
             rho_limited <= rho_limited_now;
             held_periods_next <= held_periods_next_now;
             gear_periods_next <= gear_periods_next_now;
@@ -1054,7 +1098,7 @@ module optical (
             remember_better <= remember_better_now;
             not_return_ends <= not_return_ends_now;
             fades <= fades_now;
-            not_fade_ends <= not_fade_ends_now;
+            fade_ends <= fade_ends_now;
             either_halfway_or_quiet_periods_pass <= either_halfway_or_quiet_periods_pass_now;
             known_next <= known_next_now;
             gain_moved_or_apart <= gain_moved_or_apart_now;
@@ -1062,7 +1106,6 @@ module optical (
         if (step == 5'd13) begin
             loop_gear_next <= loop_gear_next_now;
             speed_sum <= speed_sum_now;
-            fresh <= fresh_now;
             recall_any <= recall_any_now;
             remember_recent <= remember_recent_now;
             returning_next <= returning_next_now;
@@ -1146,6 +1189,9 @@ module optical (
             calm <= 0;
             risen <= 0;
             held <= 0;
+            astray <= 0;
+            astray_before <= 0;
+            astray_long <= 0;
             returning <= 0;
             fading <= 0;
             known <= 0;
@@ -1195,6 +1241,9 @@ module optical (
             calm <= known_to_be_calm;
             risen <= risen_next;
             held <= held_next;
+            astray <= astray_next;
+            astray_before <= astray_before_next;
+            astray_long <= astray_long_next;
             returning <= returning_next;
             fading <= fading_next;
             known <= known_next;

@@ -115,6 +115,9 @@ module chip_tb;
     reg expect_calm;
     reg expect_risen;
     reg expect_held;
+    reg expect_astray;
+    reg expect_astray_before;
+    reg expect_astray_long;
     reg expect_returning;
     reg expect_fading;
     reg expect_known;
@@ -199,14 +202,16 @@ module chip_tb;
                 got = got + $fscanf(file, "%h %h %h",
                     expect_disturbed, expect_rough, expect_calm);
                 got = got + $fscanf(file, "%h %h %h",
-                    expect_risen, expect_held, expect_returning);
+                    expect_risen, expect_held, expect_astray);
+                got = got + $fscanf(file, "%h %h %h",
+                    expect_astray_before, expect_astray_long, expect_returning);
                 got = got + $fscanf(file, "%h %h %h",
                     expect_fading, expect_known, expect_halfway);
                 got = got + $fscanf(file, "%h",
                     expect_apart);
                 // No wire: Verilator does not notice what $fscanf changes.
                 expect_position = {expect_count, expect_alpha_hat[26:0]};
-                if (got != 72) begin
+                if (got != 75) begin
                     bad = 1'b1;
                     $display("row %0d of %0s cannot be read", played, name);
                 end else if (sample != played) begin
@@ -415,6 +420,15 @@ module chip_tb;
                     if (chip.apart !== expect_apart)
                         check_failed("apart",
                             {127'd0, expect_apart}, {127'd0, chip.apart});
+                    if (chip.astray !== expect_astray)
+                        check_failed("astray",
+                            {127'd0, expect_astray}, {127'd0, chip.astray});
+                    if (chip.astray_before !== expect_astray_before)
+                        check_failed("astray_before",
+                            {127'd0, expect_astray_before}, {127'd0, chip.astray_before});
+                    if (chip.astray_long !== expect_astray_long)
+                        check_failed("astray_long",
+                            {127'd0, expect_astray_long}, {127'd0, chip.astray_long});
                     if (chip.theta_1_deviation !== expect_theta_1_deviation)
                         check_failed("theta_1_deviation",
                             {103'd0, expect_theta_1_deviation}, {103'd0, chip.theta_1_deviation});
@@ -506,11 +520,12 @@ module chip_tb;
                 11: begin path = "vectors/corners.vec"; name = "corners"; rows = 24; end
                 12: begin path = "vectors/bounds.vec"; name = "bounds"; rows = 24; end
                 13: begin path = "vectors/drift.vec"; name = "drift"; rows = 24; end
-                14: begin path = "vectors/reversals.vec"; name = "reversals"; rows = 24; end
-                15: begin path = "vectors/small.vec"; name = "small"; rows = 24; end
-                16: begin path = "vectors/smaller.vec"; name = "smaller"; rows = 24; end
-                17: begin path = "vectors/ties.vec"; name = "ties"; rows = 24; end
-                18: begin path = "vectors/random.vec"; name = "random"; rows = 24; end
+                14: begin path = "vectors/jolts.vec"; name = "jolts"; rows = 24; end
+                15: begin path = "vectors/reversals.vec"; name = "reversals"; rows = 24; end
+                16: begin path = "vectors/small.vec"; name = "small"; rows = 24; end
+                17: begin path = "vectors/smaller.vec"; name = "smaller"; rows = 24; end
+                18: begin path = "vectors/ties.vec"; name = "ties"; rows = 24; end
+                19: begin path = "vectors/random.vec"; name = "random"; rows = 24; end
                 default: finished = 1'b1;
             endcase
             // With +stop_at_first nothing is played after a stimulus that failed.

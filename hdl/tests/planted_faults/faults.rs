@@ -5,6 +5,30 @@ use crate::edit::{
     zero_extended,
 };
 
+/// Faults in the dropping of periods in which the loop caught up.
+pub(crate) fn dropping_faults() -> Vec<Fault> {
+    vec![
+        swap(
+            "every period is dropped",
+            &["wire period_dropped"],
+            " & period_has_hole",
+            "",
+        ),
+        swap(
+            "a period is dropped before it ends",
+            &["wire period_dropped"],
+            "travel_clear & ",
+            "",
+        ),
+        swap(
+            "a period is dropped for a stop in its last sample only",
+            &["wire period_has_hole"],
+            "astray_and_not_astray_long | ",
+            "",
+        ),
+    ]
+}
+
 /// Faults in the Verilog, each of one place.
 pub(crate) fn faults() -> Vec<Fault> {
     vec![
@@ -13,6 +37,30 @@ pub(crate) fn faults() -> Vec<Fault> {
             &["wire held_long_now ="],
             "7'sh27",
             "7'sh26",
+        ),
+        swap(
+            "the loop catches up from twice the phase error on",
+            &["wire e_large ="],
+            "$signed(e[17:12]) < 6'sd1",
+            "$signed(e[17:12]) < 6'sd2",
+        ),
+        swap(
+            "a sample counts in which the loop catches up",
+            &["wire loop_follows_now ="],
+            " & not_catches_up",
+            "",
+        ),
+        swap(
+            "catching up is given up after one period",
+            &["wire astray_again ="],
+            " & astray_before",
+            "",
+        ),
+        swap(
+            "catching up is not given up for long",
+            &["wire astray_long_next_now ="],
+            " | astray_long_and_astray_goes_on",
+            "",
         ),
         fault("rounding of the phase error: by the wrong bit", |v| {
             let (guard, below) = guard(v, "e_seen");

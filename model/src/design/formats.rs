@@ -370,11 +370,8 @@ pub(super) fn constants(
         lock_full: whole(full),
         lock_restart: whole(full / 2),
         loop_gear_last: whole(acquisition.gears.into()),
-        completion_residual: Constant::rounded(
-            exp2((6.0 * spec.sensor.noise_rms).max(0.05).log2().ceil() as i64),
-            f.min(8),
-        ),
-        completion_error: Constant::rounded(Calibration::CATCHES_UP, 4),
+        completion_residual: Constant::rounded(spec.small_error(), f.min(8)),
+        catch_up_error: Constant::rounded(spec.small_error(), f.min(8)),
         travel_samples_last: whole(travel_samples(spec).into()),
         gamma_gear_settled: whole(Calibration::SETTLED.into()),
         gamma_gear_last: whole(structure.calibration.gears().into()),

@@ -134,10 +134,9 @@ pub fn update<S: Signal, const PLAIN: bool>(
         CalibrationMethod::Final => {}
         CalibrationMethod::Exact => {
             this.sensitivities = gradient::sensitivities(seen, state, k, structure);
-            let e = gradient::followed(seen.e, state, k, structure);
             let calibrated = gradient.iter_mut().zip(&this.sensitivities);
             for (gradient, sensitivity) in calibrated.take(linear) {
-                *gradient = *gradient + sensitivity.error * e;
+                *gradient = *gradient + sensitivity.error * seen.e;
             }
         }
         CalibrationMethod::SumOfSquares | CalibrationMethod::Batch => {

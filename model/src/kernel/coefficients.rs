@@ -138,8 +138,8 @@ coefficients! {
     loop_gear_last,
     /// |ρ| below this lets the completion learn.
     completion_residual,
-    /// |e| from which the completion rests, radians: the loop is catching up with motion.
-    completion_error,
+    /// |e| from which the loop is catching up with motion, radians.
+    catch_up_error,
     /// A period of travel that takes so many samples is too slow for the completion.
     travel_samples_last,
     /// From this γ gear on γ has settled.

@@ -107,6 +107,6 @@ fn follows<S: Signal>(
         return round;
     }
     // Where the loop catches up with motion, e is no error of the sensor.
-    let calm = within(e, k.completion_error).named("e_small");
+    let calm = within(e, k.catch_up_error).named("e_small");
     round.and(calm).named("completion_follows")
 }

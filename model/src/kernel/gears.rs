@@ -69,13 +69,13 @@ pub struct Hold<S: Signal> {
     pub recall: Option<S::Bool>,
 }
 
-/// Whether the parameters are held; `counts`: the sample counts, wherever in the period it is; `follows`: neither it nor the last ones
+/// Whether the parameters are held; `counts`: the sample counts, wherever in the period it is; `present`: its radius is not too small; `follows`: neither it nor the last ones
 /// were out of the lock window.
 #[inline(always)]
 pub fn hold<S: Signal>(
     rho: S,
     counts: S::Bool,
-    follows: S::Bool,
+    (present, follows): (S::Bool, S::Bool),
     state: &State<S>,
     k: &Coefficients<S>,
     structure: &Structure,
@@ -93,12 +93,12 @@ pub fn hold<S: Signal>(
         .named("residual_large");
     let disturbed = large.or(state.disturbed).named("disturbed_lately");
     let disturbed = disturbed.or(state.held).named("disturbed_or_held");
-    let suspect = disturbed.or(follows.not()).named("disturbed_or_astray");
-    let suspect = if structure.calibration.recalls() {
-        suspect.or(state.returning)
+    let disturbed = if structure.calibration.recalls() {
+        disturbed.or(state.returning).named("disturbed_or_recalled")
     } else {
-        suspect
+        disturbed
     };
+    let suspect = disturbed.or(follows.not());
     // Until a first period has passed without a large residual they are free: what follows badly finds back so.
     let begun = state.gear_periods.less_than(k.one).not();
     let later = first_gear(state, k).not().or(begun).named("search_begun");
@@ -113,7 +113,10 @@ pub fn hold<S: Signal>(
         let faded = faded.and(state.locked.not()).named("held_and_lost");
         let better = state.apart.not().or(rises).or(faded).named("proven_better");
         let proven = proven.and(better).named("may_recall");
-        held.and(proven).named("recall")
+        // Where only the loop goes astray, nothing was learned.
+        let doubt = disturbed.or(present.not()).named("signal_in_doubt");
+        let doubtful = held.and(doubt).named("held_in_doubt");
+        doubtful.and(proven).named("recall")
     });
     Hold {
         large,

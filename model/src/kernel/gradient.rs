@@ -1,10 +1,10 @@
 //! The gradient of one sample, component by component.
 
+use super::detector;
 use super::sensitivity::{self, Sensitivity};
 use super::start::Polar;
 use super::{Coefficients, State, Structure};
-use super::{detector, gears};
-use crate::signal::{Formula, Logic, Signal, Wide};
+use crate::signal::{Formula, Signal, Wide};
 use crate::spec::Calibration;
 
 static DIRECTION: Formula = Formula {
@@ -69,25 +69,6 @@ pub fn limited<S: Signal>(rho: S, e: Option<S>, structure: &Structure) -> S {
     residual
         .quantise(&structure.formats.residual)
         .named("rho_limited")
-}
-
-/// e as the exact gradient takes it. Once γ has settled, more than a sensor's error can make is the loop catching up with a stop or a
-/// start, and says nothing about the sensor. A loop of type 1 always lags.
-pub fn followed<S: Signal>(
-    e: S,
-    state: &State<S>,
-    k: &Coefficients<S>,
-    structure: &Structure,
-) -> S {
-    let calibration = &structure.calibration;
-    if structure.filter_type == 1 || !calibration.allows_for_lag() || !calibration.settles() {
-        return e;
-    }
-    let large = detector::within(e, k.completion_error)
-        .not()
-        .named("e_large");
-    let catches_up = gears::settled(state, k, structure).and(large);
-    S::select(catches_up.named("catches_up"), k.zero, e).named("e_followed")
 }
 
 /// n ρ, or for the sum of squares (c, s) ε.

@@ -44,6 +44,15 @@ pub struct Lock<S: Signal> {
     pub locked: S::Bool,
 }
 
+/// What a sample looks like.
+#[derive(Clone, Copy, Debug)]
+pub struct Window<S: Signal> {
+    /// There is a signal, of a radius that is not too small.
+    pub present: S::Bool,
+    /// And the loop follows it: as in lock.
+    pub inside: S::Bool,
+}
+
 /// Whether this sample looks as in lock. A radius that is too large does not speak against it: parameters of a signal that had
 /// faded make one, and only in lock do they find back.
 #[inline(always)]
@@ -53,7 +62,7 @@ pub fn in_window<S: Signal>(
     weak: S::Bool,
     k: &Coefficients<S>,
     structure: &Structure,
-) -> S::Bool {
+) -> Window<S> {
     e.begin(if structure.calibration.is_on() {
         &WINDOW
     } else {
@@ -61,8 +70,14 @@ pub fn in_window<S: Signal>(
     });
     let of_e = within(e, k.lock_error).named("e_in_window");
     let of_rho = rho.less_than(-k.lock_residual).not();
-    of_e.and(of_rho.named("rho_in_window"))
+    let present = of_rho
+        .named("rho_in_window")
         .and(weak.not().named("signal_present"))
+        .named("radius_present");
+    Window {
+        present,
+        inside: of_e.and(present),
+    }
 }
 
 /// Whether the estimate points away from the signal and may be turned round.

@@ -5,6 +5,7 @@
 
 pub mod bend;
 pub mod calibration;
+pub mod catch_up;
 pub mod coefficients;
 pub mod completion;
 pub mod correction;
@@ -79,6 +80,12 @@ impl Structure {
         let c = &self.calibration;
         let known = self.skew.is_some() || self.harmonics.is_some();
         c.is_linear_final() && !(known || c.starts())
+    }
+
+    /// Samples in which the loop catches up with motion do not count. A loop of type 1 always lags.
+    #[must_use]
+    pub fn catches_up(&self) -> bool {
+        self.filter_type == 2 && self.calibration.is_on() && self.calibration.settles()
     }
 }
 

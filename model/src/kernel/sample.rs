@@ -2,8 +2,8 @@
 
 use super::{Coefficients, Input, Method, Probes, State, Structure};
 use super::{
-    bend, calibration, completion, correction, detector, gears, gradient, harmonics, lock,
-    loop_filter, position, recall, sine, skew, start, step, sum_of_squares, travel, waits,
+    bend, calibration, catch_up, completion, correction, detector, gears, gradient, harmonics,
+    lock, loop_filter, position, recall, sine, skew, start, step, sum_of_squares, travel, waits,
 };
 use crate::signal::{Formula, Logic, Signal};
 
@@ -91,7 +91,8 @@ fn advance_of<S: Signal, const PLAIN: bool>(
     // Without a signal the loop coasts at its last rate.
     let e = S::select(weak, k.zero, seen).quantise(&structure.formats.signal);
 
-    let in_window = lock::in_window(e, rho, weak, k, structure);
+    let window = lock::in_window(e, rho, weak, k, structure);
+    let in_window = window.inside;
     let flip = lock::flip(rho, weak, state, k).named("flip");
     let lock = lock::update(in_window, state, k, structure);
 
@@ -104,9 +105,20 @@ fn advance_of<S: Signal, const PLAIN: bool>(
     let measure = starting.map(|running| start::measure(e, running, k));
     let waits = waits::Waits::of(state, k, structure);
     let travel = travel::travel(counting, (measure, waits), state, k, structure);
-    let counts = counting.and(in_window).named("sample_counts");
+    let catch_up = catch_up::catch_up(e, state, k, structure);
+    let follows = catch_up.map_or(in_window, |catch_up| {
+        in_window.and(catch_up.now.not()).named("loop_follows")
+    });
+    let counts = counting.and(follows).named("sample_counts");
     let counted = counts.and(travel.new_sector).named("counted");
-    let hold = gears::hold(rho, counts, lock.full, state, k, structure);
+    let hold = gears::hold(
+        rho,
+        counts,
+        (window.present, lock.full),
+        state,
+        k,
+        structure,
+    );
     let fresh = counted.and(hold.held.not());
     let estimate = (cos_hat, sin_hat);
     let mut polar = None;
@@ -143,6 +155,9 @@ fn advance_of<S: Signal, const PLAIN: bool>(
         clear: travel.clear,
     };
     let mut updated = calibration::update::<S, PLAIN>(&seen, gate, state, k, structure);
+    if let (false, Some(catch_up)) = (PLAIN, catch_up) {
+        updated.theta = catch_up.dropped(updated.theta, gate, state, structure);
+    }
     let completion = if PLAIN {
         None
     } else {
@@ -162,6 +177,7 @@ fn advance_of<S: Signal, const PLAIN: bool>(
         .recall
         .map(|recall| recall::recall(&mut updated, recall, &mut gears, state, k, structure));
     let recalled = memory.as_ref().map(|memory| memory.recalled);
+    let astray = catch_up.map(|catch_up| catch_up.after(gate, counting, state));
     let applied = waits::apply(updated.theta, waits, gate, recalled, state);
 
     rate.begin(&FLAGS);
@@ -206,6 +222,13 @@ fn advance_of<S: Signal, const PLAIN: bool>(
     registers.calm = gears.calm;
     registers.risen = gears.risen;
     registers.held = gears.held;
+    if let Some(astray) = astray {
+        [
+            registers.astray,
+            registers.astray_before,
+            registers.astray_long,
+        ] = astray;
+    }
     applied.keep(registers);
     if !PLAIN {
         remember(registers, &updated, completed.as_ref());

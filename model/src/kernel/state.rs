@@ -182,6 +182,12 @@ bundle! {
         risen,
         /// The residual was large in the period before: the parameters are held.
         held,
+        /// The loop was far behind the axis in the running period of travel, once γ had settled.
+        astray,
+        /// And in the last one.
+        astray_before,
+        /// And in two or more before this: it is not catching up.
+        astray_long,
         /// Whole periods of travel follow one another fast enough for the completion.
         moving,
         /// What was recalled is held until some periods have passed quietly (recall).

@@ -44,7 +44,7 @@ impl<S: Signal> Waits<S> {
 
 /// θ1 … θ9 less their nominal values, as the pair is corrected with.
 #[inline(always)]
-fn applied<S: Signal>(state: &State<S>) -> [S; 9] {
+pub fn applied<S: Signal>(state: &State<S>) -> [S; 9] {
     [
         state.theta_1_deviation,
         state.theta_2_deviation,

@@ -2,6 +2,7 @@
 
 use nalgebra::SMatrix;
 
+use super::catch_up::CatchUp;
 use super::completed::CompletedConfig;
 use super::gate::Gate;
 use super::gradient::Form;
@@ -61,16 +62,6 @@ impl Gamma {
     }
 }
 
-/// How what the loop lags is kept out of the residual: along the radius that is the radius less 1, not its projection on the estimate;
-/// across it nothing, where the loop catches up.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Lag {
-    /// From so many halvings of γ on, where that is known to happen at all.
-    pub settled: Option<u32>,
-    /// |e| from which on it does, radians.
-    pub e: f64,
-}
-
 /// What the reference is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Config {
@@ -86,8 +77,10 @@ pub struct Config {
     pub harmonics: Harmonics,
     /// The search.
     pub search: Search,
-    /// What the loop lags is kept out of the residual; never in the paper.
-    pub lag: Option<Lag>,
+    /// The residual along the radius is the radius less 1, not its projection on the estimate, which lags; never in the paper.
+    pub allows_for_lag: bool,
+    /// When a sample teaches nothing because the loop catches up; never in the paper.
+    pub catch_up: Option<CatchUp>,
     /// γ.
     pub gamma: Gamma,
     /// When Θ may move.
@@ -113,7 +106,8 @@ impl Config {
             skew: 0.0,
             harmonics: Harmonics::NONE,
             search: Search::Residual(Form::Final),
-            lag: None,
+            allows_for_lag: false,
+            catch_up: None,
             gamma: Gamma::constant(gamma),
             gate: Gate::EverySample,
             solved: 0,

@@ -12,7 +12,7 @@ use super::loops::LoopConfig;
 use super::poles::Poles;
 use super::start::Start;
 use super::sum_of_squares::Smoothing;
-use super::{Config, Lag, Parameters, ReferenceError, Steps, Theta};
+use super::{CatchUp, Config, Parameters, ReferenceError, Steps, Theta};
 use crate::spec::{Calibration, CalibrationMethod, Spec};
 
 /// From the unit of the ADC's range to y: the middle becomes 0, the nominal amplitude 1.
@@ -191,11 +191,12 @@ pub fn config(spec: &Spec) -> Result<Config, ReferenceError> {
         skew: spec.correction.channel_skew_s,
         harmonics: harmonics(spec),
         search: search(spec),
-        lag: k.allows_for_lag().then_some(Lag {
-            // A loop of type 1 always lags.
-            settled: (k.settles() && spec.tracking.filter_type == 2)
-                .then_some(Calibration::SETTLED),
-            e: Calibration::CATCHES_UP,
+        allows_for_lag: k.allows_for_lag(),
+        // A loop of type 1 always lags.
+        catch_up: (k.is_on() && k.settles() && spec.tracking.filter_type == 2).then(|| CatchUp {
+            settled: Calibration::SETTLED,
+            e: spec.small_error(),
+            drops: k.has_bend() && k.waits(),
         }),
         gamma: Gamma {
             first,

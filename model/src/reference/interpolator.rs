@@ -5,8 +5,9 @@
 
 use std::f64::consts::TAU;
 
+use super::catch_up::Behind;
 use super::completed::Completion;
-pub use super::config::{Config, Gamma, Lag, Search, Steps};
+pub use super::config::{Config, Gamma, Search, Steps};
 use super::gate::{Gate, GateState, Window};
 use super::gradient::{Observation, ResidualGradient};
 use super::hold::{self, Hold, Recall, Recalled, Verdict};
@@ -72,6 +73,7 @@ pub struct Reference {
     hold: Hold,
     recall: Recall,
     acquisition: Option<Acquisition>,
+    behind: Behind,
     /// Samples out of the window, one after the other.
     astray: u32,
     /// Halvings of γ so far, and α̂ where the present one began.
@@ -119,6 +121,7 @@ impl Reference {
             hold: Hold::default(),
             recall: Recall::new(config.theta, tracking.alpha_hat()),
             acquisition,
+            behind: Behind::default(),
             astray: 0,
             geared: (0, tracking.alpha_hat()),
         })
@@ -145,7 +148,8 @@ impl Reference {
         let alpha_hat = self.tracking.alpha_hat();
         let open = self.gate.step(seen.e, seen.rho, alpha_hat, waits);
         let locked = self.gate.locked();
-        let open = open && self.free(seen.rho, locked);
+        let catches_up = self.catches_up(seen.e, locked);
+        let open = open && !catches_up && self.free(seen.rho, locked);
         let due = !waits || self.gate.cleared() && (open || !locked);
         let gamma = self.gamma();
         let starting = self.solved.running();
@@ -291,14 +295,26 @@ impl Reference {
         estimate
     }
 
-    /// What was seen, less what the loop lags.
+    /// What was seen, less what the loop lags along the radius.
     fn followed(&self, seen: &Observation) -> Observation {
-        let Some(lag) = self.config.lag else {
-            return *seen;
+        if self.config.allows_for_lag {
+            seen.without_lag()
+        } else {
+            *seen
+        }
+    }
+
+    /// Whether the loop catches up with motion in a sample that the gate has taken.
+    fn catches_up(&mut self, e: f64, locked: bool) -> bool {
+        let Some(by) = self.config.catch_up else {
+            return false;
         };
-        let settled = lag.settled.is_some_and(|from| self.geared.0 >= from);
-        let catches_up = settled && seen.e.abs() >= lag.e;
-        seen.without_lag(if catches_up { 0.0 } else { seen.e })
+        let far = self.geared.0 >= by.settled && e.abs() >= by.e;
+        let seen = self.behind.step(far, self.gate.cleared(), locked);
+        if by.drops && seen.ends_so {
+            self.pending = Theta::zeros();
+        }
+        seen.catches_up
     }
 
     /// Whether the search goes on; where the signal has changed, γ begins again. A Θ that is held may be an earlier one.

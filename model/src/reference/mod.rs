@@ -17,13 +17,14 @@
 //! | a start within two periods: sample by sample, period by period | [`recursive`], [`solved`] |
 //! | harmonics of the scale period | [`harmonics`] |
 //! | the sine sampled later than the cosine | [`skew`] |
-//! | when to calibrate, how to start | [`gate`], [`hold`], [`start`] |
+//! | when to calibrate, how to start | [`gate`], [`catch_up`], [`hold`], [`start`] |
 //! | all of it together | [`interpolator`] |
 //!
 //! Only [`from_spec`] knows of the chip's `design.toml`, and of it no more than the physical numbers.
 
 pub mod arctangent;
 pub mod baseline;
+pub mod catch_up;
 pub mod completed;
 pub mod config;
 pub mod correction;
@@ -44,8 +45,9 @@ pub mod solved;
 pub mod start;
 pub mod sum_of_squares;
 
+pub use catch_up::CatchUp;
 pub use correction::{Jacobian, Parameters, Theta};
-pub use interpolator::{Config, Estimate, Lag, Reference, Steps};
+pub use interpolator::{Config, Estimate, Reference, Steps};
 pub use sensor::Sensor;
 
 use thiserror::Error;

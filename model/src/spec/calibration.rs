@@ -94,6 +94,14 @@ impl Spec {
         self.calibration.hold_residual.max(left)
     }
 
+    /// What a promised sensor leaves in lock of |e|, radians, and of |ρ|, once it is calibrated: six σ of the noise, at least a
+    /// twentieth, as a power of two, which makes a short comparator. A larger e is the loop catching up with a stop or a start.
+    #[must_use]
+    pub fn small_error(&self) -> f64 {
+        let least = (6.0 * self.sensor.noise_rms).max(0.05);
+        least.log2().ceil().exp2()
+    }
+
     /// A gain that moves by more within twice [`gear_periods`](Calibration::gear_periods) is of a signal that fades: a part of the
     /// amplitude, or six times a gain's noise.
     #[must_use]
@@ -109,8 +117,6 @@ impl Calibration {
     pub const HELD: u32 = 32;
     /// The same of those of which something is known, where the design does not say.
     pub const HELD_KNOWN: u32 = 256;
-    /// |e| from which on the loop catches up with a stop or a start, radians: above what a promised sensor leaves of it in lock.
-    pub const CATCHES_UP: f64 = 0.0625;
     /// Halvings of the phase's step then, in the final form of five parameters.
     pub const PHASE_HALVINGS: u32 = 2;
 

@@ -14,7 +14,7 @@ use nonius_model::reference::gradient::Form;
 use nonius_model::reference::interpolator::Search;
 use nonius_model::reference::start::Start;
 use nonius_model::reference::sum_of_squares::Smoothing;
-use nonius_model::reference::{Config, Lag, Parameters, Reference, Steps, Theta, from_spec};
+use nonius_model::reference::{Config, Parameters, Reference, Steps, Theta, from_spec};
 use nonius_model::spec::{CalibrationMethod, Coding, Spec};
 
 use crate::support::{Encoder, wrapped};
@@ -123,10 +123,7 @@ fn reference(design: &Design, registers: &State<f64>, position: f64) -> Referenc
             _ => Search::Residual(Form::Final),
         },
         // Of the final form only what stands along the radius; the other searches are compared without.
-        lag: spec.calibration.allows_for_lag().then_some(Lag {
-            settled: None,
-            e: 0.0,
-        }),
+        allows_for_lag: spec.calibration.allows_for_lag(),
         start: Start::At {
             alpha_hat: position * TAU,
             speed: rate * TAU / tracking.ts,

@@ -1,0 +1,52 @@
+//! What the loop sees while it catches up with a stop or a start is no error of the sensor. The paper has nothing of the kind.
+
+/// When the loop catches up: such a sample teaches nothing. Where two periods of travel one after the other have one, that is not what it
+/// is, and all teach until a period has none.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CatchUp {
+    /// From so many halvings of γ on.
+    pub settled: u32,
+    /// |e| from which on it does, radians.
+    pub e: f64,
+    /// What such a period of travel has taught is dropped where it ends.
+    pub drops: bool,
+}
+
+/// The loop was far behind the axis: in the running period of travel, in the one before, in two and more before this.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Behind {
+    running: bool,
+    before: bool,
+    long: bool,
+}
+
+/// What a sample is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Seen {
+    /// One in which the loop catches up.
+    pub(super) catches_up: bool,
+    /// The end of a period that had one.
+    pub(super) ends_so: bool,
+}
+
+impl Behind {
+    /// Takes a sample that is `far` behind or not, and may be the end of a period; without lock nothing is travelled.
+    pub(super) fn step(&mut self, far: bool, ends: bool, locked: bool) -> Seen {
+        let running = self.running || far;
+        let seen = Seen {
+            catches_up: far && !self.long,
+            ends_so: ends && running && !self.long,
+        };
+        let (before, long) = if ends {
+            (running, running && self.before)
+        } else {
+            (self.before, self.long)
+        };
+        *self = Self {
+            running: locked && running && !ends,
+            before: locked && before,
+            long: locked && long,
+        };
+        seen
+    }
+}
