@@ -28,7 +28,7 @@ fn scheduled_equals_recorded(kind: &str, graph: &Graph, random: &mut StdRng) {
             idle.is_empty(),
             "{kind} on {multipliers} multipliers: {idle:?}"
         );
-        for _ in 0..60 {
+        for _ in 0..24 {
             let mut inputs = std::collections::HashMap::new();
             for (name, id) in &graph.inputs {
                 let (low, high) = graph.node(*id).range;

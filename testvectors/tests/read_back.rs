@@ -237,7 +237,7 @@ fn the_save_file_names_signals_that_are_there() {
     }
 }
 
-/// Every byte of two rows in every other value: what is read all the same is what stands there.
+/// Every byte of two rows in every other value, of each fifth stimulus: what is read all the same is what stands there.
 #[test]
 fn damaged_vectors_are_refused_by_line() {
     let design = shipped::design("optical");
@@ -249,7 +249,7 @@ fn damaged_vectors_are_refused_by_line() {
         text.split_whitespace().map(lower).collect()
     };
     let mut refused = 0;
-    for stimulus in &stimuli {
+    for stimulus in stimuli.iter().step_by(5) {
         let text = vectors::rows(&design, stimulus, &files.columns);
         let (sound, meant) = (read(&text).expect("rows"), words(&text));
         for at in 0..text.len() {
