@@ -4,13 +4,13 @@
 mod figures;
 mod recordings;
 
-pub use figures::figure;
+pub use figures::{figure, figure_of_short};
 pub use recordings::{recording, recordings};
 
 use std::fs;
 use std::path::Path;
 
-/// Whether the long form of a campaign is asked for: `NONIUS_LONG` is set. Its figures are no row of a page.
+/// Whether the long form of a campaign is asked for: `NONIUS_LONG` is set.
 #[must_use]
 pub fn long() -> bool {
     std::env::var_os("NONIUS_LONG").is_some()

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use crate::chip_support::loss::sensor_for;
 use crate::chip_support::shipped::variants::searches_of;
 use crate::chip_support::{Bench, course, course_at, fast, largest, optical};
-use nonius_kept::{figure, long};
+use nonius_kept::{figure, figure_of_short, long};
 use nonius_model::spec::{CalibrationMethod, Spec};
 use rayon::prelude::*;
 
@@ -79,7 +79,7 @@ fn every_search_and_set_converges() {
         });
         reached.push(left.join(", "));
     }
-    figure(
+    figure_of_short(
         "the same with four and five parameters by the exact gradient after five periods, the sum of squares after nine, batches after 16 and 30, with eight and nine after nine, the sum of squares after 65 and 105, batches after 40 and 60, %",
         &reached.join("; "),
         TEST,
@@ -281,7 +281,7 @@ fn a_drifting_offset_is_followed() {
             variant.what, spec.calibration.gamma_last,
         );
         if (variant.what.as_str(), set) == ("final form", 5) {
-            figure(
+            figure_of_short(
                 "an offset drifts by 10 % of the amplitude in a minute, five parameters: largest miscalibration at 50 and 500 periods/s of a sensor without other errors, of one with ellipse errors of 10 %, 1.2 and 5°, % of a period",
                 &format!("{clean}; {real}"),
                 TEST,

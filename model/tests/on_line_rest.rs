@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 use crate::chip_support::Bench;
 use crate::chip_support::bent::{RATE, bent_sensor, noise, parameters, slow};
 use crate::chip_support::shipped::variants::{Variant, searches};
-use nonius_kept::{figure, long};
+use nonius_kept::{figure, figure_of_short, long};
 use rayon::prelude::*;
 
 /// A vibration: amplitude in periods, frequency in hertz.
@@ -146,7 +146,7 @@ fn ten_minutes_of_vibration_move_no_parameter() {
             others = others.max(furthest);
         }
     }
-    figure(
+    figure_of_short(
         "the same for ten minutes of ±0.1 periods, each search at one of four places; the furthest of the other searches",
         &format!("{}; {others:.1}", kept.join("; ")),
         "model/tests/on_line_rest.rs",

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use crate::chip_support::{Bench, fast, rms, sensor};
-use nonius_kept::{figure, long};
+use nonius_kept::{figure, figure_of_short, long};
 use nonius_model::spec::{CalibrationMethod, Spec};
 use rayon::prelude::*;
 
@@ -148,7 +148,7 @@ fn four_samples_a_period_leave_the_parameters() {
         [before, after].map(|x| 1e3 * x)
     });
     let [before, after] = worst.reduce(|| [0.0; 2], |a, b| [a[0].max(b[0]), a[1].max(b[1])]);
-    figure(
+    figure_of_short(
         "exactly 4 samples a period for 250 000 periods, calibrated before, accumulators of 25 bits as in the optical design, worst of all signs at two of four places each: miscalibration before and after, mrad rms",
         &format!("{before:.2}; {after:.2}"),
         TEST,

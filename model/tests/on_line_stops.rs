@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use crate::chip_support::Bench;
 use crate::chip_support::bent::{RATE, bent_sensor, noise, parameters, slow};
 use crate::chip_support::shipped::variants::{Variant, searches};
-use nonius_kept::{figure, long};
+use nonius_kept::{figure_of_short, long};
 use rand::{Rng, SeedableRng, rngs::StdRng};
 use rayon::prelude::*;
 
@@ -97,7 +97,7 @@ fn a_sudden_stop_moves_no_parameter() {
             others = others.max(furthest);
         }
     }
-    figure(
+    figure_of_short(
         "stopped within a sample from 25 to 500 periods/s, then at rest or vibrating by ±0.05 or ±0.1 periods at 7 to 250 Hz, at any place, bends of 1 and 3 %, five and nine parameters: the furthest a parameter moves within a second, in its noise; of any other search",
         &format!("{}; {others:.1}", kept.join(", ")),
         "model/tests/on_line_stops.rs",

@@ -2,8 +2,8 @@
 //!
 //! Once γ has settled, a phase error larger than a calibrated sensor leaves in lock is motion. Such a sample counts for nothing: it
 //! teaches nothing, and its residual (which holds e²/2 and more of the lag) neither holds nor recalls a parameter. It leaves a hole in its
-//! period of travel. The bends' own parameters are pulled far by the rest of that period, so with them it is dropped where it ends: the
-//! search goes back to what is applied.
+//! period of travel. The bends' own parameters are pulled far by the rest of that period, so in the final form with them it is dropped
+//! where it ends: the search goes back to what is applied.
 //!
 //! An axis catches up sooner or later. Where two periods of travel one after the other both have such a sample, it is something
 //! else: a sensor that is worse than promised, or places of the period that do not show what is wrong. Then all samples count again, until a

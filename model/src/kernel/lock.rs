@@ -47,7 +47,7 @@ pub struct Lock<S: Signal> {
 /// What a sample looks like.
 #[derive(Clone, Copy, Debug)]
 pub struct Window<S: Signal> {
-    /// There is a signal, of a radius that is not too small.
+    /// There is a signal, of a radius (as the estimate sees it: the loop is not a radian and more astray) that is not too small.
     pub present: S::Bool,
     /// And the loop follows it: as in lock.
     pub inside: S::Bool,

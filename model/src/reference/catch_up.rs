@@ -21,7 +21,7 @@ pub(super) struct Behind {
 }
 
 /// What a sample is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Seen {
     /// One in which the loop catches up.
     pub(super) catches_up: bool,

@@ -5,7 +5,7 @@
 
 use std::f64::consts::TAU;
 
-use super::catch_up::Behind;
+use super::catch_up::{self, Behind};
 use super::completed::Completion;
 pub use super::config::{Config, Gamma, Search, Steps};
 use super::gate::{Gate, GateState, Window};
@@ -148,8 +148,8 @@ impl Reference {
         let alpha_hat = self.tracking.alpha_hat();
         let open = self.gate.step(seen.e, seen.rho, alpha_hat, waits);
         let locked = self.gate.locked();
-        let catches_up = self.catches_up(seen.e, locked);
-        let open = open && !catches_up && self.free(seen.rho, locked);
+        let behind = self.behind(seen.e, locked);
+        let open = open && !behind.catches_up && self.free(seen.rho, locked);
         let due = !waits || self.gate.cleared() && (open || !locked);
         let gamma = self.gamma();
         let starting = self.solved.running();
@@ -158,8 +158,9 @@ impl Reference {
         } else {
             Theta::zeros()
         };
-        let gamma = (open && !starting).then_some(&gamma);
-        let estimate = self.go_on(&seen, (gamma, due), locked, solved);
+        let gamma = (open && !starting && !behind.ends_so).then_some(&gamma);
+        let complete = locked && !behind.catches_up;
+        let estimate = self.go_on(&seen, (gamma, due), complete, solved);
         self.watch(&seen);
         Estimate { locked, ..estimate }
     }
@@ -304,17 +305,18 @@ impl Reference {
         }
     }
 
-    /// Whether the loop catches up with motion in a sample that the gate has taken.
-    fn catches_up(&mut self, e: f64, locked: bool) -> bool {
+    /// Whether the loop catches up with motion in a sample that the gate has taken, and whether that ends a period that is dropped.
+    fn behind(&mut self, e: f64, locked: bool) -> catch_up::Seen {
         let Some(by) = self.config.catch_up else {
-            return false;
+            return catch_up::Seen::default();
         };
         let far = self.geared.0 >= by.settled && e.abs() >= by.e;
-        let seen = self.behind.step(far, self.gate.cleared(), locked);
-        if by.drops && seen.ends_so {
+        let mut seen = self.behind.step(far, self.gate.cleared(), locked);
+        seen.ends_so &= by.drops;
+        if seen.ends_so {
             self.pending = Theta::zeros();
         }
-        seen.catches_up
+        seen
     }
 
     /// Whether the search goes on; where the signal has changed, γ begins again. A Θ that is held may be an earlier one.

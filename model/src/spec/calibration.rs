@@ -85,20 +85,24 @@ impl Spec {
     /// calibrated (sin β sin 2α / 2, and a quarter of that) leave in the radius.
     #[must_use]
     pub fn hold_residual(&self) -> f64 {
+        self.calibration.hold_residual.max(self.left_in_lock())
+    }
+
+    /// Of e and ρ alike: e holds sin β (1 + cos 2α) / 2, of which the loop follows the first.
+    fn left_in_lock(&self) -> f64 {
         let phase = if self.calibration.has_phase() {
             0.0
         } else {
             0.625 * self.sensor.phase_error_max_deg.to_radians().sin()
         };
-        let left = 6.0 * self.sensor.noise_rms + phase;
-        self.calibration.hold_residual.max(left)
+        6.0 * self.sensor.noise_rms + phase
     }
 
-    /// What a promised sensor leaves in lock of |e|, radians, and of |ρ|, once it is calibrated: six σ of the noise, at least a
-    /// twentieth, as a power of two, which makes a short comparator. A larger e is the loop catching up with a stop or a start.
+    /// What a promised sensor leaves in lock of |e|, radians, and of |ρ|, once it is calibrated: as [`hold_residual`](Self::hold_residual)
+    /// reckons, at least a twentieth, as a power of two, which makes a short comparator. A larger e is the loop catching up with a stop or a start.
     #[must_use]
     pub fn small_error(&self) -> f64 {
-        let least = (6.0 * self.sensor.noise_rms).max(0.05);
+        let least = self.left_in_lock().max(0.05);
         least.log2().ceil().exp2()
     }
 
