@@ -207,7 +207,7 @@ const HEAD: &str = "\
 # Bit-exactness
 
 Written by `cargo run --release -p nonius-hdl --example bit_exact -- docs`; do not edit. Samples of mixed stimuli
-(standstill, both directions, sweep, creep, reversals, loss, fading (to nothing, and for a while) and drift of the signal, step, corners, bounds, ties, random codes) in which every probe and register of the
+(standstill, both directions, sweep, creep, reversals, jolts, loss, fading (to nothing, and for a while) and drift of the signal, step, corners, bounds, ties, random codes) in which every probe and register of the
 Verilog equals the model. A variant that is missing was not run. *Chip* is a fingerprint of its Verilog, tables, testbench and
 stimuli: run again, the command takes only those whose files have changed since; *earlier* stands where it has not come to them yet.
 

@@ -14,7 +14,7 @@ pub struct CatchUp {
 
 /// The loop was far behind the axis: in the running period of travel, in the one before, in two and more before this.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Behind {
+pub struct Behind {
     running: bool,
     before: bool,
     long: bool,
@@ -22,16 +22,17 @@ pub(super) struct Behind {
 
 /// What a sample is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Seen {
+pub struct Seen {
     /// One in which the loop catches up.
-    pub(super) catches_up: bool,
+    pub catches_up: bool,
     /// The end of a period that had one.
-    pub(super) ends_so: bool,
+    pub ends_so: bool,
 }
 
 impl Behind {
     /// Takes a sample that is `far` behind or not, and may be the end of a period; without lock nothing is travelled.
-    pub(super) fn step(&mut self, far: bool, ends: bool, locked: bool) -> Seen {
+    #[must_use]
+    pub fn step(&mut self, far: bool, ends: bool, locked: bool) -> Seen {
         let running = self.running || far;
         let seen = Seen {
             catches_up: far && !self.long,
