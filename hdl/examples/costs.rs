@@ -17,7 +17,7 @@ use nonius_hdl::ChipDir;
 use nonius_hdl::place::{Device, place};
 use nonius_hdl::progress::silent;
 use nonius_model::spec::Calibration;
-use shipped::variants::{fixed, forgetful, lagging, searches};
+use shipped::variants::costed;
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = env::args().skip(1).collect();
@@ -38,8 +38,7 @@ fn run(docs: &Path) -> Result<(), Box<dyn Error>> {
     let mut page = String::from(HEAD);
     let mut csv = String::from("method,start,parameters,completion,clocks,lut4\n");
     let mut bare = 0;
-    let others = [searches(), forgetful(), lagging()];
-    for variant in [fixed()].into_iter().chain(others.into_iter().flatten()) {
+    for variant in costed() {
         let design = variant.design();
         let Calibration {
             method,

@@ -13,7 +13,7 @@ static PAGE: Mutex<()> = Mutex::new(());
 /// The row of figure `name` on the page, docs/figures.md, says `measured`, its numbers to a tenth where they are no counts, and names `test`.
 ///
 /// # Panics
-/// The row is not there or says something else, with `NONIUS_BLESS` set it is written, and only a page that cannot be
+/// The row is not there or says something else; with `NONIUS_BLESS` set it is written, and only a page that cannot be
 /// panics.
 #[track_caller]
 pub fn figure(name: &str, measured: &str, test: &str) {

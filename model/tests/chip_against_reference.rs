@@ -285,7 +285,7 @@ fn the_travel_gates_decide_alike() {
         // The optical design, which waits for the end of a period from the fifth gear on.
         let expected = gate.step(0.0, 0.0, position * TAU, chip_waits);
         if was_locked {
-            // The gates know nothing of the loop; what it has to catch up with does not count, wherever in the period it is.
+            // What the loop has to catch up with does not count, until two periods had such a sample.
             let far = chip_waits && probes.e.to_f64().abs() >= spec.small_error();
             let seen = catching_up.step(far, gate.cleared(), true);
             behind += u32::from(expected && seen.catches_up);

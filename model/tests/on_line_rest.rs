@@ -112,7 +112,7 @@ fn neither_standstill_nor_vibration_moves_a_parameter() {
 }
 
 /// Place of the period, hertz and seed of ten minutes.
-const LONG: [(f64, f64, u32); 4] = [
+const PLACES: [(f64, f64, u32); 4] = [
     (0.3, 45.0, 10),
     (0.05, 7.3, 5),
     (0.62, 80.0, 15),
@@ -125,9 +125,9 @@ fn ten_minutes_of_vibration_move_no_parameter() {
     let searches = searches();
     let measured = searches.par_iter().enumerate().map(|(i, variant)| {
         let all = if long() {
-            &LONG[..]
+            &PLACES[..]
         } else {
-            &LONG[i % LONG.len()..][..1]
+            &PLACES[i % PLACES.len()..][..1]
         };
         let each = all
             .iter()

@@ -145,12 +145,10 @@ fn a_loss_soon_after_lock() {
                 let begun = state.gamma_gear.raw(0) > 0 || state.gear_periods.raw(0) > 0;
                 if !(begun && state.locked) {
                     // What the first quiet period may have ended with is known; what was before is not.
-                    past.clear();
-                }
-                past.push(before);
-                if !(begun && state.locked) {
+                    past = vec![before];
                     continue;
                 }
+                past.push(before);
                 let calm = usize::from(state.calm);
                 looked[calm] += 1;
                 let lately = past.iter().rev().take(8 * TAKEN_BACK + 1);

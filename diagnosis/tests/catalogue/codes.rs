@@ -100,14 +100,16 @@ fn a_stuck_bit_has_no_companions() {
 /// An ADC whose noise is a tenth of its code is no cause, and the steps of its codes are no error of the sensor.
 #[test]
 fn a_quiet_adc_shows_nothing() {
-    for (bits, periods) in [(6, evenly as fn(f64) -> f64), (8, reversing)] {
-        let quiet = Seen {
-            bits,
-            noise: 0.1 / 2f64.powi(bits as i32 - 1),
-            periods,
-            ..PLAIN
-        };
-        is_named(&quiet, &[]);
+    for bits in [6, 8] {
+        for periods in [evenly, reversing] {
+            let quiet = Seen {
+                bits,
+                noise: 0.1 / 2f64.powi(bits as i32 - 1),
+                periods,
+                ..PLAIN
+            };
+            is_named(&quiet, &[]);
+        }
     }
 }
 

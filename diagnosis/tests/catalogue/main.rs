@@ -20,7 +20,7 @@ use harness::{Case, PLAIN, arc, damaged, diagnosed, finds_nothing, names};
 
 #[test]
 fn nothing_is_found_where_nothing_is_hidden() {
-    for seed in 0..4 {
+    for seed in 0..6 {
         for (reference, revolution) in [(false, false), (true, true)] {
             let case = Case {
                 reference,
@@ -66,7 +66,7 @@ fn error_bars_of_the_simulation_hold_on_an_arc() {
 /// Bursts of some samples are no glitches and no noise.
 #[test]
 fn bursts_are_unexplained() {
-    for wide in [2, 8] {
+    for wide in [2, 3, 8] {
         let found = damaged(&PLAIN, |rows| {
             for k in (100..19_000).step_by(630) {
                 for row in &mut rows[k..k + wide] {

@@ -2,8 +2,8 @@
 //!
 //! A fade over some periods is a small change of the amplitude before it is a large one, and the parameters follow it until
 //! they are held. So the chip remembers them as they were at the last two ends of twice `gear_periods` quiet periods of travel, and where
-//! they begin to be held (but for a loop that is astray while the signal is there) it goes back to the older of the two. Only in the last gear: before it they still improve. A signal that
-//! comes back slowly is nearly whole before it is whole: they stay held until a part of `hold_periods` has passed quietly.
+//! they begin to be held (but for a loop that is astray while the signal is there) it goes back to the older of the two. Only in the last
+//! gear: before it they still improve. A signal that comes back slowly is nearly whole before it is whole: they stay held until a part of `hold_periods` has passed quietly.
 //!
 //! A slower fade outlasts the hold, and the search begins again and follows it; one slower still is followed without. So nothing is
 //! proven while a gain moves: what is stays as it was until the search has come to its last gear again and the gains rest. A sensor whose

@@ -72,12 +72,12 @@ impl Observation {
     /// The same as if the loop had not lagged: the radius less 1, to third order in e, in the place of its projection ρ.
     #[must_use]
     pub fn without_lag(&self) -> Self {
-        let (along, across) = (self.rho + self.e * self.e / 2.0, self.e);
+        let along = self.rho + self.e * self.e / 2.0;
         let (cos, sin) = (self.cos_hat, self.sin_hat);
         Self {
             corrected: [
-                cos * (1.0 + along) - sin * across,
-                sin * (1.0 + along) + cos * across,
+                cos * (1.0 + along) - sin * self.e,
+                sin * (1.0 + along) + cos * self.e,
             ],
             rho: along,
             ..*self

@@ -73,9 +73,10 @@ pub struct Reference {
     hold: Hold,
     recall: Recall,
     acquisition: Option<Acquisition>,
+    /// Periods of travel in which the loop was far behind the axis.
     behind: Behind,
     /// Samples out of the window, one after the other.
-    astray: u32,
+    out_of_window: u32,
     /// Halvings of γ so far, and α̂ where the present one began.
     geared: (u32, f64),
 }
@@ -122,7 +123,7 @@ impl Reference {
             recall: Recall::new(config.theta, tracking.alpha_hat()),
             acquisition,
             behind: Behind::default(),
-            astray: 0,
+            out_of_window: 0,
             geared: (0, tracking.alpha_hat()),
         })
     }
@@ -393,14 +394,16 @@ impl Reference {
             return;
         };
         let good = seen.e.abs() < e && seen.rho > -rho;
-        self.astray = if good {
+        self.out_of_window = if good {
             0
         } else {
-            self.astray.saturating_add(1)
+            self.out_of_window.saturating_add(1)
         };
-        if let (true, Start::Arctangent { samples }) = (self.astray > samples, self.config.start) {
+        if let (true, Start::Arctangent { samples }) =
+            (self.out_of_window > samples, self.config.start)
+        {
             self.acquisition = Some(Acquisition::after(samples, &self.tracking));
-            self.astray = 0;
+            self.out_of_window = 0;
         }
     }
 }

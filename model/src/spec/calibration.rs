@@ -99,7 +99,8 @@ impl Spec {
     }
 
     /// What a promised sensor leaves in lock of |e|, radians, and of |ρ|, once it is calibrated: as [`hold_residual`](Self::hold_residual)
-    /// reckons, at least a twentieth, as a power of two, which makes a short comparator. A larger e is the loop catching up with a stop or a start.
+    /// reckons, at least a twentieth, as a power of two, which makes a short comparator. A larger e is the loop catching up
+    /// with a stop or a start.
     #[must_use]
     pub fn small_error(&self) -> f64 {
         let least = self.left_in_lock().max(0.05);
