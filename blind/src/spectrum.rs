@@ -1,8 +1,8 @@
 //! Random waves of a given spectrum, and weighting by one.
 
+use nonius_fourier::Complex;
 use rand::Rng;
 use rand_distr::{Distribution, StandardNormal};
-use rustfft::{FftPlanner, num_complex::Complex};
 
 /// A Gaussian wave of `length` points, periodic in them: line `j` (cycles in the length) has variance `variance(j)`.
 pub(crate) fn wave(
@@ -19,22 +19,19 @@ pub(crate) fn wave(
         *bin = Complex::new(re * size, im * size);
     }
     // Real part of an analytic signal: each line has the variance asked for.
-    FftPlanner::new()
-        .plan_fft_inverse(length)
-        .process(&mut bins);
+    nonius_fourier::inverse(&mut bins);
     bins.iter().map(|b| b.re).collect()
 }
 
 /// Multiplies line `j` of `values` by `gain[j]`, `gain` from zero to half the length.
 pub(crate) fn weighted(values: &[f64], gain: &[f64]) -> Vec<f64> {
     let n = values.len();
-    let mut planner = FftPlanner::new();
     let mut bins: Vec<Complex<f64>> = values.iter().map(|v| Complex::new(*v, 0.0)).collect();
-    planner.plan_fft_forward(n).process(&mut bins);
+    nonius_fourier::forward(&mut bins);
     for (j, bin) in bins.iter_mut().enumerate() {
         *bin *= gain[j.min(n - j)] / n as f64;
     }
-    planner.plan_fft_inverse(n).process(&mut bins);
+    nonius_fourier::inverse(&mut bins);
     bins.iter().map(|b| b.re).collect()
 }
 

@@ -37,7 +37,6 @@ pub fn evaluate(
                 .node(id)
                 .op
                 .operands()
-                .iter()
                 .all(|o| now[o.index()].is_some());
             now[i] = match graph.node(id).op {
                 Op::Input => Some(inputs[i]),

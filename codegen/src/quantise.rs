@@ -71,7 +71,7 @@ pub(crate) fn of_sum(w: &Writer, a: NodeId, target: &Target) -> Option<Vec<Strin
 pub(crate) fn fused(w: &Writer, graph: &Graph, a: NodeId) -> bool {
     let reader = graph
         .ids()
-        .find(|&id| graph.node(id).op.operands().contains(&a));
+        .find(|&id| graph.node(id).op.operands().any(|o| o == a));
     let Some(reader) = reader else { return false };
     let Op::Quantise(_, to) = graph.node(reader).op else {
         return false;

@@ -220,10 +220,8 @@ struct Lister<'a> {
 
 impl Lister<'_> {
     fn operands_done(&self, id: NodeId, cycle: usize) -> bool {
-        let operands = self.graph.node(id).op.operands();
-        operands
-            .iter()
-            .all(|o| self.ready[o.index()].is_some_and(|r| r <= cycle))
+        let mut operands = self.graph.node(id).op.operands();
+        operands.all(|o| self.ready[o.index()].is_some_and(|r| r <= cycle))
     }
 
     /// Everything that is neither product nor table and fits into this cycle.
@@ -235,14 +233,14 @@ impl Lister<'_> {
             if self.ready[id.index()].is_some() || waits || !self.operands_done(id, cycle) {
                 continue;
             }
-            let chained = |o: &NodeId| {
+            let chained = |o: NodeId| {
                 if self.ready[o.index()] == Some(cycle) {
                     self.arrival[o.index()]
                 } else {
                     0
                 }
             };
-            let start = op.operands().iter().map(chained).max().unwrap_or(0);
+            let start = op.operands().map(chained).max().unwrap_or(0);
             let end = start + delay(self.graph, id);
             if start > 0 && end > self.depth {
                 continue;

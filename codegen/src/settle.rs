@@ -29,7 +29,7 @@ fn fits(graph: &Graph, schedule: &Schedule, cycle: usize, depth: u32) -> bool {
             continue;
         }
         let operands = graph.node(id).op.operands();
-        let start = operands.iter().map(|o| arrival[o.index()]).max();
+        let start = operands.map(|o| arrival[o.index()]).max();
         let start = start.unwrap_or(0);
         arrival[id.index()] = start + delay(graph, id);
         if start > 0 && arrival[id.index()] > depth {
@@ -42,6 +42,8 @@ fn fits(graph: &Graph, schedule: &Schedule, cycle: usize, depth: u32) -> bool {
 /// Moves values to the cycle of their first reader where no more register bits are needed for what they are made of.
 pub(crate) fn settle(graph: &Graph, schedule: &mut Schedule, depth: u32) {
     let ids: Vec<NodeId> = graph.ids().collect();
+    let uses = |schedule: &Schedule| (first_use(graph, schedule), last_use(graph, schedule));
+    let (mut first, mut last) = uses(schedule);
     loop {
         let mut moved = false;
         for &id in ids.iter().rev() {
@@ -55,12 +57,11 @@ pub(crate) fn settle(graph: &Graph, schedule: &mut Schedule, depth: u32) {
                     | Op::QuantiseGeared { .. }
             );
             let probe = graph.probes.iter().any(|&(_, p)| p == id);
-            let to = first_use(graph, schedule)[id.index()];
+            let to = first[id.index()];
             let from = schedule.ready[id.index()];
             if fixed || probe || to <= from {
                 continue;
             }
-            let last = last_use(graph, schedule);
             let saved = if last[id.index()] == to {
                 width(graph, id)
             } else {
@@ -68,12 +69,11 @@ pub(crate) fn settle(graph: &Graph, schedule: &mut Schedule, depth: u32) {
             };
             let cost: u32 = op
                 .operands()
-                .iter()
                 .filter(|o| {
                     let i = o.index();
                     last[i] <= schedule.ready[i] && last[i] != usize::MAX
                 })
-                .map(|&o| width(graph, o))
+                .map(|o| width(graph, o))
                 .sum();
             // A bit or two are not worth a longer chain.
             if saved <= cost + 2 {
@@ -82,6 +82,7 @@ pub(crate) fn settle(graph: &Graph, schedule: &mut Schedule, depth: u32) {
             schedule.ready[id.index()] = to;
             if fits(graph, schedule, to, depth) {
                 moved = true;
+                (first, last) = uses(schedule);
             } else {
                 schedule.ready[id.index()] = from;
             }

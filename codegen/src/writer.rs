@@ -72,7 +72,7 @@ impl<'a> Writer<'a> {
                 Op::Mul(..) | Op::Lookup { .. } | Op::QuantiseGeared { .. } => false,
                 // A port is a register.
                 _ if crate::templates::has_port(&names[id.index()]) => false,
-                _ => op.operands().iter().all(|o| stable[o.index()]),
+                _ => op.operands().all(|o| stable[o.index()]),
             };
         }
         let mut widths = BTreeMap::new();

@@ -9,8 +9,7 @@
 
 mod held_out;
 
-use rustfft::FftPlanner;
-use rustfft::num_complex::Complex;
+use nonius_fourier::Complex;
 
 use crate::channels::Channels;
 use crate::context::Context;
@@ -147,15 +146,13 @@ fn window(k: usize, n: usize) -> f64 {
 fn expected(context: &Context, slowest: usize) -> Vec<f64> {
     let n = context.samples();
     let per = context.rate / n as f64;
-    let mut planner = FftPlanner::new();
-    let (forward, back) = (planner.plan_fft_forward(n), planner.plan_fft_inverse(n));
     let mut image: Vec<Complex<f64>> = (0..n)
         .map(|k| {
             let once = Complex::new(context.cos[k], context.sin[k]);
             once * once * window(k, n)
         })
         .collect();
-    forward.process(&mut image);
+    nonius_fourier::forward(&mut image);
     let total: f64 = image.iter().map(Complex::norm_sqr).sum();
     for value in &mut image {
         *value = Complex::new(value.norm_sqr() / total, 0.0);
@@ -170,12 +167,12 @@ fn expected(context: &Context, slowest: usize) -> Vec<f64> {
         }
     };
     let mut spectrum: Vec<Complex<f64>> = (0..n).map(|k| Complex::new(own(k), 0.0)).collect();
-    back.process(&mut image);
-    back.process(&mut spectrum);
+    nonius_fourier::inverse(&mut image);
+    nonius_fourier::inverse(&mut spectrum);
     for (a, b) in image.iter_mut().zip(&spectrum) {
         *a *= b;
     }
-    forward.process(&mut image);
+    nonius_fourier::forward(&mut image);
     (0..n).map(|k| own(k) + image[k].re / n as f64).collect()
 }
 
@@ -188,7 +185,7 @@ fn spectrum(context: &Context, radial: &[f64], slowest: usize) -> Vec<Line> {
             Complex::new(r * context.cos[k], r * context.sin[k])
         })
         .collect();
-    FftPlanner::new().plan_fft_forward(n).process(&mut both);
+    nonius_fourier::forward(&mut both);
     let flicker = expected(context, slowest);
     let last = (HIGHEST * n as f64 / 2.0) as usize;
     let line = |k: usize| {

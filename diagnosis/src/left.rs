@@ -2,9 +2,8 @@
 
 use std::f64::consts::TAU;
 
+use nonius_fourier::Complex;
 use nonius_quantity::{Quantity, Unit};
-use rustfft::FftPlanner;
-use rustfft::num_complex::Complex;
 
 use crate::context::Context;
 use crate::lines::median;
@@ -42,9 +41,7 @@ impl Bartlett {
     pub(crate) fn of(values: &[f64]) -> Self {
         let n = values.len();
         let mut buffer: Vec<Complex<f64>> = values.iter().map(|v| Complex::new(*v, 0.0)).collect();
-        if n > 0 {
-            FftPlanner::new().plan_fft_forward(n).process(&mut buffer);
-        }
+        nonius_fourier::forward(&mut buffer);
         let mut sum = 0.0;
         let mut shares: Vec<f64> = buffer
             .get(1..n.div_ceil(2))

@@ -2,17 +2,14 @@
 
 use std::f64::consts::TAU;
 
-use rustfft::FftPlanner;
-use rustfft::num_complex::Complex;
+use nonius_fourier::Complex;
 
 /// Power spectrum of values, zero-padded to twice a power of two: frequency in cycles per sample is index / length.
 pub(crate) fn spectrum(values: &[f64]) -> (Vec<f64>, usize) {
     let length = (values.len() * 2).next_power_of_two();
     let mut buffer: Vec<Complex<f64>> = values.iter().map(|v| Complex::new(*v, 0.0)).collect();
     buffer.resize(length, Complex::new(0.0, 0.0));
-    FftPlanner::new()
-        .plan_fft_forward(length)
-        .process(&mut buffer);
+    nonius_fourier::forward(&mut buffer);
     let power = buffer[..=length / 2].iter().map(|z| z.norm_sqr());
     (power.collect(), length)
 }
@@ -23,9 +20,7 @@ pub(crate) fn two_spectra(a: &[f64], b: &[f64]) -> ([Vec<f64>; 2], usize) {
     let pairs = a.iter().zip(b);
     let mut buffer: Vec<Complex<f64>> = pairs.map(|(a, b)| Complex::new(*a, *b)).collect();
     buffer.resize(length, Complex::new(0.0, 0.0));
-    FftPlanner::new()
-        .plan_fft_forward(length)
-        .process(&mut buffer);
+    nonius_fourier::forward(&mut buffer);
     // Of real signals, the transform at −f is the conjugate of that at f.
     let parts = (0..=length / 2).map(|k| {
         let (now, mirrored) = (buffer[k], buffer[(length - k) % length].conj());

@@ -3,9 +3,8 @@
 
 use std::f64::consts::TAU;
 
+use nonius_fourier::Complex;
 use nonius_quantity::{Unit, before_after, digits, periods_per_second, times};
-use rustfft::FftPlanner;
-use rustfft::num_complex::Complex;
 
 use crate::cause::Domain;
 use crate::context::Context;
@@ -82,9 +81,7 @@ impl Left<'_> {
         for (sum, count) in sums.iter_mut().zip(&counts) {
             *sum /= f64::max(*count, 1.0);
         }
-        FftPlanner::new()
-            .plan_fft_forward(places)
-            .process(&mut sums);
+        nonius_fourier::forward(&mut sums);
         let power = |k: usize| sums[k].norm_sqr() + sums[places - k].norm_sqr();
         // The first order of the channels is that of the five parameters.
         let first = if in_channels { 2 } else { 1 };

@@ -98,7 +98,7 @@ fn searches_in_icarus_and_verilator() {
     agree(&some, some.len());
 }
 
-/// Loops, ADCs and numbers of multipliers, here every seventh, and designs with every word said; in the long campaign all.
+/// Loops, ADCs and numbers of multipliers, here every twelfth, and designs with every word said; in the long campaign all.
 #[test]
 fn every_other_variant_in_icarus_and_verilator() {
     let others = [
@@ -110,8 +110,8 @@ fn every_other_variant_in_icarus_and_verilator() {
         variants::adcs(),
         variants::multipliers(),
     ];
-    let others: Vec<Variant> = others.into_iter().flatten().step_by(7).collect();
-    agree(&others, 4);
+    let others: Vec<Variant> = others.into_iter().flatten().step_by(12).collect();
+    agree(&others, others.len());
     agree(&variants::words(), 2);
     // Narrow loops take longer to lock.
     variants::narrow()
@@ -119,17 +119,17 @@ fn every_other_variant_in_icarus_and_verilator() {
         .for_each(|variant| agrees(variant, 300, &VERILATOR));
 }
 
-/// Each way to place the products and each type of loop; in the long campaign all.
+/// Every second; in the long campaign all.
 #[test]
 fn skews_in_icarus_and_verilator() {
     let some: Vec<Variant> = variants::skewed().into_iter().step_by(2).collect();
-    agree(&some, 3);
+    agree(&some, some.len());
 }
 
-/// Rows enough for the last gear, a hold in it and a return; fewer in the simulator that is slower.
+/// Rows enough for the last gear, a hold in it and a return; fewer in the simulator that is slower. The last; in the long campaign all.
 #[test]
 fn recalls_in_icarus_and_verilator() {
-    let recalls: Vec<Variant> = variants::recalls().into_iter().skip(2).collect();
+    let recalls: Vec<Variant> = variants::recalls().into_iter().skip(3).collect();
     recalls.par_iter().for_each(|variant| {
         agrees(variant, 1000, &VERILATOR);
         agrees(variant, ROWS, &ICARUS);
@@ -143,8 +143,9 @@ fn gears_in_icarus_and_verilator() {
     agree(&some, some.len());
 }
 
-/// Two tables in a chip, one of them with words that have a sign.
+/// Two tables in a chip, one of them with words that have a sign: every third; in the long campaign all.
 #[test]
 fn harmonics_in_icarus_and_verilator() {
-    agree(&variants::harmonics(), 5);
+    let some: Vec<Variant> = variants::harmonics().into_iter().step_by(3).collect();
+    agree(&some, some.len());
 }

@@ -1,10 +1,11 @@
 //! Every measured recording, played into the Verilog of a design that was made for it. The homodyne ones are long and
-//! go through Verilator alone.
+//! go through Verilator alone. Here every second; in the long form all.
 
 use std::path::Path;
 
 use nonius_hdl::progress::silent;
 use nonius_hdl::verify::{Options, verify};
+use nonius_kept::every;
 use nonius_model::design::Design;
 use nonius_model::spec::Spec;
 use nonius_recording::{Overrides, Recording};
@@ -52,11 +53,10 @@ fn recordings_agree_in_every_bit() {
         ("homodyne_settle", 1, VERILATOR),
         ("homodyne_stop", 1, VERILATOR),
     ];
-    recordings
-        .par_iter()
-        .for_each(|(name, repeat, simulators)| {
-            agrees(&folder.join(format!("{name}.csv")), *repeat, simulators);
-        });
+    let some: Vec<_> = every(2, recordings).collect();
+    some.par_iter().for_each(|(name, repeat, simulators)| {
+        agrees(&folder.join(format!("{name}.csv")), *repeat, simulators);
+    });
 }
 
 /// One period of the first encoder of the table, far from an ellipse, round and round.

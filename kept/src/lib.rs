@@ -16,6 +16,11 @@ pub fn long() -> bool {
     std::env::var_os("NONIUS_LONG").is_some()
 }
 
+/// Every `nth` of these; in the long form all.
+pub fn every<T>(nth: usize, all: impl IntoIterator<Item = T>) -> impl Iterator<Item = T> {
+    all.into_iter().step_by(if long() { 1 } else { nth })
+}
+
 /// Whether kept files are to be written anew.
 #[must_use]
 pub fn blessed() -> bool {

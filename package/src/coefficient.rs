@@ -54,7 +54,7 @@ const LIMITS: [&str; 5] = [
     "lock_residual",
     "restart_residual",
     "hold_residual",
-    "completion_residual",
+    "small_error",
 ];
 
 fn note(name: &str, constant: &Constant) -> Option<String> {

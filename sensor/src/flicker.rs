@@ -1,9 +1,8 @@
 //! Noise with a 1/f spectrum: white noise, shaped line by line.
 
+use nonius_fourier::Complex;
 use rand::{Rng, rngs::StdRng};
 use rand_distr::StandardNormal;
-use rustfft::FftPlanner;
-use rustfft::num_complex::Complex;
 
 /// `n` samples at `rate` per second of noise whose one-sided amplitude density is `density` at a hertz and falls with the
 /// root of the frequency; nothing slower than the recording.
@@ -11,8 +10,7 @@ pub(crate) fn noise(n: usize, rate: f64, density: f64, random: &mut StdRng) -> V
     let mut buffer: Vec<Complex<f64>> = (0..n)
         .map(|_| Complex::new(random.sample::<f64, _>(StandardNormal), 0.0))
         .collect();
-    let mut planner = FftPlanner::new();
-    planner.plan_fft_forward(n).process(&mut buffer);
+    nonius_fourier::forward(&mut buffer);
     for (k, line) in buffer.iter_mut().enumerate() {
         let hertz = k.min(n - k) as f64 * rate / n as f64;
         // White noise of mean square one has the density sqrt(2 / rate).
@@ -22,6 +20,6 @@ pub(crate) fn noise(n: usize, rate: f64, density: f64, random: &mut StdRng) -> V
             density / hertz.sqrt() / (2.0 / rate).sqrt() / n as f64
         };
     }
-    planner.plan_fft_inverse(n).process(&mut buffer);
+    nonius_fourier::inverse(&mut buffer);
     buffer.iter().map(|z| z.re).collect()
 }

@@ -226,7 +226,8 @@ pub fn named(design: &Design, rows: usize) -> Vec<Stimulus> {
             faded(pair(top * k as f64, 1.0, 0.0), gain)
         }),
         // At top speed, and once gamma has settled a little slower and back within a sample, again and again: in each of some
-        // periods of travel, then in one alone. The loop catches up by a tenth of a radian and more, in lock.
+        // periods of travel, then in one alone. The loop catches up by a tenth of a radian and more, in lock. Later so far at once that
+        // it is out of the lock window with all of the signal there, and at last the signal is gone for two samples.
         motion("jolts", &|k| {
             let slower = 0.4 * spec.tracking.bandwidth_hz / spec.adc.sample_rate_hz;
             let run = ((1.3 / top) as usize).max(1);
@@ -235,11 +236,10 @@ pub fn named(design: &Design, rows: usize) -> Vec<Stimulus> {
             let since = k.saturating_sub(2 * rows / 5);
             let alone = since.saturating_sub(busy + 8 * run).min(4 * run);
             let slowly = slow(since.min(busy)) + alone;
-            pair(
-                top * k as f64 - slower.min(top / 2.0) * slowly as f64,
-                1.0,
-                0.0,
-            )
+            let jump = if 5 * k < 4 * rows { 0.0 } else { 0.14 };
+            let gone = (9 * rows / 10..9 * rows / 10 + 2).contains(&k);
+            let turns = top * k as f64 - slower.min(top / 2.0) * slowly as f64 + jump;
+            faded(pair(turns, 1.0, 0.0), if gone { 0.0 } else { 1.0 })
         }),
         // Over a period and back.
         motion("reversals", &|k| {

@@ -63,8 +63,8 @@ fn followers(graph: &Graph, from: impl Iterator<Item = NodeId>) -> Vec<bool> {
     let mut follows = vec![false; graph.nodes.len()];
     from.for_each(|id| follows[id.index()] = true);
     for id in graph.ids() {
-        let operands = graph.node(id).op.operands();
-        follows[id.index()] |= operands.iter().any(|o| follows[o.index()]);
+        let mut operands = graph.node(id).op.operands();
+        follows[id.index()] |= operands.any(|o| follows[o.index()]);
     }
     follows
 }

@@ -99,6 +99,10 @@ fn the_jolts_are_caught_up_with() {
     let alone = again + alone.expect("one jolt alone");
     assert!(states[first..].iter().all(|s| s.locked));
     assert!(!states[alone].astray_long && !states[ROWS - 1].astray_long);
+    // Out of the lock window with a signal, and without one.
+    let (jump, gone) = (4 * ROWS / 5, 9 * ROWS / 10);
+    assert!(!states[jump].signal_lost && states[jump].lock_level < states[jump - 1].lock_level);
+    assert!(states[gone..gone + 2].iter().all(|s| s.signal_lost));
 }
 
 /// The direction turns once, at speeds so small that its dead band counts.

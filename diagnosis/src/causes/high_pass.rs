@@ -4,7 +4,7 @@ use std::cell::RefCell;
 use std::f64::consts::TAU;
 use std::rc::Rc;
 
-use rustfft::num_complex::Complex;
+use nonius_fourier::Complex;
 
 use super::speed::follows;
 use super::{AC_COUPLING, Catalogue};

@@ -1,6 +1,6 @@
 //! What delays and first-order low passes do to the channels, from the smooth motion.
 
-use rustfft::num_complex::Complex;
+use nonius_fourier::Complex;
 
 use crate::block::Block;
 

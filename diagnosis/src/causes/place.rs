@@ -3,9 +3,8 @@
 use std::f64::consts::TAU;
 use std::rc::Rc;
 
+use nonius_fourier::Complex;
 use nonius_quantity::times;
-use rustfft::FftPlanner;
-use rustfft::num_complex::Complex;
 
 use super::COGGING;
 use super::revolution::{harmonic, turns};
@@ -78,9 +77,7 @@ fn orders(phi: &[f64], values: &[f64], top: usize) -> Vec<f64> {
         let place = (phi / TAU).rem_euclid(1.0) * length as f64;
         places[place as usize % length].re += value;
     }
-    FftPlanner::new()
-        .plan_fft_forward(length)
-        .process(&mut places);
+    nonius_fourier::forward(&mut places);
     places[..=top].iter().map(|z| z.norm_sqr()).collect()
 }
 

@@ -1,7 +1,7 @@
 //! Pictures of the whole recording: the figure of the signals, and what either model leaves of it.
 
+use nonius_fourier::Complex;
 use nonius_plot::{Axis, Look, Mark, Plot, Series};
-use rustfft::num_complex::Complex;
 
 use super::binned::{Against, Along, Row, Seen};
 use super::pictures::{hertz_text, title};

@@ -1,8 +1,8 @@
 //! The pictures that show a finding: which ones depends on where its cause lives.
 
+use nonius_fourier::Complex;
 use nonius_plot::{Mark, Plot};
 use nonius_recording::Recording;
-use rustfft::num_complex::Complex;
 
 use super::binned::{Against, Along, Row, Seen};
 use super::spectra::Signal;

@@ -2,10 +2,9 @@
 
 use std::f64::consts::{PI, TAU};
 
+use nonius_fourier::Complex;
 use nonius_plot::{Axis, Look, Mark, Plot, Series};
 use nonius_quantity::{Unit, prefixed};
-use rustfft::FftPlanner;
-use rustfft::num_complex::Complex;
 
 use crate::context::Context;
 
@@ -36,7 +35,7 @@ fn window(k: usize, n: usize) -> f64 {
 /// Amplitudes of the lines of a spectrum: of a real signal, or of two at once as real and imaginary part.
 fn amplitudes(values: &dyn Fn(usize) -> Complex<f64>, n: usize) -> Vec<f64> {
     let mut buffer: Vec<Complex<f64>> = (0..n).map(|k| values(k) * window(k, n)).collect();
-    FftPlanner::new().plan_fft_forward(n).process(&mut buffer);
+    nonius_fourier::forward(&mut buffer);
     // Both sides together: of two channels, the root of the sum of squares.
     let line = |k: usize| {
         let both = buffer[k].norm_sqr() + buffer[(n - k) % n].norm_sqr();
@@ -132,7 +131,7 @@ impl Signal<'_> {
             for (s, w) in sum.iter_mut().zip(&weight).filter(|(_, w)| **w > 0.0) {
                 *s /= w;
             }
-            FftPlanner::new().plan_fft_forward(count).process(&mut sum);
+            nonius_fourier::forward(&mut sum);
             let line = |k: usize| {
                 let both = sum[k].norm_sqr() + sum[count - k].norm_sqr();
                 (2.0 * both).sqrt() / count as f64

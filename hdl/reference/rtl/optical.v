@@ -6,7 +6,7 @@
 // far, is 2^-4 at first and 2^-9 after 5 gears.
 // After S. Balemi, "Automatic calibration of sinusoidal encoder signals", IFAC 2005; equation numbers are the paper's.
 //
-// Design f8cb77070171: 17 products on 1 multiplier, 20 clocks per sample.
+// Design bf4a848f45b1: 17 products on 1 multiplier, 20 clocks per sample.
 //
 // Formats: sW.F is a two's complement number of W bits, F of them behind the point; uW.F has no sign and is kept here
 // with a zero in front, so that every number is signed. Angles are in turns of a scale period. A signal that saturates
@@ -42,7 +42,7 @@
 //    7 | s * cos_hat              | c_exact c s_weak
 //    8 | c * sin_hat              | c_weak signal_present may_flip
 //    9 | c * cos_hat              | e_exact e_seen e
-//   10 | s * sin_hat              | e_in_window e_change e_large far_behind catches_up astray_lately astray_period_ends
+//   10 | s * sin_hat              | e_in_window e_change e_small far_behind catches_up astray_lately astray_period_ends
 //      |                          | astray_again
 //   11 | e * e                    | rho_exact rho rho_in_window radius_present in_window flip level_step half_turn
 //      |                          | loop_follows rho_high rho_large rho_not_small rho_rises proven_better may_recall
@@ -87,7 +87,8 @@
 //     lock_full              63                      The full lock level.
 //     lock_restart           31                      Lock level after a change of loop gear.
 //     loop_gear_last         3                       Last loop gear.
-//     catch_up_error         0.0625                  |e| from which the loop is catching up with motion, radians.
+//     small_error            0.0625                  |e|, radians, from which the loop is catching up with motion, and
+//                                                    |ρ| from which the completion rests.
 //     gamma_gear_settled     4                       From this γ gear on γ has settled.
 //     gamma_gear_last        5                       Last γ gear.
 //     gear_periods_last      3                       Periods of travel per γ gear, less one.
@@ -107,8 +108,8 @@
 //     minus_direction_rate   -0.0000152587890625     Minus direction_rate: Rate below which the direction does not
 //                                                    change, turns per sample.
 //     minus_quarter          -0.25                   −¼.
-//     minus_catch_up_error   -0.0625                 Minus catch_up_error: |e| from which the loop is catching up with
-//                                                    motion, radians.
+//     minus_small_error      -0.0625                 Minus small_error: |e|, radians, from which the loop is catching
+//                                                    up with motion, and |ρ| from which the completion rests.
 //     minus_restart_residual -0.25                   Minus restart_residual: |ρ| above this begins the search again.
 //     minus_hold_residual    -0.0625                 Minus hold_residual: |ρ| above this is not small: it holds the
 //                                                    parameters once a gear has ended without.
@@ -182,7 +183,7 @@ module optical (
     reg held; // The residual was large in the period before: the parameters are held.
     reg astray; // The loop was far behind the axis in the running period of travel, once γ had settled.
     reg astray_before; // And in the last one.
-    reg astray_long; // And in two or more before this: it is not catching up.
+    reg astray_long; // And in the last two or more: it is not catching up.
     reg returning; // What was recalled is held until some periods have passed quietly (recall).
     reg fading; // The search began again where the residual had stayed: the signal may have faded (recall).
     reg known; // Parameters have been remembered in the last gear (recall).
@@ -620,15 +621,24 @@ module optical (
 
     // The loop catches up
     //   once gamma has settled, a sample with a large |e| does not count, unless two periods of travel had one
-    wire e_large = // step 10, with catch_up_error, minus_catch_up_error
-        ~(($signed(e[17:12]) < 6'sd1) & ($signed(~e[17:12]) < 6'sd1));
-    wire far_behind = gamma_settled & e_large; // step 10
+    wire e_small = // step 10, with small_error, minus_small_error
+        ($signed(e[17:12]) < 6'sd1) & ($signed(~e[17:12]) < 6'sd1);
+    wire far_behind = gamma_settled & ~e_small; // step 10
     wire not_astray_long_now = ~astray_long; // step 0
     wire catches_up = far_behind & not_astray_long; // step 10
     wire not_catches_up_now = ~catches_up; // step 10
     wire loop_follows_now = in_window_now & not_catches_up; // step 11
     wire sample_counts = counting & loop_follows; // step 12
     wire counted = sample_counts & new_sector; // step 12
+    wire astray_lately = astray | far_behind; // step 10
+    wire astray_goes_on_now = ~whole_period_now & counting_now; // step 1
+    wire astray_period_ends = whole_period & astray_lately; // step 10
+    wire astray_again = astray_period_ends & astray_before; // step 10
+    wire astray_next_now = astray_lately & astray_goes_on; // step 10
+    wire astray_before_and_astray_goes_on_now = astray_before & astray_goes_on_now; // step 1
+    wire astray_before_next_now = astray_period_ends | astray_before_and_astray_goes_on; // step 10
+    wire astray_long_and_astray_goes_on_now = astray_long & astray_goes_on_now; // step 1
+    wire astray_long_next_now = astray_again | astray_long_and_astray_goes_on; // step 10
 
     // Hold
     //   from the first quiet period on a large residual, once a gear has ended calm one that is not small, and all
@@ -871,15 +881,6 @@ module optical (
     wire known_next_now = still_known | proved_now; // step 12
     wire gain_moved_or_apart_now = gain_moved | apart; // step 12
     wire apart_next_now = gain_moved_or_apart & ~together_again; // step 13
-    wire astray_lately = astray | far_behind; // step 10
-    wire astray_goes_on_now = ~whole_period_now & counting_now; // step 1
-    wire astray_period_ends = whole_period & astray_lately; // step 10
-    wire astray_again = astray_period_ends & astray_before; // step 10
-    wire astray_next_now = astray_lately & astray_goes_on; // step 10
-    wire astray_before_and_astray_goes_on_now = astray_before & astray_goes_on_now; // step 1
-    wire astray_before_next_now = astray_period_ends | astray_before_and_astray_goes_on; // step 10
-    wire astray_long_and_astray_goes_on_now = astray_long & astray_goes_on_now; // step 1
-    wire astray_long_next_now = astray_again | astray_long_and_astray_goes_on; // step 10
 
     // Parameters as they are applied
     //   theta = what the search has found, once gamma has settled where a period of travel ends

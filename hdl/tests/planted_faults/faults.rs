@@ -40,7 +40,7 @@ pub(crate) fn faults() -> Vec<Fault> {
         ),
         swap(
             "the loop catches up from twice the phase error on",
-            &["wire e_large ="],
+            &["wire e_small ="],
             "$signed(e[17:12]) < 6'sd1",
             "$signed(e[17:12]) < 6'sd2",
         ),

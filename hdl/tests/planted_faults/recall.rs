@@ -18,6 +18,18 @@ pub(crate) fn recall_faults() -> Vec<Fault> {
             "recall_any ? {recent_2",
         ),
         swap(
+            "recall where only the loop goes astray",
+            &["wire held_in_doubt ="],
+            " & signal_in_doubt",
+            "",
+        ),
+        swap(
+            "no recall where the radius is small",
+            &["wire signal_in_doubt ="],
+            " | not_radius_present",
+            "",
+        ),
+        swap(
             "no recall of the phase",
             &["recall_any ? {proven_5"],
             "recall_any ?",

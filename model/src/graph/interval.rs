@@ -235,17 +235,13 @@ fn outside(
     fraction: u32,
     limit: Format,
 ) -> RangeError {
-    let describe = |id: &NodeId| {
+    let describe = |id: NodeId| {
         let entry = &nodes[id.index()];
         let low = real(entry.range.0, entry.format.fraction);
         let high = real(entry.range.1, entry.format.fraction);
-        format!(
-            "{} is {low} … {high} ({})",
-            called(nodes, *id),
-            entry.format
-        )
+        format!("{} is {low} … {high} ({})", called(nodes, id), entry.format)
     };
-    let operands: Vec<_> = op.operands().iter().map(describe).collect();
+    let operands: Vec<_> = op.operands().map(describe).collect();
     RangeError {
         signal: "a signal".into(),
         limit: limit.to_string(),

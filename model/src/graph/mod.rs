@@ -86,27 +86,37 @@ pub enum Op {
 
 impl Op {
     /// The nodes that this one reads.
-    #[must_use]
-    pub fn operands(&self) -> Vec<NodeId> {
+    pub fn operands(&self) -> impl Iterator<Item = NodeId> + use<> {
         let mut op = *self;
-        op.operands_mut().into_iter().map(|id| *id).collect()
+        let ids = op.each_operand().map(|id| id.map(|id| *id));
+        ids.into_iter().flatten()
     }
 
     /// The same, to be renumbered.
-    fn operands_mut(&mut self) -> Vec<&mut NodeId> {
+    fn operands_mut(&mut self) -> impl Iterator<Item = &mut NodeId> {
+        self.each_operand().into_iter().flatten()
+    }
+
+    // No list on the heap: schedules are made by asking for these some million times.
+    fn each_operand(&mut self) -> [Option<&mut NodeId>; 3] {
         match self {
-            Op::Input | Op::Constant(_) => vec![],
-            Op::Neg(a) | Op::Scale(a, _) | Op::Quantise(a, _) | Op::Not(a) => vec![a],
-            Op::Lookup { address, .. } => vec![address],
-            Op::QuantiseGeared { value, gear, .. } => vec![value, gear],
+            Op::Input | Op::Constant(_) => [None, None, None],
+            Op::Neg(a)
+            | Op::Scale(a, _)
+            | Op::Quantise(a, _)
+            | Op::Not(a)
+            | Op::Lookup { address: a, .. } => [Some(a), None, None],
             Op::Add(a, b)
             | Op::Sub(a, b)
             | Op::Mul(a, b)
             | Op::LessThan(a, b)
             | Op::And(a, b)
             | Op::Or(a, b)
-            | Op::Xor(a, b) => vec![a, b],
-            Op::Select(c, a, b) => vec![c, a, b],
+            | Op::Xor(a, b)
+            | Op::QuantiseGeared {
+                value: a, gear: b, ..
+            } => [Some(a), Some(b), None],
+            Op::Select(c, a, b) => [Some(c), Some(a), Some(b)],
         }
     }
 }
@@ -171,7 +181,7 @@ impl Graph {
     /// Whether anything reads the node: another one, a register or a probe.
     #[must_use]
     pub fn is_read(&self, id: NodeId) -> bool {
-        let used = self.nodes.iter().any(|n| n.op.operands().contains(&id));
+        let used = self.nodes.iter().any(|n| n.op.operands().any(|o| o == id));
         used || self.next.iter().chain(&self.probes).any(|(_, n)| *n == id)
     }
 

@@ -29,7 +29,7 @@ impl Graph {
         self.nodes
             .retain(|_| *live.next().expect("as many flags as nodes"));
         for node in &mut self.nodes {
-            node.op.operands_mut().into_iter().for_each(to);
+            node.op.operands_mut().for_each(to);
         }
         for (_, id) in self
             .inputs

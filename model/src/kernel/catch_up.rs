@@ -29,6 +29,8 @@ static DROPPED: Formula = Formula {
 /// What a sample says about the loop.
 #[derive(Clone, Copy, Debug)]
 pub struct CatchUp<S: Signal> {
+    /// |e| is no larger than a calibrated sensor leaves.
+    pub small: S::Bool,
     /// It is far behind.
     large: S::Bool,
     /// It catches up: the sample does not count.
@@ -48,11 +50,11 @@ pub fn catch_up<S: Signal>(
         return None;
     }
     e.begin(&CATCHES_UP);
-    let outside = within(e, k.catch_up_error).not().named("e_large");
+    let small = within(e, k.small_error).named("e_small");
     let settled = gears::settled(state, k, structure);
-    let large = settled.and(outside).named("far_behind");
+    let large = settled.and(small.not()).named("far_behind");
     let now = large.and(state.astray_long.not()).named("catches_up");
-    Some(CatchUp { large, now })
+    Some(CatchUp { small, large, now })
 }
 
 impl<S: Signal> CatchUp<S> {
@@ -85,6 +87,7 @@ impl<S: Signal> CatchUp<S> {
     /// this one. A period ends with a sample that is still of it.
     #[inline(always)]
     pub fn after(self, gate: Gate<S>, counting: S::Bool, state: &State<S>) -> [S::Bool; 3] {
+        state.gamma_gear.begin(&CATCHES_UP);
         let seen = state.astray.or(self.large).named("astray_lately");
         let ends = gate.whole_period;
         let goes_on = ends.not().and(counting).named("astray_goes_on");

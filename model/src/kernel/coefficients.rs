@@ -136,10 +136,8 @@ coefficients! {
     lock_restart,
     /// Last loop gear.
     loop_gear_last,
-    /// |ρ| below this lets the completion learn.
-    completion_residual,
-    /// |e| from which the loop is catching up with motion, radians.
-    catch_up_error,
+    /// |e|, radians, from which the loop is catching up with motion, and |ρ| from which the completion rests.
+    small_error,
     /// A period of travel that takes so many samples is too slow for the completion.
     travel_samples_last,
     /// From this γ gear on γ has settled.

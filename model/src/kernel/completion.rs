@@ -8,6 +8,7 @@
 //! and so is one with a sample whose |e| is more than a sensor's error: a stop or a start. Standstill, slow motion and vibration,
 //! however fast, rest.
 
+use super::catch_up::CatchUp;
 use super::detector::within;
 use super::sensitivity::{self, Sensitivity};
 use super::travel::Travel;
@@ -45,7 +46,7 @@ pub fn complete<S: Signal>(
     (w, e, rho): (S, S, S),
     open: S::Bool,
     counting: S::Bool,
-    travel: &Travel<S>,
+    (travel, catch_up): (&Travel<S>, Option<CatchUp<S>>),
     state: &State<S>,
     k: &Coefficients<S>,
     structure: &Structure,
@@ -64,7 +65,7 @@ pub fn complete<S: Signal>(
         .named("travel_late");
     let fast = late.not().and(counting).named("fast_enough");
     // A period of which a part is missing would pull to one side.
-    let follows = follows(e, rho, open, k, structure);
+    let follows = follows((e, rho), catch_up, open, k, structure);
     let spoilt = travel.new_sector.and(follows.not()).named("period_spoilt");
     let learns = state.moving.and(spoilt.not()).named("completion_learns");
     let moving = fast.and(travel.whole_period.or(learns));
@@ -93,20 +94,20 @@ pub fn complete<S: Signal>(
 
 /// The loop follows, on a circle.
 fn follows<S: Signal>(
-    e: S,
-    rho: S,
+    (e, rho): (S, S),
+    catch_up: Option<CatchUp<S>>,
     open: S::Bool,
     k: &Coefficients<S>,
     structure: &Structure,
 ) -> S::Bool {
     // What fades or is not yet calibrated along the radius teaches nothing across it.
-    let small = within(rho, k.completion_residual).named("rho_small");
+    let small = within(rho, k.small_error).named("rho_small");
     let round = open.and(small).named("completion_open");
-    if structure.filter_type == 1 {
-        // A loop of type 1 always lags.
-        return round;
-    }
-    // Where the loop catches up with motion, e is no error of the sensor.
-    let calm = within(e, k.catch_up_error).named("e_small");
+    // Where the loop catches up with motion, e is no error of the sensor. A loop of type 1 always lags.
+    let calm = match catch_up {
+        Some(catch_up) => catch_up.small,
+        None if structure.filter_type == 1 => return round,
+        None => within(e, k.small_error).named("e_small"),
+    };
     round.and(calm).named("completion_follows")
 }

@@ -166,7 +166,15 @@ fn advance_of<S: Signal, const PLAIN: bool>(
     let completed = completion.map(|_| {
         let open = counting.and(hold.held.not()).named("parameters_free");
         let seen = (updated.w_null, e, rho);
-        completion::complete(seen, open, counting, &travel, state, k, structure)
+        completion::complete(
+            seen,
+            open,
+            counting,
+            (&travel, catch_up),
+            state,
+            k,
+            structure,
+        )
     });
     if let Some(completed) = &completed {
         let (old, nominal) = (state.theta_9_deviation, gears::nominal(state, k));

@@ -186,7 +186,7 @@ bundle! {
         astray,
         /// And in the last one.
         astray_before,
-        /// And in two or more before this: it is not catching up.
+        /// And in the last two or more: it is not catching up.
         astray_long,
         /// Whole periods of travel follow one another fast enough for the completion.
         moving,
