@@ -39,18 +39,3 @@ fn transform(values: &mut [Complex<f64>], plan: Plan) {
     };
     plan.process(values);
 }
-
-#[test]
-fn forward_and_back_is_n_times_as_much() {
-    for n in [0, 1, 7, 64, KEPT + 1] {
-        let of = |k: usize| Complex::new((k as f64).sin(), (3.0 * k as f64).cos());
-        let mut values: Vec<Complex<f64>> = (0..n).map(of).collect();
-        forward(&mut values);
-        let sum: Complex<f64> = (0..n).map(of).sum();
-        assert!(n == 0 || (values[0] - sum).norm() < 1e-6);
-        inverse(&mut values);
-        for (k, value) in values.iter().enumerate() {
-            assert!((value / n as f64 - of(k)).norm() < 1e-9, "{n}, {k}");
-        }
-    }
-}
