@@ -17,8 +17,8 @@ pub(crate) fn residual(method: Method, theta: &[f64], cos: &[f64], sin: &[f64]) 
 
 /// The smaller channel's white noise, in amplitudes.
 pub(crate) fn white(fit: &Fit) -> f64 {
-    let [c, s] = fit.noise;
-    (c / fit.ellipse.a_c).min(s / fit.ellipse.a_s)
+    let [c, s] = fit.relative_noise();
+    c.min(s)
 }
 
 /// Whether Θ draws the samples together: J is smallest where all of them are one point of the circle, and a cubic reaches

@@ -43,6 +43,14 @@ pub struct Fit {
 const ITERATIONS: usize = 80;
 /// Standard error of ln(σ_s/σ_c) beyond which the samples do not tell the ratio.
 const VAGUE: f64 = 0.35;
+impl Fit {
+    /// The noise of cosine and sine channel in fractions of their amplitudes.
+    pub(crate) fn relative_noise(&self) -> [f64; 2] {
+        let [c, s] = self.noise;
+        [c / self.ellipse.a_c, s / self.ellipse.a_s]
+    }
+}
+
 /// Consecutive parts of a recording, to see whether their differences are noise.
 const PARTS: usize = 20;
 /// Scatter of the parts, in standard errors, that is worth a word.

@@ -163,7 +163,8 @@ pub(crate) fn of_ratio(fit: &Fit) -> Option<String> {
 
 /// Of a ratio at the end of what the residuals tell.
 fn extreme_ratio(fit: &Fit) -> String {
-    let (quiet, loud) = if fit.noise[1] / fit.ellipse.a_s > fit.noise[0] / fit.ellipse.a_c {
+    let [c, s] = fit.relative_noise();
+    let (quiet, loud) = if s > c {
         ("cos", "sin")
     } else {
         ("sin", "cos")
@@ -187,7 +188,8 @@ pub(crate) fn of_given_ratio(given: f64, own: &Fit) -> Option<String> {
     if own.ratio_extreme {
         // Of 8 and of 50 the samples say the same.
         let gain = own.ellipse.a_s / own.ellipse.a_c;
-        let sense = (ratio / gain).ln().signum();
+        let [c, s] = own.relative_noise();
+        let sense = (s / c).ln().signum();
         let limit = gain * TESTED.powf(sense);
         let word = if sense > 0.0 { "more" } else { "less" };
         return ((given / limit).ln() * sense < 0.0).then(|| {
