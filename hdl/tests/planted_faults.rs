@@ -144,10 +144,10 @@ fn kept(place: &str, faults: usize) {
     );
 }
 
-/// The vectors see each of these in the chip, and say where: every second, in the long form all.
+/// The vectors see each of these in the chip, and say where: every third, in the long form all.
 fn all_caught(place: &str, chip: &Sound, rtl: &str, faults: &[Fault]) {
     let sound = on_one_line(&text(&chip.all, rtl));
-    let some = every(2, faults);
+    let some = every(3, faults);
     let faulty = some.map(|(name, change)| {
         let faulty = change(&sound);
         assert_ne!(faulty, sound, "{name}: nothing is altered");

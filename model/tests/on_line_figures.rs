@@ -264,7 +264,7 @@ fn fewer_gears(spec: &Spec) -> u32 {
 /// One offset drifts by 10 % of the amplitude within a minute, at 50 periods a second or faster: with the last gamma of the shipped
 /// designs, or what is as fast, the miscalibration stays below 0.02 % of a period, with every search, in a sensor without other errors
 /// and in one with offsets, unequal gains and phase error. Final form of five: every way; others: either channel one way, and but in the
-/// long form one at one speed and the other at the other, with the other errors.
+/// long form every second search, one at one speed and the other at the other, with the other errors.
 #[test]
 fn a_drifting_offset_is_followed() {
     let mut base = optical();
@@ -272,7 +272,9 @@ fn a_drifting_offset_is_followed() {
     base.sensor.speed_max_periods_per_s = 1e3;
     base.tracking.bandwidth_hz = 200.0;
     let signs: Vec<Option<u32>> = every(3, [0, 3, 5, 10, 12, 15]).map(Some).collect();
-    for variant in searches_of(&base) {
+    let searches = searches_of(&base).into_iter().enumerate();
+    let some = searches.filter(|(i, _)| long() || i % 2 == 1);
+    for (_, variant) in some {
         let mut spec = variant.spec;
         spec.calibration.gamma_last -= fewer_gears(&spec);
         let set = spec.calibration.parameters;
