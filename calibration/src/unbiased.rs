@@ -40,17 +40,20 @@ pub struct Fit {
     pub converged: bool,
 }
 
-const ITERATIONS: usize = 80;
-/// Standard error of ln(σ_s/σ_c) beyond which the samples do not tell the ratio.
-const VAGUE: f64 = 0.35;
 impl Fit {
     /// The noise of cosine and sine channel in fractions of their amplitudes.
     pub(crate) fn relative_noise(&self) -> [f64; 2] {
-        let [c, s] = self.noise;
-        [c / self.ellipse.a_c, s / self.ellipse.a_s]
+        relative(self.noise, &self.ellipse)
     }
 }
 
+fn relative([c, s]: [f64; 2], ellipse: &Ellipse) -> [f64; 2] {
+    [c / ellipse.a_c, s / ellipse.a_s]
+}
+
+const ITERATIONS: usize = 80;
+/// Standard error of ln(σ_s/σ_c) beyond which the samples do not tell the ratio.
+const VAGUE: f64 = 0.35;
 /// Consecutive parts of a recording, to see whether their differences are noise.
 const PARTS: usize = 20;
 /// Scatter of the parts, in standard errors, that is worth a word.
@@ -109,7 +112,7 @@ pub fn fit(cos: &[f64], sin: &[f64], start: &Ellipse, ratio: Option<f64>) -> Fit
         Some(found) if ratio.is_none() && !ratio_assumed => [found.cos.sqrt(), found.sin.sqrt()],
         _ => [white, white * metric],
     };
-    let own = (noise[1] / ellipse.a_s) / (noise[0] / ellipse.a_c);
+    let [c, s] = relative(noise, &ellipse);
     let covariance = round.covariance(&ellipse);
     let scatter = covariance.and_then(|c| round.scatter(&residuals, &c));
     Fit {
@@ -123,7 +126,7 @@ pub fn fit(cos: &[f64], sin: &[f64], start: &Ellipse, ratio: Option<f64>) -> Fit
             (None, None) => f64::INFINITY,
         },
         ratio_assumed,
-        ratio_extreme: ratio.is_none() && !ratio_assumed && own.ln().abs() > noise::TESTED.ln(),
+        ratio_extreme: ratio.is_none() && !ratio_assumed && (s / c).ln().abs() > noise::TESTED.ln(),
         shape: shape.map(|(rms, order)| Shape {
             rms: rms * (1.0 + metric) / 2.0 / ellipse.amplitude(),
             order,

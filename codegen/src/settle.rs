@@ -43,6 +43,7 @@ fn fits(graph: &Graph, schedule: &Schedule, cycle: usize, depth: u32) -> bool {
 pub(crate) fn settle(graph: &Graph, schedule: &mut Schedule, depth: u32) {
     let ids: Vec<NodeId> = graph.ids().collect();
     let uses = |schedule: &Schedule| (first_use(graph, schedule), last_use(graph, schedule));
+    // They change where a value moves, and else not.
     let (mut first, mut last) = uses(schedule);
     loop {
         let mut moved = false;

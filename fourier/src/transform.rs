@@ -5,7 +5,7 @@ use std::cell::RefCell;
 use rustfft::FftPlanner;
 pub use rustfft::num_complex::Complex;
 
-/// Plans of more values are not kept: they take as much room as these, and less time than the transform.
+/// Plans of more values are not kept: they take room in proportion.
 const KEPT: usize = 1 << 16;
 
 thread_local! {

@@ -128,12 +128,10 @@ fn skews_in_icarus_and_verilator() {
 
 /// Rows enough for the last gear, a hold in it and a return; fewer in the simulator that is slower. The last; in the long campaign all.
 #[test]
-fn recalls_in_icarus_and_verilator() {
-    let recalls: Vec<Variant> = variants::recalls().into_iter().skip(3).collect();
-    recalls.par_iter().for_each(|variant| {
-        agrees(variant, 1000, &VERILATOR);
-        agrees(variant, ROWS, &ICARUS);
-    });
+fn a_recall_in_icarus_and_verilator() {
+    let recall = variants::recalls().pop().expect("a variant");
+    agrees(&recall, 1000, &VERILATOR);
+    agrees(&recall, ROWS, &ICARUS);
 }
 
 /// Every second; in the long campaign all.

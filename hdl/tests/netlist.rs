@@ -12,7 +12,7 @@ use chip::shipped;
 use nonius_hdl::tools::{Tool, require};
 use nonius_hdl::verilator::{Effort, simulate};
 use nonius_hdl::{ChipDir, Run};
-use nonius_kept::{every, long};
+use nonius_kept::every;
 use nonius_model::spec::Spec;
 use rayon::prelude::*;
 use tempfile::TempDir;
@@ -118,12 +118,9 @@ fn shipped_designs_as_netlists() {
     });
 }
 
-/// Yosys 0.23 gets this wrong, and the vectors see it at the ports. In the long form alone: its netlist takes as long as the right one's.
+/// Yosys 0.23 gets this wrong, and the vectors see it at the ports.
 #[test]
 fn a_comparison_that_is_synthesised_wrong_is_seen() {
-    if !long() {
-        return;
-    }
     let spec = shipped::optical();
     let run = synthesised(&spec, |dir| {
         let file = dir.join("rtl/optical.v");

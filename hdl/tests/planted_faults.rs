@@ -17,7 +17,7 @@ use chip::optical;
 use edit::{Fault, on_one_line};
 use faults::{dropping_faults, faults, harmonic_faults, skew_faults};
 use nonius_hdl::verify::{Options, verify};
-use nonius_kept::every;
+use nonius_kept::{blessed, every, long};
 use nonius_model::design::Design;
 use nonius_model::spec::Spec;
 use nonius_testvectors::stimulus::{self, Stimulus};
@@ -160,7 +160,10 @@ fn all_caught(place: &str, chip: &Sound, rtl: &str, faults: &[Fault]) {
         let caught = caught.unwrap_or_else(|| panic!("{name}: not caught"));
         assert!(caught.says.contains("signal"), "{name}: {}", caught.says);
     });
-    kept(place, faults.len());
+    // The page is written where all were tried; how many there are it says at any time.
+    if long() || !blessed() {
+        kept(place, faults.len());
+    }
 }
 
 #[test]
