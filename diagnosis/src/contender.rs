@@ -6,7 +6,7 @@ use nonius_quantity::agree;
 use crate::ahead;
 use crate::beside::Beside;
 use crate::cause::{Candidate, Domain, Sign};
-use crate::causes::{self, ACCELERATION_GAIN, Catalogue, HYSTERESIS};
+use crate::causes::{self, AC_COUPLING, ACCELERATION_GAIN, Catalogue, HYSTERESIS};
 use crate::channels::Channels;
 use crate::context::Context;
 use crate::exact;
@@ -113,9 +113,11 @@ pub(crate) fn contender(
         }
         let mark = system.samples.library.atoms.len();
         let held = holds(system, catalogue, fit, &own, &rest);
-        let steps = (own.candidate.domain == Domain::Time)
-            .then(|| steps_instead(system, fit, &own, &rest))
-            .flatten();
+        let steps = match own.candidate.domain {
+            Domain::Time => steps_instead(system, fit, &own, &rest),
+            Domain::Speed => steps_not_speed(system, fit, &own, &rest),
+            _ => None,
+        };
         let slow = steps.is_none();
         if !slow && stepped.is_none() {
             stepped = Some(i);
@@ -341,6 +343,37 @@ fn steps_instead(system: &System, fit: &Fit, drift: &Scored, rest: &[&Scored]) -
         slow(o) && o.candidate.name != own
     });
     if named.len() == before {
+        return Some(alone);
+    }
+    among(&named)
+}
+
+/// Log-likelihood that steps in time explain of what is left, where that is clearly more than what grows with the speed does: where
+/// the speed only rises, that is slow, too.
+fn steps_not_speed(system: &System, fit: &Fit, own: &Scored, rest: &[&Scored]) -> Option<f64> {
+    const ANY: [Change; 3] = [Change::Gains, Change::Radius, Change::Offsets];
+    /// By which share of it: tangents of what is large are off.
+    const CLEARLY: f64 = 0.1;
+    // What turns over with the direction has steps, and what a capacitor remembers may look like some.
+    if [HYSTERESIS, AC_COUPLING].contains(&own.candidate.name) {
+        return None;
+    }
+    let price = price(system.context.samples() as f64);
+    let among = |others: &[Shape]| {
+        let left = system.residual(&system.fit(others.to_vec()));
+        let steps = steps::instead(Channels::of(system, &left), system.noise(), &ANY)?;
+        let gain = Beside::new(&system.total, others)
+            .gain(&own.candidate.shapes)
+            .0;
+        (steps > (1.0 + CLEARLY) * gain - price * own.freedom as f64).then_some(steps)
+    };
+    let alone = among(&fit.shapes)?;
+    // Other causes are seen beside it, and some of them look like steps.
+    let mut named = both(&fit.shapes, &own.candidate.shapes);
+    let other = |o: &Scored| o.candidate.name != own.candidate.name;
+    stand_beside(system, &mut named, rest, other);
+    named.drain(fit.shapes.len()..fit.shapes.len() + own.candidate.shapes.len());
+    if named.len() == fit.shapes.len() {
         return Some(alone);
     }
     among(&named)

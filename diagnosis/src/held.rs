@@ -108,7 +108,7 @@ pub(crate) fn holds(
     let sizes = self::share(held, beside.gain(&among(&sizes)));
     let beside = Beside::new(&whole, &among(&both(&known, &free)));
     let own = self::share(held + more, beside.gain(&among(&any)));
-    Held::new(&best.candidate, share.min(own), sizes, around)
+    Held::new(&best.candidate, own, sizes, around)
 }
 
 /// Adds causes that stand beside the named ones; what they explain.

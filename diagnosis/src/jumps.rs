@@ -1,5 +1,6 @@
 //! Samples that are missing without a gap in time: the angle jumps by what it moves in whole samples.
 
+use nonius_fourier::Complex;
 use nonius_recording::Recording;
 
 use crate::checks::{Checked, ninth, repeats};
@@ -9,7 +10,15 @@ use crate::solve::dot;
 
 /// Samples on either side of a jump that are compared, and the order of the curve through them; on slow axes more of them
 /// show it, and on axes that shake a curve that bends more.
-const SIDES: [(usize, i32); 5] = [(8, 3), (8, 5), (24, 3), (64, 5), (200, 5)];
+const SIDES: [(usize, i32); 7] = [
+    (8, 3),
+    (8, 5),
+    (24, 3),
+    (64, 5),
+    (200, 5),
+    (600, 5),
+    (600, 9),
+];
 /// So many times the ninth decile of what the curve leaves is a jump: eight standard deviations.
 const FAR: f64 = 4.9;
 /// A jump is so near a whole number of samples, beside what noise makes of it.
@@ -18,8 +27,6 @@ const WHOLE: f64 = 0.15;
 const MOST: f64 = 32.0;
 /// So many times the samples on a side, to either side, tell how large the noise is just there.
 const AROUND: usize = 8;
-/// So many of the sides do to compare a sensor with its reference: that the axis shakes is in both.
-const WITH_REFERENCE: usize = 4;
 /// Standard deviations by which the sensor has to be seen to jump with its reference.
 const TOGETHER: f64 = 3.0;
 
@@ -76,13 +83,18 @@ impl Corners {
         Self(all.map(corner).collect())
     }
 
-    /// Whether one of them explains as much of an angle as the jump does.
-    fn explain(&self, look: &Look, jump: &Jump) -> bool {
-        let near = &look.angle[jump.before - look.side..jump.before + look.side];
-        let step: f64 = look.weights.iter().map(|w| w * w).sum();
-        let most = jump.size * jump.size / step;
+    /// Whether one of them explains as much of the angle near a jump as the jump does, whose size the weights give.
+    fn explain(&self, near: &[f64], weights: &[f64]) -> bool {
+        let most = dot(near, weights).powi(2) / dot(weights, weights);
         self.0.iter().any(|corner| dot(near, corner).powi(2) > most)
     }
+}
+
+/// The sides that so many samples are enough for.
+fn sides(samples: usize) -> impl Iterator<Item = (usize, i32)> {
+    SIDES
+        .into_iter()
+        .take_while(move |(side, _)| samples >= 32 * side)
 }
 
 /// Lays straight lines over samples that do not count.
@@ -131,6 +143,30 @@ pub(crate) fn angle(recording: &Recording, weight: &[f64]) -> Option<Vec<f64>> {
     Some(angle)
 }
 
+/// The sum of the values from each place on, times the weights.
+fn sums(values: &[f64], weights: &[f64]) -> Vec<f64> {
+    /// Weights from which on transforms take less time.
+    const MANY: usize = 200;
+    if weights.len() < MANY {
+        let windows = values.windows(weights.len());
+        return windows.map(|near| dot(near, weights)).collect();
+    }
+    let transformed = |of: &[f64]| {
+        let padded = of.iter().copied().chain(std::iter::repeat(0.0));
+        let mut all: Vec<Complex<f64>> = padded.take(values.len()).map(Complex::from).collect();
+        nonius_fourier::forward(&mut all);
+        all
+    };
+    let mut product = transformed(values);
+    for (p, w) in product.iter_mut().zip(transformed(weights)) {
+        *p *= w.conj();
+    }
+    nonius_fourier::inverse(&mut product);
+    // Further on, the sums would go round the end.
+    let inside = product.iter().take(values.len() + 1 - weights.len());
+    inside.map(|p| p.re / values.len() as f64).collect()
+}
+
 /// An angle, looked at with curves through so many samples on either side.
 struct Look<'a> {
     angle: &'a [f64],
@@ -145,20 +181,21 @@ struct Look<'a> {
 impl<'a> Look<'a> {
     fn new(angle: &'a [f64], side: usize, order: i32) -> Self {
         let weights = step_weights(side, order, None);
-        let size = |k: usize| -> f64 {
-            let near = &angle[k - side..k + side];
-            near.iter().zip(&weights).map(|(a, w)| a * w).sum()
-        };
-        let n = angle.len();
-        let inside = |k: usize| k >= side && k + side <= n;
-        let sizes = (0..n).map(|k| if inside(k) { size(k) } else { 0.0 });
+        let mut sizes = vec![0.0; side];
+        sizes.extend(sums(angle, &weights));
+        sizes.resize(angle.len(), 0.0);
         Self {
             angle,
             side,
             order,
-            sizes: sizes.collect(),
+            sizes,
             weights,
         }
+    }
+
+    /// The samples that show a jump.
+    fn near(&self, jump: &Jump) -> &'a [f64] {
+        &self.angle[jump.before - self.side..jump.before + self.side]
     }
 
     /// Ninth decile of the sizes on either side of a place; a jump shows itself up to a side away from it.
@@ -238,12 +275,11 @@ pub(crate) fn jumps(recording: &Recording, checked: &Checked) -> Vec<(usize, usi
             .into_iter()
             .any(|one| repeats(recording, one) && look.is_one_sample(jump, one))
     };
-    for (side, order) in SIDES {
-        if angle.len() < 32 * side {
-            break;
-        }
+    for (side, order) in sides(angle.len()) {
         let corners = Corners::new(side, order);
-        let other = |look: &Look, j: &Jump| replaced(look, j) || corners.explain(look, j);
+        let other = |look: &Look, j: &Jump| {
+            replaced(look, j) || corners.explain(look.near(j), &look.weights)
+        };
         let look = Look::new(&angle, side, order);
         let far = look.far().into_iter().filter(|j| !other(&look, j));
         found.extend(whole(&look, far.collect(), checked, &found));
@@ -262,7 +298,7 @@ pub(crate) fn jumps(recording: &Recording, checked: &Checked) -> Vec<(usize, usi
 /// for, not the farthest of all, so a smaller jump tells; curves are as long as leaves the least noise there.
 pub(crate) fn late(recording: &Recording, checked: &Checked, of: &[usize]) -> Vec<usize> {
     /// Longer curves, for slow axes.
-    const LONGER: [(usize, i32); 2] = [(600, 5), (1200, 5)];
+    const LONGER: [(usize, i32); 1] = [(1200, 5)];
     /// Standard deviations from which on a jump counts.
     const SURE: f64 = 5.0;
     /// Parts of a side at which the noise is looked at.
@@ -273,10 +309,13 @@ pub(crate) fn late(recording: &Recording, checked: &Checked, of: &[usize]) -> Ve
         return vec![];
     };
     let n = angle.len();
-    let sides: Vec<(usize, Vec<f64>)> = SIDES
+    let sides: Vec<(usize, Vec<f64>, Corners)> = SIDES
         .into_iter()
         .chain(LONGER)
-        .map(|(side, order)| (side, step_weights(side, order, None)))
+        .map(|(side, order)| {
+            let weights = step_weights(side, order, None);
+            (side, weights, Corners::new(side, order))
+        })
         .collect();
     // Size and noise of a jump before a sample.
     let jump = |k: usize, side: usize, weights: &[f64]| -> Option<(f64, f64)> {
@@ -290,14 +329,17 @@ pub(crate) fn late(recording: &Recording, checked: &Checked, of: &[usize]) -> Ve
         (sizes.len() > AROUND * PARTS).then_some((size(k)?, ninth(&sizes) / 1.645))
     };
     let is_late = |k: &usize| {
-        let looks = sides
-            .iter()
-            .filter_map(|(side, weights)| jump(*k, *side, weights));
+        let looks = sides.iter().filter_map(|(side, weights, corners)| {
+            let (size, sigma) = jump(*k, *side, weights)?;
+            let near = &angle[k - side..k + side];
+            Some((size, sigma, near, weights, corners))
+        });
         let best = looks.min_by(|a, b| a.1.total_cmp(&b.1));
         let (from, to) = (k.saturating_sub(SPEED), (k + SPEED).min(n - 1));
         let moves = (angle[to] - angle[from]) / (to - from - 1) as f64;
-        best.is_some_and(|(size, sigma)| {
-            size.abs() > SURE * sigma && (size + moves).abs() < WHOLE * moves.abs() + 3.0 * sigma
+        best.is_some_and(|(size, sigma, near, weights, corners)| {
+            let whole = (size + moves).abs() < WHOLE * moves.abs() + 3.0 * sigma;
+            size.abs() > SURE * sigma && whole && !corners.explain(near, weights)
         })
     };
     of.iter().copied().filter(is_late).collect()
@@ -313,7 +355,7 @@ fn together(apart: &[f64], reference: &Jump) -> bool {
         let here = k - near.start;
         (look.sizes[here].abs(), look.noise(here, 0.0) / 1.645)
     };
-    let looks = SIDES.into_iter().take(WITH_REFERENCE).map(jumps);
+    let looks = sides(apart.len()).map(jumps);
     let surest = looks.min_by(|a, b| a.1.total_cmp(&b.1));
     surest.is_some_and(|(size, sigma)| size + TOGETHER * sigma < reference.size.abs())
 }

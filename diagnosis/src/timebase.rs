@@ -18,7 +18,7 @@ const NEAR: usize = 4;
 /// Of so many samples not one has the codes of the one before where each that has is looked at.
 const SELDOM: usize = 500;
 /// Repeated samples that chance may make of a recording.
-const BY_CHANCE: f64 = 0.01;
+const BY_CHANCE: f64 = 0.003;
 
 /// The smallest step between two values of a channel, at least a code.
 fn step(values: &[f64], lsb: f64) -> f64 {

@@ -226,10 +226,25 @@ fn a_lost_sample_is_no_glitch() {
     });
 }
 
+/// A single one, where the scale hardly moves from sample to sample: only long curves on either side show that all is late.
+#[test]
+fn a_sample_lost_on_a_slow_axis() {
+    let found = damaged(&PLAIN, |rows| {
+        let slow = |k: &usize| (moves(rows, *k) - 1.7 * NOISE).abs();
+        let inside = 1000..rows.len() - 1000;
+        let lost = inside.min_by(|a, b| slow(a).total_cmp(&slow(b)));
+        rows.remove(lost.expect("samples"));
+        at_even_times(rows);
+    });
+    assert_eq!(names(&found), ["dropped_samples"]);
+    let count = found.findings[0].parameter("count");
+    assert_eq!(count, Some(1.0), "{}", found.findings[0].evidence);
+}
+
 /// A sample that is lost from sensor and reference alike, where the sensor's noise alone would hide it.
 fn lost_in_noise(rows: &mut Rows) {
-    let slow = (5000..15_000).find(|k| (0.008..0.009).contains(&moves(rows, *k)));
-    rows.remove(slow.expect("a place where it moves by twice the noise"));
+    let slow = (5000..15_000).find(|k| (0.0028..0.0032).contains(&moves(rows, *k)));
+    rows.remove(slow.expect("a place where it moves by less than the noise"));
     at_even_times(rows);
 }
 
