@@ -63,10 +63,27 @@ impl Part {
 }
 
 /// Products of columns of the same samples. The columns are long and few: a matrix product for all shapes would spend most of
-/// its time on arranging them anew. Nothing is fused, so every processor finds the same sums.
-#[multiversion::multiversion(targets("x86_64+avx2"))]
+/// its time on arranging them anew.
 fn tile(left: [&[f64]; LEFT], right: [&[f64]; RIGHT]) -> [[f64; RIGHT]; LEFT] {
     let count = right[0].len() / LANES;
+    let sums = in_lanes(left, right, count);
+    let mut sums = sums.map(|row| row.map(|lanes| lanes.iter().sum::<f64>()));
+    for (row, left) in sums.iter_mut().zip(left) {
+        for (sum, right) in row.iter_mut().zip(right) {
+            *sum += dot(&left[count * LANES..], &right[count * LANES..]);
+        }
+    }
+    sums
+}
+
+/// So many groups of samples, each of a group in a sum of its own. Nothing is fused, so every processor finds the same sums. Those
+/// of a group are added elsewhere: where they are added here, the compiler mixes lanes, and takes four times as long.
+#[multiversion::multiversion(targets("x86_64+avx2"))]
+fn in_lanes(
+    left: [&[f64]; LEFT],
+    right: [&[f64]; RIGHT],
+    count: usize,
+) -> [[[f64; LANES]; RIGHT]; LEFT] {
     let ([a0, a1, a2, a3], [b0, b1, b2]) = (
         left.map(|c| lanes(c, count)),
         right.map(|c| lanes(c, count)),
@@ -92,19 +109,12 @@ fn tile(left: [&[f64]; LEFT], right: [&[f64]; RIGHT]) -> [[f64; RIGHT]; LEFT] {
         add(&mut s31, x3, y1);
         add(&mut s32, x3, y2);
     }
-    let rows = [
+    [
         [s00, s01, s02],
         [s10, s11, s12],
         [s20, s21, s22],
         [s30, s31, s32],
-    ];
-    let mut sums = rows.map(|row| row.map(|lanes| lanes.iter().sum::<f64>()));
-    for (row, left) in sums.iter_mut().zip(left) {
-        for (sum, right) in row.iter_mut().zip(right) {
-            *sum += dot(&left[count * LANES..], &right[count * LANES..]);
-        }
-    }
-    sums
+    ]
 }
 
 /// Samples that are multiplied at once.
