@@ -115,7 +115,7 @@ pub(crate) fn contender(
         let held = holds(system, catalogue, fit, &own, &rest);
         let steps = match own.candidate.domain {
             Domain::Time => steps_instead(system, fit, &own, &rest),
-            Domain::Speed => steps_not_speed(system, fit, &own, &rest),
+            Domain::Speed if held.refusal.is_none() => steps_not_speed(system, fit, &own, &rest),
             _ => None,
         };
         let slow = steps.is_none();
