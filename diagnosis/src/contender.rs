@@ -6,19 +6,19 @@ use nonius_quantity::agree;
 use crate::ahead;
 use crate::beside::Beside;
 use crate::cause::{Candidate, Domain, Sign};
-use crate::causes::{self, AC_COUPLING, ACCELERATION_GAIN, Catalogue, HYSTERESIS};
+use crate::causes::{self, ACCELERATION_GAIN, Catalogue};
 use crate::channels::Channels;
 use crate::context::Context;
 use crate::exact;
-use crate::held::{holds, stand_beside};
+use crate::held::holds;
 use crate::library::Shape;
-use crate::model::{Fit, System, amounts};
+use crate::model::{Fit, System};
 use crate::names::plain;
 use crate::score::{RIVALS, Scored, score};
 use crate::select::both;
 use crate::selection::Accepted;
+use crate::stairs;
 use crate::statistics::{log_tail, price};
-use crate::steps::{self, Change};
 use crate::unexplained::{Unnamed, What, like};
 
 /// Gain in log-likelihood (an SNR of 300) from which on a choice between causes is made where tangents are exact.
@@ -32,7 +32,7 @@ const AS_WELL: f64 = 0.95;
 /// A drift of the offsets.
 const DRIFT: &str = "offset_drift";
 /// A drift of the gains.
-const GAIN_DRIFT: &str = "gain_drift";
+pub(crate) const GAIN_DRIFT: &str = "gain_drift";
 /// A cause that adds less than this probability says nothing new.
 const NOTHING_NEW: f64 = 1e-3;
 
@@ -86,7 +86,7 @@ pub(crate) fn contender(
         if best.candidate.as_drift && scored.iter().any(drifts) {
             continue;
         }
-        if stepped.is_some_and(|drift: usize| !stands_in(system, fit, &scored, drift, i)) {
+        if stepped.is_some_and(|drift: usize| !stairs::stands_in(system, fit, &scored, drift, i)) {
             continue;
         }
         tried.push(one);
@@ -114,8 +114,10 @@ pub(crate) fn contender(
         let mark = system.samples.library.atoms.len();
         let held = holds(system, catalogue, fit, &own, &rest);
         let steps = match own.candidate.domain {
-            Domain::Time => steps_instead(system, fit, &own, &rest),
-            Domain::Speed if held.refusal.is_none() => steps_not_speed(system, fit, &own, &rest),
+            Domain::Time => stairs::instead_of_drift(system, fit, &own, &rest),
+            Domain::Speed if held.refusal.is_none() => {
+                stairs::instead_of_speed(system, fit, &own, &rest)
+            }
             _ => None,
         };
         let slow = steps.is_none();
@@ -316,85 +318,4 @@ pub(crate) fn paid_where_noise_shows(
     let with = system.fit(both(&fit.shapes, cause));
     let gain = 0.5 * (power(fit) - power(&with)) / system.noise().powi(2);
     gain - price(system.context.samples() as f64) * numbers
-}
-
-/// Log-likelihood that steps in time explain of the channels, where that is more than a slow change does: then it is no drift.
-fn steps_instead(system: &System, fit: &Fit, drift: &Scored, rest: &[&Scored]) -> Option<f64> {
-    let own = drift.candidate.name;
-    let changes: &[Change] = if own == GAIN_DRIFT {
-        &[Change::Gains, Change::Radius]
-    } else {
-        &[Change::Offsets]
-    };
-    let mut named = both(&fit.shapes, &drift.candidate.shapes);
-    // The five parameters and other causes as they are beside the drift: without it they are off by what they take of it.
-    let among = |named: &[Shape]| {
-        let mut amounts = system.fit(named.to_vec()).solution.x;
-        let range = fit.shapes.len()..fit.shapes.len() + drift.candidate.shapes.len();
-        amounts[range].fill(0.0);
-        let left = system.left(&self::amounts(named, &amounts));
-        steps::instead(Channels::of(system, &left), system.noise(), changes)
-    };
-    let alone = among(&named)?;
-    // What turns over with the direction looks like steps, and what another drift does may look like some.
-    let before = named.len();
-    let slow = |o: &Scored| o.candidate.domain == Domain::Time || o.candidate.name == HYSTERESIS;
-    stand_beside(system, &mut named, rest, |o| {
-        slow(o) && o.candidate.name != own
-    });
-    if named.len() == before {
-        return Some(alone);
-    }
-    among(&named)
-}
-
-/// Log-likelihood that steps in time explain of what is left, where that is clearly more than what grows with the speed does: where
-/// the speed only rises, that is slow, too.
-fn steps_not_speed(system: &System, fit: &Fit, own: &Scored, rest: &[&Scored]) -> Option<f64> {
-    const ANY: [Change; 3] = [Change::Gains, Change::Radius, Change::Offsets];
-    /// By which share of it: tangents of what is large are off.
-    const CLEARLY: f64 = 0.1;
-    // What turns over with the direction has steps, and what a capacitor remembers may look like some.
-    if [HYSTERESIS, AC_COUPLING].contains(&own.candidate.name) {
-        return None;
-    }
-    let price = price(system.context.samples() as f64);
-    let among = |others: &[Shape]| {
-        let left = system.residual(&system.fit(others.to_vec()));
-        let steps = steps::instead(Channels::of(system, &left), system.noise(), &ANY)?;
-        let gain = Beside::new(&system.total, others)
-            .gain(&own.candidate.shapes)
-            .0;
-        (steps > (1.0 + CLEARLY) * gain - price * own.freedom as f64).then_some(steps)
-    };
-    let alone = among(&fit.shapes)?;
-    // Other causes are seen beside it, and some of them look like steps.
-    let mut named = both(&fit.shapes, &own.candidate.shapes);
-    let other = |o: &Scored| o.candidate.name != own.candidate.name;
-    stand_beside(system, &mut named, rest, other);
-    named.drain(fit.shapes.len()..fit.shapes.len() + own.candidate.shapes.len());
-    if named.len() == fit.shapes.len() {
-        return Some(alone);
-    }
-    among(&named)
-}
-
-/// Whether a cause can stand in for steps that a drift was taken for: it has to explain as much as the drift did, by itself or
-/// with others beside it.
-fn stands_in(system: &System, fit: &Fit, scored: &[Scored], drift: usize, which: usize) -> bool {
-    let (drift, own) = (&scored[drift], &scored[which]);
-    let enough = drift.gain - drift.freedom as f64;
-    if own.gain >= enough {
-        return true;
-    }
-    let others: Vec<&Scored> = scored.iter().collect();
-    let mut named = both(&fit.shapes, &own.candidate.shapes);
-    let other = |o: &Scored| {
-        ![drift, own]
-            .map(|s| s.candidate.name)
-            .contains(&o.candidate.name)
-    };
-    stand_beside(system, &mut named, &others, other);
-    let beside = Beside::new(&system.total, &fit.shapes);
-    beside.gain(&named[fit.shapes.len()..]).0 >= enough
 }

@@ -145,7 +145,7 @@ pub(crate) fn angle(recording: &Recording, weight: &[f64]) -> Option<Vec<f64>> {
 
 /// The sum of the values from each place on, times the weights.
 fn sums(values: &[f64], weights: &[f64]) -> Vec<f64> {
-    /// Weights from which on transforms take less time.
+    /// From so many weights on by transforms, whose time does not grow with their number.
     const MANY: usize = 200;
     if weights.len() < MANY {
         let windows = values.windows(weights.len());
@@ -237,9 +237,7 @@ impl<'a> Look<'a> {
         const OTHERS: f64 = 0.5;
         let from = jump.before - self.side;
         let weights = step_weights(self.side, self.order, Some(one - from));
-        let near = self.angle[from..].iter().zip(&weights);
-        let size: f64 = near.map(|(a, w)| a * w).sum();
-        size / jump.size < OTHERS
+        dot(self.near(jump), &weights) / jump.size < OTHERS
     }
 
     /// How many samples are missing where it jumps, if that is a whole number.
@@ -321,7 +319,7 @@ pub(crate) fn late(recording: &Recording, checked: &Checked, of: &[usize]) -> Ve
     let jump = |k: usize, side: usize, weights: &[f64]| -> Option<(f64, f64)> {
         let size = |k: usize| -> Option<f64> {
             let near = angle.get(k.checked_sub(side)?..k + side)?;
-            Some(near.iter().zip(weights).map(|(a, w)| a * w).sum())
+            Some(dot(near, weights))
         };
         let around = (k.saturating_sub(AROUND * side)..k + AROUND * side).step_by(side / PARTS);
         let apart = around.filter(|j| j.abs_diff(k) >= side).filter_map(size);
@@ -329,15 +327,15 @@ pub(crate) fn late(recording: &Recording, checked: &Checked, of: &[usize]) -> Ve
         (sizes.len() > AROUND * PARTS).then_some((size(k)?, ninth(&sizes) / 1.645))
     };
     let is_late = |k: &usize| {
-        let looks = sides.iter().filter_map(|(side, weights, corners)| {
-            let (size, sigma) = jump(*k, *side, weights)?;
-            let near = &angle[k - side..k + side];
-            Some((size, sigma, near, weights, corners))
+        let looks = sides.iter().filter_map(|look| {
+            let (size, sigma) = jump(*k, look.0, &look.1)?;
+            Some((size, sigma, look))
         });
         let best = looks.min_by(|a, b| a.1.total_cmp(&b.1));
         let (from, to) = (k.saturating_sub(SPEED), (k + SPEED).min(n - 1));
         let moves = (angle[to] - angle[from]) / (to - from - 1) as f64;
-        best.is_some_and(|(size, sigma, near, weights, corners)| {
+        best.is_some_and(|(size, sigma, (side, weights, corners))| {
+            let near = &angle[k - side..k + side];
             let whole = (size + moves).abs() < WHOLE * moves.abs() + 3.0 * sigma;
             size.abs() > SURE * sigma && whole && !corners.explain(near, weights)
         })

@@ -51,6 +51,7 @@ mod simpler;
 mod simulation;
 mod solve;
 mod spline;
+mod stairs;
 mod statistics;
 mod steps;
 mod sweep;

@@ -77,7 +77,7 @@ fn tile(left: [&[f64]; LEFT], right: [&[f64]; RIGHT]) -> [[f64; RIGHT]; LEFT] {
 }
 
 /// So many groups of samples, each of a group in a sum of its own. Nothing is fused, so every processor finds the same sums. Those
-/// of a group are added elsewhere: where they are added here, the compiler mixes lanes, and takes four times as long.
+/// of a group are added elsewhere: where they are added here, the compiler mixes lanes, and the loop is far slower.
 #[multiversion::multiversion(targets("x86_64+avx2"))]
 fn in_lanes(
     left: [&[f64]; LEFT],

@@ -111,6 +111,7 @@ fn names(found: &Diagnosis) -> Vec<&str> {
     found.findings.iter().map(|f| f.cause.as_str()).collect()
 }
 
+/// Every second seed; in the long form all.
 #[test]
 fn it_is_found() {
     for seed in every(2, 0..4) {
@@ -138,7 +139,7 @@ fn it_is_found() {
 }
 
 /// So weak that hardly more than its slowest parts are seen, which steps, a drift or a capacitor could be: half of them are
-/// known, and hardly another name is given.
+/// known, and hardly another name is given. Every second seed; in the long form all.
 #[test]
 fn weak_noise_is_told_from_steps() {
     let (mut known, mut other, mut all) = (0, 0, 0);
@@ -157,6 +158,7 @@ fn weak_noise_is_told_from_steps() {
     assert!(other <= 1, "{other} of {all}");
 }
 
+/// One seed; in the long form three.
 #[test]
 fn it_is_not_claimed_of_anything_else() {
     let still: OfTime = |_| 0.0;

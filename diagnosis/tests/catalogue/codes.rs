@@ -114,7 +114,7 @@ fn a_quiet_adc_shows_nothing() {
     }
 }
 
-/// Of an ADC that never gives some codes, the codes beside them come more often.
+/// Of an ADC that never gives some codes, the codes beside them come more often. One seed; in the long form three.
 #[test]
 fn codes_that_never_come() {
     let missing = Seen {
