@@ -1,8 +1,6 @@
 //! Measured recordings beside the workspace.
 
-#[path = "support/recordings.rs"]
-mod recordings;
-
+use crate::support::recordings;
 use nonius_calibration::{Calibration, Method, Options, calibrate};
 use nonius_recording::{Overrides, Recording};
 

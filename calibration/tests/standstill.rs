@@ -1,6 +1,7 @@
 //! A recording that mostly stands still: noise is taken for noise.
 
 use nonius_calibration::{Method, Options, calibrate};
+use nonius_kept::every;
 use rand::{SeedableRng, rngs::StdRng};
 use rand_distr::{Distribution, StandardNormal};
 
@@ -29,7 +30,8 @@ fn stepping(stops: f64, t: f64) -> f64 {
 }
 
 /// Nine tenths of the samples at one place, before, after and amid the motion, and at many places. Sentences of a
-/// thousandth's probability each: of eight hundred noises more than four have one once in some thousand times.
+/// thousandth's probability each: of eight hundred noises more than four have one once in some thousand times, of every second,
+/// which is the short form, more than three.
 #[test]
 fn standstill_and_white_noise_are_no_distortion_and_no_drift() {
     let motions: [fn(f64) -> f64; 4] = [
@@ -38,10 +40,11 @@ fn standstill_and_white_noise_are_no_distortion_and_no_drift() {
         |t| 0.13 + 30.0 * (t.clamp(0.45, 0.55) - 0.45),
         |t| stepping(12.0, t),
     ];
-    let (mut shapes, mut parts) = (0, 0);
+    let (mut shapes, mut parts, mut all) = (0, 0, 0);
     for (i, motion) in (0..).zip(motions) {
         for (j, noise) in (0..).zip([0.001, 0.01]) {
-            for seed in 0..SEEDS {
+            for seed in every(2, 0..SEEDS) {
+                all += 1;
                 let (cos, sin) = signals(1000 * i + 200 * j + seed, noise, motion);
                 let found = calibrate(&cos, &sin, Method::Unbiased, &Options::default())
                     .expect("a calibration");
@@ -51,7 +54,11 @@ fn standstill_and_white_noise_are_no_distortion_and_no_drift() {
             }
         }
     }
-    assert!(shapes <= 4 && parts <= 4, "{shapes} {parts}");
+    let allowed = if all == 800 { 4 } else { 3 };
+    assert!(
+        shapes <= allowed && parts <= allowed,
+        "{shapes} {parts} of {all}"
+    );
 }
 
 /// What is there is still found: a bent channel and a drift, in the same recordings.

@@ -2,10 +2,7 @@
 //!
 //! The long form is `cargo run --release -p nonius-calibration --example statistics`.
 
-#[path = "support/campaign.rs"]
-mod campaign;
-
-use campaign::{Case, Tally};
+use crate::support::campaign::{Case, Tally};
 use nonius_calibration::Method;
 
 const NAMES: [&str; 5] = ["a_c", "b_c", "a_s", "b_s", "beta"];

@@ -1,10 +1,6 @@
 //! docs/offline-statistics.json and .md: fresh, and holding what the README promises of them.
 
-#[path = "support/campaign.rs"]
-mod campaign;
-#[path = "support/table.rs"]
-mod table;
-
+use crate::support::table;
 use serde_json::Value;
 
 fn numbers() -> Value {

@@ -1,10 +1,8 @@
 //! `nonius build` through the binary: what it says of a design that misses something, and what it refuses.
 
-mod support;
-
 use std::fs;
 
-use support::{design, nonius, refused};
+use crate::support::{design, nonius, refused};
 
 /// What 8 parameters do not correct is the reason that is told, and the way out holds.
 #[test]

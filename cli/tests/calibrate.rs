@@ -1,12 +1,11 @@
 //! `nonius calibrate` through the binary: what it finds, exit codes, and words where the data cannot tell.
 
-mod support;
-
+use crate::support;
 use std::fmt::Write as _;
 use std::path::Path;
 
+use crate::support::calibration::{METHODS, TRUTH, calibrate, json, noise, recording, sentences};
 use serde_json::Value;
-use support::calibration::{METHODS, TRUTH, calibrate, json, noise, recording, sentences};
 
 fn refused(text: &str, arguments: &[&str], words: &[&str]) {
     let output = calibrate(text, arguments);

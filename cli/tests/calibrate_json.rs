@@ -1,9 +1,7 @@
 //! `nonius calibrate --json`: the contract, and what stands beside the parameters.
 
-mod support;
-
+use crate::support::calibration::{METHODS, json, recording, sentences};
 use serde_json::Value;
-use support::calibration::{METHODS, json, recording, sentences};
 
 #[test]
 fn the_json_is_the_contract() {

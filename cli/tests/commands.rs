@@ -1,11 +1,9 @@
 //! What holds of more than one command: one goes on where the other ends, nothing is written over, no input makes one panic.
 
-mod support;
-
 use std::fs;
 
+use crate::support::{design, nonius, recording, refused};
 use proptest::prelude::*;
-use support::{design, nonius, recording, refused};
 
 #[test]
 fn new_writes_a_design_that_builds_and_never_overwrites() {

@@ -1,10 +1,8 @@
 //! `nonius diagnose` through the binary: what it writes, and that the other commands take it.
 
-mod support;
-
 use std::fs;
 
-use support::{nonius, refused};
+use crate::support::{nonius, refused};
 
 #[test]
 fn diagnose_writes_the_contract() {

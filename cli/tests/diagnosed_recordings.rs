@@ -9,7 +9,7 @@ use nonius_diagnosis::{Diagnosis, diagnose, plots};
 use nonius_recording::{Overrides, Recording};
 
 const PAGE: &str = "diagnosed-recordings";
-const HOW: &str = "NONIUS_BLESS=1 cargo test -p nonius --test diagnosed_recordings";
+const HOW: &str = "NONIUS_BLESS=1 cargo test -p nonius diagnosed_recordings::";
 
 /// Name, scale periods per revolution, what it is.
 const RECORDINGS: [(&str, Option<u32>, &str); 9] = [

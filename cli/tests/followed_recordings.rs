@@ -2,15 +2,13 @@
 //!
 //! The table is kept in docs/followed-recordings.md; NONIUS_BLESS=1 writes it anew.
 
-mod support;
-
 use std::f64::consts::TAU;
 use std::fmt::Write;
 use std::path::Path;
 
+use crate::support::done;
 use nonius_model::spec::Spec;
 use nonius_recording::{Overrides, Recording, Survey};
-use support::done;
 
 /// For what a recording that is not there leaves out.
 const CHECK: &str = "designs from recordings";
@@ -127,7 +125,7 @@ fn designs_from_recordings_follow_them() {
     let dir = tempfile::tempdir().expect("scratch folder");
     let mut table = String::from(
         "# Recordings followed by the chip\n\n\
-         Written by `NONIUS_BLESS=1 cargo test -p nonius --test followed_recordings`; do not edit. Each design is made by\n\
+         Written by `NONIUS_BLESS=1 cargo test -p nonius followed_recordings::`; do not edit. Each design is made by\n\
          `nonius new --from` and simulated bit-true with `nonius simulate`.\n\n\
          ## RM44 magnetic encoder, one turn played sixty times\n\n\
          Rms angle error in degrees against the optical reference over the last turn; the best constant offset is removed. The\n\
@@ -212,7 +210,7 @@ fn designs_from_recordings_follow_them() {
     nonius_kept::same(
         Path::new(KEPT),
         &table,
-        "NONIUS_BLESS=1 cargo test -p nonius --test followed_recordings",
+        "NONIUS_BLESS=1 cargo test -p nonius followed_recordings::",
     );
 }
 

@@ -1,11 +1,9 @@
 //! What `nonius new` writes is true of the design that stands beside it.
 
-mod support;
-
 use std::fs;
 
+use crate::support::{done, nonius, recording, refused};
 use nonius_model::spec::Spec;
-use support::{done, nonius, recording, refused};
 
 /// The design that is fitted to a recording.
 fn fitted(recording: &str) -> (String, Spec) {

@@ -1,12 +1,10 @@
 //! `nonius simulate --reference` beside `nonius simulate`, over measured recordings: the paper in floating point and the
 //! bit-true chip, each left to its own decisions, say the same.
 
-mod support;
-
 use std::f64::consts::TAU;
 use std::path::Path;
 
-use support::done;
+use crate::support::done;
 
 /// For what a recording that is not there leaves out.
 const CHECK: &str = "paper and chip over recordings";

@@ -1,15 +1,12 @@
 //! The reports in headless Chromium: no error, every plot drawn, zoomed and read off, no text clipped, nothing wider than
 //! the window; and each of these checks sees a fault that is planted.
 
-mod browser;
-mod support;
-
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use browser::look;
+use crate::browser::look;
+use crate::support::done;
 use nonius_sensor::{Motion, Sensor};
-use support::done;
 
 const WIDTHS: [u32; 2] = [1280, 390];
 

@@ -1,10 +1,8 @@
 //! `nonius simulate` through the binary: what it writes and what it refuses.
 
-mod support;
-
 use std::fs;
 
-use support::{design, nonius, recording, refused};
+use crate::support::{design, nonius, recording, refused};
 
 /// A line of the shipped design.
 const LENGTH: &str = "scale_period_m = 20e-6";

@@ -1,14 +1,11 @@
 //! Whatever design works, its Verilog can be written: no number that a template is given runs below zero (the tests are built with
 //! checks of that).
 
-#[path = "../../designs/shipped.rs"]
-mod shipped;
-
+use crate::shipped::variants::with_every_word;
 use nonius_codegen::generate;
 use nonius_model::design::Design;
 use nonius_model::spec::Multipliers;
 use proptest::prelude::*;
-use shipped::variants::with_every_word;
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]

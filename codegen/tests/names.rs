@@ -1,12 +1,9 @@
 //! The Verilog can be read: its names say what they are, its lines end where a page does.
 
-#[path = "../../designs/shipped.rs"]
-mod shipped;
-
 use std::sync::LazyLock;
 
+use crate::shipped::variants;
 use nonius_codegen::generate;
-use shipped::variants;
 
 /// What it is, and its Verilog: path and text.
 type Chip = (String, Vec<(String, String)>);

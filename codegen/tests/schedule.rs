@@ -1,16 +1,14 @@
 //! A schedule computes what the graph computes, whatever the number of multipliers.
 
-#[path = "../../designs/shipped.rs"]
-mod shipped;
-
+use crate::shipped;
+use crate::shipped::variants::{costed, kinds, with_every_word};
+use crate::shipped::words::{key, say};
 use nonius_codegen::evaluate::evaluate;
 use nonius_codegen::schedule::{Schedule, schedule, schedule_for};
 use nonius_model::design::Design;
 use nonius_model::graph::{Evaluation, Graph};
 use nonius_model::spec::Overrides;
 use rand::{Rng, SeedableRng, rngs::StdRng};
-use shipped::variants::{costed, kinds, with_every_word};
-use shipped::words::{key, say};
 
 #[test]
 fn scheduled_graph_equals_recorded_graph() {

@@ -1,8 +1,6 @@
 //! Chips small enough to review as a whole: what a change of the generator does to the Verilog shows in the commit.
 
-#[path = "../../designs/shipped.rs"]
-mod shipped;
-
+use crate::shipped;
 use nonius_codegen::generate;
 use nonius_model::design::Design;
 use nonius_model::spec::{All, Coding, Multipliers, Spec};

@@ -1,8 +1,6 @@
 //! Every table file holds the table.
 
-#[path = "../../designs/shipped.rs"]
-mod shipped;
-
+use crate::shipped;
 use nonius_codegen::generate;
 
 fn hex(text: &str) -> u128 {

@@ -211,7 +211,7 @@ const HARMONICS: [Harmonic; 2] = [
 fn what_is_found_is_corrected_by_the_chip() {
     let mut table = String::from(
         "# Closing the loop\n\n\
-         Written by `NONIUS_BLESS=1 cargo test -p nonius-hdl --test closing_the_loop`; do not edit. An encoder is simulated with its\n\
+         Written by `NONIUS_BLESS=1 cargo test -p nonius-hdl closing_the_loop::`; do not edit. An encoder is simulated with its\n\
          true angle, diagnosed, and the chip of the emitted design run over the same recording. Angle error in mrad of a scale\n\
          period, rms over the last third. In the first row of each table the chip of the diagnosis is also built with the first\n\
          1000 samples of the recording as vectors, and its Verilog equals the model in every bit, in Icarus and in Verilator\n\
@@ -323,6 +323,6 @@ fn what_is_found_is_corrected_by_the_chip() {
     nonius_kept::same(
         Path::new(KEPT),
         &table,
-        "NONIUS_BLESS=1 cargo test -p nonius-hdl --test closing_the_loop",
+        "NONIUS_BLESS=1 cargo test -p nonius-hdl closing_the_loop::",
     );
 }

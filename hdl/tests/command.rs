@@ -14,7 +14,7 @@ fn one_wrong_digit_is_exit_code_1() {
     let dir = tempfile::tempdir().expect("scratch folder");
     let design = Path::new(env!("CARGO_MANIFEST_DIR")).join("../designs/optical.toml");
     let chip = dir.path().join("chip");
-    let built = nonius(&[&"build", &design, &"-o", &chip, &"--rows", &"200"]);
+    let built = nonius(&[&"build", &design, &"-o", &chip, &"--rows", &"60"]);
     assert_eq!(built, 0);
     let verify =
         |simulator: &str| nonius(&[&"verify", &chip, &"--simulator", &simulator, &"--json"]);

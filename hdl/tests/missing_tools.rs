@@ -1,14 +1,12 @@
 //! With nothing on PATH the message says what to install. The test runs itself again with
 //! another PATH, because a process must not change its own.
 
-mod support;
-
 use std::env;
 use std::process::Command;
 
+use crate::support::Toy;
 use nonius_hdl::progress::silent;
 use nonius_hdl::{Options, verify};
-use support::Toy;
 
 #[test]
 fn a_missing_tool_is_named_with_its_install_command() {
@@ -22,7 +20,7 @@ fn a_missing_tool_is_named_with_its_install_command() {
     let child = Command::new(env::current_exe().expect("this test's path"))
         .args([
             "--exact",
-            "a_missing_tool_is_named_with_its_install_command",
+            "missing_tools::a_missing_tool_is_named_with_its_install_command",
         ])
         .arg("--nocapture")
         .env("PATH", "")

@@ -1,17 +1,15 @@
 //! `hdl/reference/` holds one generated chip to read, and it is what the generator writes today.
 
-mod chip;
-
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use chip::optical;
+use crate::chip::optical;
 use nonius_model::design::Design;
 
 /// Samples of each stimulus: enough to run, few enough to keep.
 const ROWS: usize = 24;
-const HOW: &str = "NONIUS_BLESS=1 cargo test -p nonius-hdl --test reference_is_fresh";
+const HOW: &str = "NONIUS_BLESS=1 cargo test -p nonius-hdl reference_is_fresh::";
 
 fn generated() -> BTreeMap<String, String> {
     let design = Design::new(&optical()).expect("a shipped design");

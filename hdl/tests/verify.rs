@@ -1,14 +1,12 @@
 //! The verdict on a toy chip in real simulators: it passes whole, and nothing less passes.
 
-mod support;
-
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
+use crate::support::Toy;
 use nonius_hdl::progress::{Event, silent};
 use nonius_hdl::tools::Tool;
 use nonius_hdl::{Options, Run, icarus, verify};
-use support::Toy;
 
 const SECONDS: Duration = Duration::from_secs(20);
 

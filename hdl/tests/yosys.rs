@@ -1,11 +1,9 @@
 //! Lint, check, area and clock of a toy chip.
 
-mod support;
-
+use crate::support::Toy;
 use nonius_hdl::place::{Device, place};
 use nonius_hdl::progress::silent;
 use nonius_hdl::{verilator, yosys};
-use support::Toy;
 
 #[test]
 fn verilators_lint_is_clean_and_finds_a_width() {

@@ -1,8 +1,6 @@
 //! `design.json` has every coefficient of the chip, with what it was before rounding.
 
-#[path = "../../designs/shipped.rs"]
-mod shipped;
-
+use crate::shipped;
 use nonius_model::graph::{Kind, Op};
 use nonius_package::coefficients;
 

@@ -1,8 +1,6 @@
 //! From power-up into motion, with every sensor that a design promises at its worst.
 
-#[path = "../../designs/shipped.rs"]
-mod shipped;
-
+use crate::shipped;
 use nonius_model::design::Design;
 use nonius_model::spec::Spec;
 use nonius_package::{BOTH_WAYS, DesignJson, PullIn, package, pull_in};

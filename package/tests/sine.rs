@@ -2,9 +2,7 @@
 //!
 //! The table is kept in docs/sine.md; NONIUS_BLESS=1 writes it anew.
 
-#[path = "../../designs/shipped.rs"]
-mod shipped;
-
+use crate::shipped;
 use std::f64::consts::TAU;
 use std::fmt::Write;
 use std::path::Path;
@@ -12,7 +10,7 @@ use std::path::Path;
 use nonius_model::design::Design;
 use nonius_package::sine_error;
 
-const HOW: &str = "NONIUS_BLESS=1 cargo test -p nonius-package --test sine";
+const HOW: &str = "NONIUS_BLESS=1 cargo test -p nonius-package sine::";
 
 /// What the roundings and the straight line can do together, as fractions of the amplitude.
 fn bound(design: &Design) -> f64 {

@@ -1,17 +1,15 @@
 //! Every named signal says by which key its format is overridden, and docs/word-lengths.md says it of all of them.
 
-#[path = "../../designs/shipped.rs"]
-mod shipped;
-
+use crate::shipped;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::Path;
 
+use crate::shipped::variants::{self, type_1};
+use crate::shipped::words::{all_said, key, say};
 use nonius_model::design::Design;
 use nonius_model::spec::{CalibrationMethod, Overrides};
 use nonius_package::{Signal, signals};
-use shipped::variants::{self, type_1};
-use shipped::words::{all_said, key, say};
 
 /// A chip that has every word: a loop of type 1, nine parameters that gather and are completed, a sine that is sampled later,
 /// stored harmonics.
@@ -76,7 +74,7 @@ fn check(what: &str, chosen: &Design) {
     }
 }
 
-const HOW: &str = "NONIUS_BLESS=1 cargo test -p nonius-package --test words";
+const HOW: &str = "NONIUS_BLESS=1 cargo test -p nonius-package words::";
 
 const WHAT_THEY_ARE: &str =
     "Every word length that the analysis chooses may be said

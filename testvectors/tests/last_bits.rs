@@ -1,8 +1,6 @@
 //! The vectors see the last bit of every coefficient: a chip with one more or one less in any of them differs in a row.
 
-#[path = "../../designs/shipped.rs"]
-mod shipped;
-
+use crate::shipped;
 use std::collections::BTreeSet;
 use std::panic::{self, AssertUnwindSafe, catch_unwind};
 

@@ -1,8 +1,6 @@
 //! Each named stimulus shows what it is for, as `nonius build` plays it.
 
-#[path = "../../designs/shipped.rs"]
-mod shipped;
-
+use crate::shipped;
 use nonius_model::bits::Bits;
 use nonius_model::chip::Chip;
 use nonius_model::design::Design;

@@ -1,10 +1,9 @@
 //! Vectors and waves are read back and replayed: model, recorded graph and scheduled graph agree with every value.
 
-#[path = "../../designs/shipped.rs"]
-mod shipped;
-
+use crate::shipped;
 use std::collections::HashMap;
 
+use crate::shipped::variants::kinds;
 use nonius_codegen::evaluate::evaluate;
 use nonius_codegen::schedule::schedule;
 use nonius_codegen::{Files, generate};
@@ -15,7 +14,6 @@ use nonius_model::spec::Coding;
 use nonius_testvectors::read_vectors::{Row, rows};
 use nonius_testvectors::waves::{Waves, gtkw};
 use nonius_testvectors::{stimulus, vectors};
-use shipped::variants::kinds;
 
 const ROWS: usize = 120;
 

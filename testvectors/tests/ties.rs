@@ -1,8 +1,6 @@
 //! The stimulus `ties` makes what its name says.
 
-#[path = "../../designs/shipped.rs"]
-mod shipped;
-
+use crate::shipped;
 use nonius_testvectors::stimulus::named;
 use nonius_testvectors::ties::Ties;
 

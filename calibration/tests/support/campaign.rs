@@ -8,7 +8,7 @@
 use std::f64::consts::TAU;
 
 use nalgebra::{SMatrix, SVector};
-use nonius_calibration::{Ellipse, Method, Options, calibrate};
+use nonius_calibration::{Method, Options, calibrate};
 use rand::{Rng, SeedableRng, rngs::StdRng};
 use rand_distr::{Distribution, StandardNormal};
 
@@ -194,18 +194,5 @@ impl Tally {
     /// Share of the 95 % intervals that hold the truth.
     pub(crate) fn coverage(&self) -> Vector {
         self.inside / self.n()
-    }
-
-    /// The sensor, for those who need it as an ellipse.
-    #[allow(dead_code)]
-    pub(crate) fn truth() -> Ellipse {
-        let [a_c, b_c, a_s, b_s, beta] = TRUTH;
-        Ellipse {
-            a_c,
-            b_c,
-            a_s,
-            b_s,
-            beta,
-        }
     }
 }

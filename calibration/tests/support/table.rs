@@ -5,7 +5,7 @@ use std::fmt::Write;
 use nonius_calibration::Method;
 use serde_json::{Value, json};
 
-use crate::campaign::{Case, SAMPLES, TRUTH, Tally};
+use super::campaign::{Case, SAMPLES, TRUTH, Tally};
 
 /// Seeds that a test runs again, to see whether the file is fresh.
 pub(crate) const PROBE: u64 = 2;

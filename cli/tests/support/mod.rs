@@ -1,7 +1,5 @@
 //! The program as a user runs it.
 
-#![allow(dead_code, reason = "each test binary uses its own part")]
-
 pub(crate) mod calibration;
 
 use std::path::{Path, PathBuf};

@@ -1,11 +1,8 @@
 //! Chips of the shipped design and its variants, written to a folder.
 
-#![allow(dead_code, reason = "each test binary uses its own part")]
-
 #[path = "../../../designs/shipped.rs"]
 pub(crate) mod shipped;
 
-#[allow(unused_imports, reason = "each test binary uses its own part")]
 pub(crate) use shipped::optical;
 
 use std::path::Path;

@@ -1,6 +1,6 @@
 //! Single faults in the Verilog, each of one place.
 
-use crate::edit::{
+use super::edit::{
     Fault, another_last_step, another_literal, between, fault, guard, half_down, replaced, swap,
     zero_extended,
 };

@@ -1,6 +1,6 @@
 //! Single faults in the recall, each of one place.
 
-use crate::edit::{Fault, swap};
+use super::edit::{Fault, swap};
 
 /// Faults in the recall.
 pub(crate) fn recall_faults() -> Vec<Fault> {

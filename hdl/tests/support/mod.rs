@@ -1,6 +1,6 @@
 //! A copy of the toy chip in `tests/toy` that a test may break.
 
-#![allow(dead_code, missing_docs, unreachable_pub)]
+#![allow(missing_docs, unreachable_pub)]
 
 use std::collections::BTreeMap;
 use std::fs;

@@ -7,6 +7,7 @@ pub(crate) use crate::support::shipped;
 
 pub(crate) use shipped::optical;
 
+use std::cell::RefCell;
 use std::f64::consts::TAU;
 
 use nonius_model::bits::Bits;
@@ -40,9 +41,24 @@ pub(crate) struct Bench {
     noise: Noise,
 }
 
+thread_local! {
+    /// The last one: it takes as long to make as thousands of samples, and mostly the next bench has the same.
+    static LAST: RefCell<Option<Design>> = const { RefCell::new(None) };
+}
+
+/// A design that works.
+fn design(spec: &Spec) -> Design {
+    LAST.with_borrow_mut(|last| {
+        if last.as_ref().is_none_or(|last| last.spec != *spec) {
+            *last = Some(Design::new(spec).expect("a design that works"));
+        }
+        last.clone().expect("just made")
+    })
+}
+
 impl Bench {
     pub(crate) fn new(spec: &Spec, seed: u64) -> Self {
-        let design = Design::new(spec).expect("a design that works");
+        let design = design(spec);
         Self {
             chip: Chip::bit_true(&design),
             converter: Converter::of(spec),

@@ -1,8 +1,6 @@
 //! The shipped designs reach what they ask for, simulated on the bit-true chip with everything that disturbs it.
 
-#[path = "../../designs/shipped.rs"]
-mod shipped;
-
+use crate::shipped;
 use nonius_model::design::Design;
 use nonius_package::simulate;
 
