@@ -2,6 +2,7 @@
 //!
 //! `cargo run --release -p nonius-diagnosis --example diagnosis_speed -- docs`
 
+use std::error::Error;
 use std::f64::consts::TAU;
 use std::fmt::Write;
 use std::path::Path;
@@ -65,10 +66,16 @@ fn peak_megabytes() -> Option<f64> {
     Some(kilobytes / 1024.0)
 }
 
-fn main() {
+fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);
     let folder = arguments.next().unwrap_or_else(|| "docs".into());
-    let sizes: Vec<usize> = arguments.filter_map(|a| a.parse().ok()).collect();
+    if !Path::new(&folder).is_dir() {
+        return Err(
+            format!("{folder}: no folder; usage: diagnosis_speed [DOCS [SAMPLES…]]").into(),
+        );
+    }
+    let sizes = arguments.map(|a| a.parse::<usize>().map_err(|e| format!("{a}: {e}")));
+    let sizes: Vec<usize> = sizes.collect::<Result<_, _>>()?;
     let sizes = if sizes.is_empty() {
         vec![100_000, 1_000_000]
     } else {
@@ -121,7 +128,7 @@ fn main() {
     }
     let target = Path::new(&folder).join("diagnosis-speed.md");
     let fresh = Path::new(&folder).join(".diagnosis-speed.md.new");
-    std::fs::write(&fresh, text)
-        .and_then(|()| std::fs::rename(&fresh, &target))
-        .expect("the folder for the page");
+    std::fs::write(&fresh, text)?;
+    std::fs::rename(&fresh, &target)?;
+    Ok(())
 }

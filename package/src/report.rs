@@ -156,7 +156,11 @@ fn said(design: &Design, j: &DesignJson) -> Vec<(&'static str, String, String)> 
         (
             "Largest speed",
             periods_per_second(t.speed_max_periods_per_s),
-            format!("lag there {:.2e} periods", t.lag_at_top_speed_periods),
+            if t.lag_at_top_speed_periods == 0.0 {
+                "no lag there".into()
+            } else {
+                format!("lag there {:.2e} periods", t.lag_at_top_speed_periods)
+            },
         ),
         (
             "Acceleration error",
