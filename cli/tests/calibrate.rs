@@ -1,9 +1,9 @@
 //! `nonius calibrate` through the binary: what it finds, exit codes, and words where the data cannot tell.
 
-use crate::support;
 use std::fmt::Write as _;
 use std::path::Path;
 
+use crate::support;
 use crate::support::calibration::{METHODS, TRUTH, calibrate, json, noise, recording, sentences};
 use serde_json::Value;
 

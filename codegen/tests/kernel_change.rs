@@ -2,9 +2,9 @@
 
 mod altered;
 
-use crate::shipped;
 use std::collections::HashMap;
 
+use crate::shipped;
 use nonius_codegen::evaluate::evaluate;
 use nonius_codegen::generate;
 use nonius_codegen::schedule::schedule;

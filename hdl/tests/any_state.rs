@@ -2,11 +2,11 @@
 //! goes on from there as the recorded graph does. No run from reset comes to most of these: the count of periods wraps
 //! after years.
 
-use crate::chip;
 use std::collections::HashMap;
 use std::fmt::Write;
 use std::fs;
 
+use crate::chip;
 use crate::chip::shipped::variants::kinds;
 use nonius_hdl::verify::{Options, verify};
 use nonius_kept::{blessed, every, figure, long};

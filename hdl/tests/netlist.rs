@@ -1,12 +1,12 @@
 //! What Yosys makes of the Verilog for an iCE40 still agrees with the model at every port: a comparison that a synthesis
 //! tool gets wrong is right in every simulation of the source.
 
-use crate::chip;
 use std::fs;
 use std::path::Path;
 use std::process::Command;
 use std::time::Duration;
 
+use crate::chip;
 use crate::chip::shipped;
 use nonius_hdl::tools::{Tool, require};
 use nonius_hdl::verilator::{Effort, simulate};

@@ -5,10 +5,10 @@ mod faults;
 mod recall;
 mod seen_by;
 
-use crate::chip;
 use std::collections::HashMap;
 use std::sync::{Arc, LazyLock, Mutex};
 
+use crate::chip;
 use crate::chip::optical;
 use edit::{Fault, on_one_line};
 use faults::{dropping_faults, faults, harmonic_faults, skew_faults};

@@ -243,8 +243,8 @@ fn eight_places_without_cos_4_alpha_leave_a_bend() {
 }
 
 /// Nine parameters: eight places of the period tell them all but where cos 4α is 0 there, fewer do not. From new at exactly
-/// 5, 6 or 7 samples a period, what those places do not show stays; a speed a little beside that shows it, and exactly so many samples a period leave it alone again. At 64 every fifth of the
-/// signs; in the long form all.
+/// 5, 6 or 7 samples a period, what those places do not show stays; a speed a little beside that shows it, and exactly so many samples
+/// a period leave it alone again. At 64 every fifth of the signs; in the long form all.
 #[test]
 fn nine_parameters_need_eight_places() {
     let mut rows = vec![];

@@ -2,11 +2,11 @@
 //!
 //! The table is kept in docs/sine.md; NONIUS_BLESS=1 writes it anew.
 
-use crate::shipped;
 use std::f64::consts::TAU;
 use std::fmt::Write;
 use std::path::Path;
 
+use crate::shipped;
 use nonius_model::design::Design;
 use nonius_package::sine_error;
 

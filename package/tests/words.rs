@@ -1,10 +1,10 @@
 //! Every named signal says by which key its format is overridden, and docs/word-lengths.md says it of all of them.
 
-use crate::shipped;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::Path;
 
+use crate::shipped;
 use crate::shipped::variants::{self, type_1};
 use crate::shipped::words::{all_said, key, say};
 use nonius_model::design::Design;

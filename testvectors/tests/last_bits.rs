@@ -1,9 +1,9 @@
 //! The vectors see the last bit of every coefficient: a chip with one more or one less in any of them differs in a row.
 
-use crate::shipped;
 use std::collections::BTreeSet;
 use std::panic::{self, AssertUnwindSafe, catch_unwind};
 
+use crate::shipped;
 use nonius_codegen::generate;
 use nonius_model::design::Design;
 use nonius_model::graph::{Graph, Op};

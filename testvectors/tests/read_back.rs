@@ -1,8 +1,8 @@
 //! Vectors and waves are read back and replayed: model, recorded graph and scheduled graph agree with every value.
 
-use crate::shipped;
 use std::collections::HashMap;
 
+use crate::shipped;
 use crate::shipped::variants::kinds;
 use nonius_codegen::evaluate::evaluate;
 use nonius_codegen::schedule::schedule;
