@@ -6,10 +6,9 @@ use std::collections::HashMap;
 use std::fmt::Write;
 use std::fs;
 
-use crate::chip;
-use crate::chip::shipped::variants::kinds;
+use crate::chip::{self, shipped::variants::kinds};
 use nonius_hdl::verify::{Options, verify};
-use nonius_kept::{blessed, every, figure, long};
+use nonius_kept::{every, figure_of_all, long};
 use nonius_model::design::Design;
 use nonius_model::graph::Evaluation;
 use rand::{Rng, SeedableRng, rngs::StdRng};
@@ -184,12 +183,9 @@ fn from_any_state_the_verilog_goes_on_as_the_graph() {
         };
         goes_on(&kind.what, &kind.design(), &options, &mut random);
     });
-    // The page is written where all were tried; how many there are it says at any time.
-    if long() || !blessed() {
-        figure(
-            "every register set to any value of its range, one sample on: the graph and the Verilog agree",
-            &format!("{} chips, {ROWS} states each", all),
-            "hdl/tests/any_state.rs",
-        );
-    }
+    figure_of_all(
+        "every register set to any value of its range, one sample on: the graph and the Verilog agree",
+        &format!("{all} chips, {ROWS} states each"),
+        "hdl/tests/any_state.rs",
+    );
 }

@@ -6,8 +6,7 @@ use std::path::Path;
 use std::process::Command;
 use std::time::Duration;
 
-use crate::chip;
-use crate::chip::shipped;
+use crate::chip::{self, shipped};
 use nonius_hdl::tools::{Tool, require};
 use nonius_hdl::verilator::{Effort, simulate};
 use nonius_hdl::{ChipDir, Run};
@@ -60,7 +59,7 @@ fn ports_only(dir: &Path) {
         }
         within &= !line.ends_with(';');
     }
-    assert!(inside > 10 && ports.contains("(position") && ports.contains("(locked !=="));
+    assert!(inside > 10 && ports.contains("(position") && ports.contains("(theta_1 !=="));
     fs::write(file, ports).expect("a testbench");
 }
 

@@ -8,12 +8,11 @@ mod seen_by;
 use std::collections::HashMap;
 use std::sync::{Arc, LazyLock, Mutex};
 
-use crate::chip;
-use crate::chip::optical;
+use crate::chip::{self, optical};
 use edit::{Fault, on_one_line};
 use faults::{dropping_faults, faults, harmonic_faults, skew_faults};
 use nonius_hdl::verify::{Options, verify};
-use nonius_kept::{blessed, every, long};
+use nonius_kept::{every, figure, figure_of_all};
 use nonius_model::design::Design;
 use nonius_model::spec::Spec;
 use nonius_testvectors::stimulus::{self, Stimulus};
@@ -132,8 +131,8 @@ fn verdict(files: &Files, options: &Options) -> Option<Failure> {
 }
 
 /// What is caught, on the page of figures.
-fn kept(place: &str, faults: usize) {
-    nonius_kept::figure(
+fn kept(keep: fn(&str, &str, &str), place: &str, faults: usize) {
+    keep(
         &format!("faults planted in {place}, caught by the vectors"),
         &format!("{faults} of {faults}"),
         "hdl/tests/planted_faults.rs",
@@ -156,10 +155,7 @@ fn all_caught(place: &str, chip: &Sound, rtl: &str, faults: &[Fault]) {
         let caught = caught.unwrap_or_else(|| panic!("{name}: not caught"));
         assert!(caught.says.contains("signal"), "{name}: {}", caught.says);
     });
-    // The page is written where all were tried; how many there are it says at any time.
-    if long() || !blessed() {
-        kept(place, faults.len());
-    }
+    kept(figure_of_all, place, faults.len());
 }
 
 #[test]
@@ -230,7 +226,7 @@ fn rows_caught(place: &str, chip: &Sound, path: &str, faults: &[(usize, u32)]) {
         let caught = chip.caught(&fault, path, &(rows.join("\n") + "\n"));
         assert!(caught.is_some(), "{fault}: not caught");
     });
-    kept(place, faults.len());
+    kept(figure, place, faults.len());
 }
 
 #[test]

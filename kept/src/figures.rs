@@ -52,6 +52,18 @@ pub fn figure_of_short(name: &str, measured: &str, test: &str) {
     }
 }
 
+/// The same of a count of all that the long form tries, where the short form tries a part: compared at any time, written in the long
+/// form only.
+///
+/// # Panics
+/// As above.
+#[track_caller]
+pub fn figure_of_all(name: &str, measured: &str, test: &str) {
+    if super::long() || !super::blessed() {
+        figure(name, measured, test);
+    }
+}
+
 fn is_of(line: &str, name: &str) -> bool {
     let rest = line.strip_prefix("| ").and_then(|l| l.strip_prefix(name));
     rest.is_some_and(|rest| rest.starts_with(" | "))

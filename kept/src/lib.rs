@@ -4,7 +4,7 @@
 mod figures;
 mod recordings;
 
-pub use figures::{figure, figure_of_short};
+pub use figures::{figure, figure_of_all, figure_of_short};
 pub use recordings::{recording, recordings};
 
 use std::fs;

@@ -48,11 +48,11 @@ thread_local! {
 
 /// A design that works.
 fn design(spec: &Spec) -> Design {
-    LAST.with_borrow_mut(|last| {
-        if last.as_ref().is_none_or(|last| last.spec != *spec) {
-            *last = Some(Design::new(spec).expect("a design that works"));
-        }
-        last.clone().expect("just made")
+    LAST.with_borrow_mut(|last| match last {
+        Some(design) if design.spec == *spec => design.clone(),
+        _ => last
+            .insert(Design::new(spec).expect("a design that works"))
+            .clone(),
     })
 }
 
