@@ -31,6 +31,9 @@ struct Arguments {
     /// Only recordings of this drive: constant, sweeping, reversing or stopandgo; the others are drawn and left out.
     #[arg(long, value_parser = ["constant", "sweeping", "reversing", "stopandgo"])]
     drive: Option<String>,
+    /// Only recordings of which the first cause has a smaller SNR; the others are drawn and left out.
+    #[arg(long, value_name = "SNR", conflicts_with = "docs")]
+    below: Option<f64>,
     /// Folder for blind.md, or blind_DRIVE.md of one drive.
     #[arg(long)]
     docs: Option<PathBuf>,
@@ -110,7 +113,10 @@ fn run(arguments: &Arguments) -> Result<()> {
 fn case(seed: u64, arguments: &Arguments, folder: &Path) -> Result<Option<Score>> {
     let case = Case::draw(seed, arguments.samples)?;
     let wanted = arguments.drive.as_ref();
-    if wanted.is_some_and(|drive| *drive != case.truth.drive) {
+    let snr = case.truth.hidden.first().map_or(0.0, |hidden| hidden.snr);
+    if wanted.is_some_and(|drive| *drive != case.truth.drive)
+        || arguments.below.is_some_and(|below| snr >= below)
+    {
         return Ok(None);
     }
     let sealed = seal(&case.truth, folder)?;

@@ -238,7 +238,7 @@ impl Context {
     pub fn radial(&self) -> Vec<f64> {
         let n = self.samples();
         (0..n)
-            .map(|k| (self.c[k].hypot(self.s[k]) - 1.0) * self.weight[k])
+            .map(|k| ((self.c[k].powi(2) + self.s[k].powi(2)).sqrt() - 1.0) * self.weight[k])
             .collect()
     }
 

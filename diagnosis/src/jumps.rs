@@ -151,20 +151,31 @@ fn sums(values: &[f64], weights: &[f64]) -> Vec<f64> {
         let windows = values.windows(weights.len());
         return windows.map(|near| dot(near, weights)).collect();
     }
+    /// Values that are transformed together; far more than there are weights.
+    const BLOCK: usize = 16_384;
     let transformed = |of: &[f64]| {
         let padded = of.iter().copied().chain(std::iter::repeat(0.0));
-        let mut all: Vec<Complex<f64>> = padded.take(values.len()).map(Complex::from).collect();
+        let mut all: Vec<Complex<f64>> = padded.take(BLOCK).map(Complex::from).collect();
         nonius_fourier::forward(&mut all);
         all
     };
-    let mut product = transformed(values);
-    for (p, w) in product.iter_mut().zip(transformed(weights)) {
-        *p *= w.conj();
+    let by = transformed(weights);
+    // Further on in a block, the sums would go round its end.
+    let inside = BLOCK + 1 - weights.len();
+    let places = (values.len() + 1).saturating_sub(weights.len());
+    let mut all = Vec::with_capacity(places);
+    for from in (0..places).step_by(inside) {
+        let block = &values[from..values.len().min(from + BLOCK)];
+        let mut product = transformed(block);
+        product
+            .iter_mut()
+            .zip(&by)
+            .for_each(|(p, w)| *p *= w.conj());
+        nonius_fourier::inverse(&mut product);
+        let own = product.iter().take(inside.min(places - from));
+        all.extend(own.map(|p| p.re / BLOCK as f64));
     }
-    nonius_fourier::inverse(&mut product);
-    // Further on, the sums would go round the end.
-    let inside = product.iter().take(values.len() + 1 - weights.len());
-    inside.map(|p| p.re / values.len() as f64).collect()
+    all
 }
 
 /// An angle, looked at with curves through so many samples on either side.

@@ -283,6 +283,11 @@ impl Basis {
         }
     }
 
+    /// Writes `values` less the spline of these coefficients.
+    pub(crate) fn take_off(&self, coefficients: &[f64], values: &[f64], to: &mut [f64]) {
+        taken_off(self, coefficients, values, to);
+    }
+
     /// Adds `by` times the spline of these coefficients to `values`.
     pub(crate) fn add(&self, coefficients: &[f64], by: f64, values: &mut [f64]) {
         let [w0, w1, w2, w3] = &self.weights;
@@ -291,6 +296,20 @@ impl Basis {
             for k in range.clone() {
                 values[k] += a * w0[k] + b * w1[k] + c * w2[k] + d * w3[k];
             }
+        }
+    }
+}
+
+/// See [`Basis::take_off`].
+#[multiversion::multiversion(targets("x86_64+avx2+fma"))]
+fn taken_off(basis: &Basis, coefficients: &[f64], values: &[f64], to: &mut [f64]) {
+    for (first, range) in &basis.pieces {
+        let [a, b, c, d]: [f64; 4] = std::array::from_fn(|i| coefficients[first + i]);
+        let [wa, wb, wc, wd] = basis.weights.each_ref().map(|w| &w[range.clone()]);
+        let weights = wa.iter().zip(wb).zip(wc).zip(wd);
+        let pairs = to[range.clone()].iter_mut().zip(&values[range.clone()]);
+        for ((to, v), (((wa, wb), wc), wd)) in pairs.zip(weights) {
+            *to = v - d.mul_add(*wd, c.mul_add(*wc, b.mul_add(*wb, a * wa)));
         }
     }
 }

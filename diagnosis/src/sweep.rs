@@ -297,15 +297,14 @@ impl<'a> Samples<'a> {
             let part = &mut parts[rows[i]];
             let from = columns[i] * STRIDE + ORDER;
             let own = &mut part.plain[from..from + block.len()];
-            own.copy_from_slice(values);
             let motion = &self.motions[atoms[i]];
-            match motion.len() {
-                0 => {}
-                1 => own.iter_mut().for_each(|v| *v -= motion[0]),
-                _ => splines
-                    .basis()
-                    .into_iter()
-                    .for_each(|b| b.add(motion, -1.0, own)),
+            match motion.as_slice() {
+                [] => own.copy_from_slice(values),
+                [mean] => own.iter_mut().zip(values).for_each(|(o, v)| *o = v - mean),
+                _ => match splines.basis() {
+                    Some(basis) => basis.take_off(motion, values, own),
+                    None => own.copy_from_slice(values),
+                },
             }
             let weights = &weight[block.start..block.start + block.len()];
             if weights.iter().any(|w| *w != 1.0) {

@@ -11,6 +11,8 @@ const STEPS: usize = 6;
 const LAST: usize = 2;
 /// Samples that are enough to see what noise depends on.
 pub(crate) const ENOUGH: usize = 120_000;
+/// Samples that are enough for the steps that only lead to where the last ones start.
+const FIRST: usize = 20_000;
 /// Least variance, as a share of the mean.
 const LEAST: f64 = 0.02;
 /// A single sample further out (square over variance) is a glitch, no noise that depends on something.
@@ -74,8 +76,7 @@ impl Squares<'_> {
         let count = start.len();
         let (mut x, mut h) = (start, vec![0.0; count]);
         let mut last = None;
-        // The first steps only lead to where the last ones start.
-        let coarse = self.every.max(self.weight.len().div_ceil(ENOUGH));
+        let coarse = self.every.max(self.weight.len().div_ceil(FIRST));
         for step in 0..STEPS {
             let every = if step + LAST < STEPS {
                 coarse
