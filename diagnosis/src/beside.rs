@@ -3,7 +3,7 @@
 use crate::library::Shape;
 use crate::model::{System, amounts};
 use crate::solve::{Normal, Solution};
-use crate::statistics::log_tail;
+use crate::statistics::{after_trials, log_tail};
 
 /// The normal equations with the fit taken off, and how much it explains.
 pub(crate) struct Beside<'a> {
@@ -44,7 +44,14 @@ impl<'a> Beside<'a> {
 
     /// Whether the radius shows its part of shapes in these amounts. A vibration that the prediction of the noise does not
     /// hold is in every shape that stands along the circle, but it never shows in the radius; a cause of the sensor does.
-    pub(crate) fn in_radius(&self, shapes: &[Shape], x: &[f64], freedom: usize) -> bool {
+    /// `trials`: choices that the radius itself had a part in.
+    pub(crate) fn in_radius(
+        &self,
+        shapes: &[Shape],
+        x: &[f64],
+        freedom: usize,
+        trials: f64,
+    ) -> bool {
         let Some((radius, radial)) = &self.radius else {
             return true;
         };
@@ -52,7 +59,8 @@ impl<'a> Beside<'a> {
         let claimed = radius.product(&part, &part).max(0.0).sqrt();
         let shown: f64 = part.0.iter().map(|(i, x)| x * radius.right[*i]).sum();
         let seen = shown.max(0.0) / claimed.max(f64::MIN_POSITIVE);
-        seen > CLAIMED * claimed && log_tail(seen * seen, freedom) < RADIUS.ln()
+        let log_p = after_trials(log_tail(seen * seen, freedom), trials);
+        seen > CLAIMED * claimed && log_p < RADIUS.ln()
     }
 
     /// What shapes explain beside the fit, and how many numbers they have for it.

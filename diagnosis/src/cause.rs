@@ -76,6 +76,8 @@ pub(crate) struct Candidate {
     pub domain: Domain,
     /// How many choices like this one were tried.
     pub trials: f64,
+    /// Among how many the radius had a part in choosing it: where the axis vibrates, the radius has to show it beyond that.
+    pub by_radius: f64,
     /// The shapes.
     pub shapes: Vec<Shape>,
     /// Its number in the catalogue.
@@ -104,6 +106,7 @@ impl Candidate {
             name,
             domain,
             trials: 1.0,
+            by_radius: 1.0,
             shapes,
             id: 0,
             motion: false,

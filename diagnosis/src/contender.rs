@@ -35,6 +35,8 @@ const DRIFT: &str = "offset_drift";
 pub(crate) const GAIN_DRIFT: &str = "gain_drift";
 /// A cause that adds less than this probability says nothing new.
 const NOTHING_NEW: f64 = 1e-3;
+/// Log-likelihood by which a rival is beaten, if others are left: twenty to one.
+const BEATEN: f64 = 3.0;
 
 /// A drift of the offsets or of the gains: slow, as noise may be.
 pub(crate) fn is_drift(cause: &str) -> bool {
@@ -236,12 +238,13 @@ fn fewer_first(scored: &mut [Scored]) {
     }
 }
 
-/// Causes of other names to which the best adds nothing, and that need no more parameters.
+/// Causes of other names to which the best adds nothing, and that need no more parameters. Of several, those that it beats by
+/// twenty to one are none, where that leaves one.
 fn rivals(beside: &Beside, best: &Scored, others: &[&Scored]) -> Vec<String> {
-    let mut names: Vec<String> = vec![];
+    let mut found: Vec<(&str, f64)> = vec![];
     for other in others {
         let name = other.candidate.name;
-        if name == best.candidate.name || names.iter().any(|n| n == name) {
+        if name == best.candidate.name || found.iter().any(|(n, _)| *n == name) {
             continue;
         }
         // Far behind, or bought with more parameters: no rival.
@@ -254,10 +257,12 @@ fn rivals(beside: &Beside, best: &Scored, others: &[&Scored]) -> Vec<String> {
         let (gain, rank) = beside.gain(&together);
         let (adds, freedom) = (gain - other.gain, rank.saturating_sub(other.freedom));
         if freedom == 0 || log_tail(2.0 * adds, freedom) > NOTHING_NEW.ln() {
-            names.push(name.to_owned());
+            found.push((name, adds));
         }
     }
-    names
+    let near: Vec<(&str, f64)> = found.iter().copied().filter(|f| f.1 < BEATEN).collect();
+    let left = if near.len() == 1 { near } else { found };
+    left.into_iter().map(|(name, _)| name.to_owned()).collect()
 }
 
 /// A cause of the same place that has more parameters and is this one for some of their values, as a harmonic of the scale

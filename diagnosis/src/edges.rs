@@ -3,7 +3,8 @@
 
 use nonius_recording::Recording;
 
-use crate::checks::{FAR, ninth};
+use crate::checks::ninth;
+use crate::glitches::FAR;
 
 /// Samples at either end that are looked at.
 const LOOKED: usize = 8;

@@ -24,6 +24,7 @@ mod finding;
 mod first;
 mod flicker;
 mod generic;
+mod glitches;
 mod held;
 mod jumps;
 mod knots;

@@ -14,8 +14,8 @@ pub(crate) fn spectrum(values: &[f64]) -> (Vec<f64>, usize) {
     (power.collect(), length)
 }
 
-/// The spectra of two real signals by one transform.
-pub(crate) fn two_spectra(a: &[f64], b: &[f64]) -> ([Vec<f64>; 2], usize) {
+/// The transforms of two real signals at the frequencies of [`spectrum`], both by one transform.
+pub(crate) fn two_transforms(a: &[f64], b: &[f64]) -> (Vec<[Complex<f64>; 2]>, usize) {
     let length = (a.len() * 2).next_power_of_two();
     let pairs = a.iter().zip(b);
     let mut buffer: Vec<Complex<f64>> = pairs.map(|(a, b)| Complex::new(*a, *b)).collect();
@@ -24,12 +24,19 @@ pub(crate) fn two_spectra(a: &[f64], b: &[f64]) -> ([Vec<f64>; 2], usize) {
     // Of real signals, the transform at −f is the conjugate of that at f.
     let parts = (0..=length / 2).map(|k| {
         let (now, mirrored) = (buffer[k], buffer[(length - k) % length].conj());
-        (
-            0.25 * (now + mirrored).norm_sqr(),
-            0.25 * (now - mirrored).norm_sqr(),
-        )
+        [
+            0.5 * (now + mirrored),
+            Complex::new(0.0, -0.5) * (now - mirrored),
+        ]
     });
-    let (first, second) = parts.unzip();
+    (parts.collect(), length)
+}
+
+/// The spectra of two real signals.
+pub(crate) fn two_spectra(a: &[f64], b: &[f64]) -> ([Vec<f64>; 2], usize) {
+    let (transforms, length) = two_transforms(a, b);
+    let powers = transforms.iter().map(|[a, b]| (a.norm_sqr(), b.norm_sqr()));
+    let (first, second) = powers.unzip();
     ([first, second], length)
 }
 

@@ -83,7 +83,7 @@ pub(crate) fn score(beside: &Beside, candidate: Candidate) -> Option<Scored> {
         return None;
     }
     if candidate.domain != Domain::Motion
-        && !beside.in_radius(&candidate.shapes, &solution.x, freedom)
+        && !beside.in_radius(&candidate.shapes, &solution.x, freedom, candidate.by_radius)
     {
         return None;
     }

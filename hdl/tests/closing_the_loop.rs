@@ -16,7 +16,7 @@ use nonius_recording::{Overrides, Recording};
 use nonius_sensor::{Motion, Sensor};
 
 const KEPT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/closing-the-loop.md");
-const ROWS: u32 = 120_000;
+const ROWS: u32 = 60_000;
 /// Rows of the recording that become vectors.
 const PLAYED: usize = 1_000;
 
@@ -46,7 +46,7 @@ fn bent_encoder(bends: [f64; 2]) -> String {
     for k in 0..ROWS {
         let t = f64::from(k) / 50e3;
         // From 250 to 550 periods a second and back.
-        let alpha = TAU * (400.0 * t - 150.0 / TAU / 0.4 * (TAU * 0.4 * t).sin());
+        let alpha = TAU * (400.0 * t - 150.0 / TAU / 0.8 * (TAU * 0.8 * t).sin());
         let bent = |u: f64, k: f64| u + k * u * u * u;
         let cos = 0.7 * bent(alpha.cos() + noise(), bends[0]) + 0.03;
         let sin = 0.66 * bent((alpha - 0.05).sin() + noise(), bends[1]) - 0.02;
@@ -82,17 +82,17 @@ fn simulated_encoder(cause: &str) -> String {
     let sensor = format!(
         "[signals]\na_c = 0.7\nb_c = 0.03\na_s = 0.66\nb_s = -0.02\nbeta = 0.05\nnoise_rms = 0.001\n\
          [adc]\nbits = 14\nlsb = {}\ncentre = 0.0\nsample_rate_hz = 50000.0\n\
-         [motion]\nperiods_travelled = 840.0\nspeed_max_periods_per_s = 550.0\nperiods_per_revolution = 64\n\
+         [motion]\nperiods_travelled = 420.0\nspeed_max_periods_per_s = 550.0\nperiods_per_revolution = 64\n\
          {cause}",
         1.0 / 8192.0
     );
     let sensor = Sensor::from_toml(&sensor, "sensor.toml").expect("a sensor");
     // Three times to and fro.
-    let swing = 550.0 / (TAU * 1.25);
+    let swing = 550.0 / (TAU * 2.5);
     let (time_s, alpha) = (0..ROWS)
         .map(|k| {
             let t = f64::from(k) / 50e3;
-            (t, TAU * swing * (1.0 - (TAU * 1.25 * t).cos()))
+            (t, TAU * swing * (1.0 - (TAU * 2.5 * t).cos()))
         })
         .unzip();
     let motion = Motion { time_s, alpha };

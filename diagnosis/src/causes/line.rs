@@ -3,13 +3,14 @@
 use std::f64::consts::TAU;
 use std::rc::Rc;
 
+use super::mains;
 use super::mirror::unmirrored;
 use crate::block::Block;
 use crate::cause::{Candidate, Domain, Estimate, Exact, Make, Reads, polar};
 use crate::context::Context;
 use crate::finding::{Chip, Parameter};
 use crate::library::{Fill, Library, Place, Shape, Use};
-use crate::lines::{flattened, pair_spectrum, peak, spectrum, two_spectra};
+use crate::lines::{flattened, pair_spectrum, peak, spectrum, two_spectra, two_transforms};
 use crate::model::{Residual, Weighed};
 
 /// Lowest frequency of a line, in cycles per recording: below, it is drift.
@@ -69,6 +70,14 @@ fn two(place: Place, shape: fn(&Place, usize) -> Shape) -> Vec<Shape> {
     (0..2).map(|i| shape(&place, i)).collect()
 }
 
+/// A line that may be.
+struct Line {
+    /// Its frequency in cycles per sample.
+    f: f64,
+    /// Frequencies among which the radius had a part in choosing it.
+    by_radius: f64,
+}
+
 /// Where lines are looked for.
 struct Search<'a> {
     context: &'a Context,
@@ -83,6 +92,25 @@ impl Search<'_> {
             return self.narrow(power, length);
         }
         peak(power, length, self.lowest(), 0.499)
+    }
+
+    /// Frequency of the highest line where the mains has one, in cycles per sample.
+    fn of_mains(&self, power: &[f64], length: usize) -> Option<f64> {
+        if self.coloured {
+            return None;
+        }
+        let rate = self.context.rate;
+        let places = mains::places().map(|[low, high]| [low / rate, high / rate]);
+        let inside = places.filter(|[low, high]| *low > self.lowest() && *high < 0.499);
+        let peaks = inside.filter_map(|[low, high]| peak(power, length, low, high));
+        let at = |f: &f64| power[(f * length as f64).round() as usize];
+        peaks.max_by(|a, b| at(a).total_cmp(&at(b)))
+    }
+
+    /// Frequencies of the highest line, and of the highest of the mains.
+    fn lines(&self, power: &[f64], length: usize) -> impl Iterator<Item = f64> + use<> {
+        let both = [self.line(power, length), self.of_mains(power, length)];
+        both.into_iter().flatten()
     }
 
     /// Frequency of the line that stands highest above what is near it, where one stands out.
@@ -105,8 +133,8 @@ impl Search<'_> {
         SLOWEST / self.context.samples() as f64
     }
 
-    /// The same of what is along the radius and along the circle, in the frame of the channels.
-    fn in_frame(&self, radial: &[f64], tangential: &[f64]) -> Option<f64> {
+    /// Frequencies that may be lines in the frame of the channels, of what is along the radius and along the circle.
+    fn in_frame(&self, radial: &[f64], tangential: &[f64]) -> Vec<Line> {
         let frame = |k: usize| {
             let (r, t) = (radial[k], tangential[k]);
             let (c, s) = (self.context.cos[k], self.context.sin[k]);
@@ -114,12 +142,67 @@ impl Search<'_> {
         };
         let (in_c, in_s): (Vec<f64>, Vec<f64>) = (0..radial.len()).map(frame).unzip();
         let (power, length) = pair_spectrum(&in_c, &in_s);
-        self.line(&power, length)
+        let mut list: Vec<Line> = vec![];
+        let highest = self
+            .line(&power, length)
+            .map(|f| Line { f, by_radius: 1.0 });
+        let mains = self.of_mains(&power, length);
+        let radius = self.in_radius(radial);
+        let few = mains.into_iter().chain(radius);
+        let few = few.map(|f| Line {
+            f,
+            by_radius: self.trials(f * self.context.rate),
+        });
+        for line in highest.into_iter().chain(few) {
+            // Two that are nearer than a cycle per recording are one.
+            let near = |known: &Line| (line.f - known.f).abs() * radial.len() as f64 <= 1.0;
+            if !list.iter().any(near) {
+                list.push(line);
+            }
+        }
+        list
+    }
+
+    /// The same of the radius alone, for an axis that stands still much of the time: there a line along the circle goes with the
+    /// motion, and the best amounts in both channels, of which one direction is seen more than the other, explain so much at each
+    /// frequency. What is large over a range of frequencies is none.
+    fn in_radius(&self, radial: &[f64]) -> Vec<f64> {
+        /// An axis that stands still is seen in one direction so many times as much as in the other.
+        const STANDS: f64 = 1.5;
+        /// Share of the samples that a direction counts for at least.
+        const LEAST: f64 = 0.01;
+        let context = self.context;
+        let sum = |a: &[f64], b: &[f64]| -> f64 {
+            let pairs = a.iter().zip(b).zip(&context.weight);
+            pairs.map(|((a, b), w)| a * b * w).sum()
+        };
+        let least = LEAST * context.samples() as f64;
+        let cc = sum(&context.cos, &context.cos) + least;
+        let ss = sum(&context.sin, &context.sin) + least;
+        let cs = sum(&context.cos, &context.sin);
+        let (mean, apart) = (0.5 * (cc + ss), (0.5 * (cc - ss)).hypot(cs));
+        if mean + apart < STANDS * (mean - apart) {
+            return vec![];
+        }
+        let of = |by: &[f64]| -> Vec<f64> { radial.iter().zip(by).map(|(r, b)| r * b).collect() };
+        let (transforms, length) = two_transforms(&of(&context.cos), &of(&context.sin));
+        let explained = transforms.iter().map(|[c, s]| {
+            let across = 2.0 * cs * (c * s.conj()).re;
+            (ss * c.norm_sqr() + cc * s.norm_sqr() - across) / (cc * ss - cs * cs)
+        });
+        let level = flattened(&explained.collect::<Vec<f64>>());
+        self.lines(&level, length).collect()
     }
 
     /// Seconds.
     fn duration(&self) -> f64 {
         self.context.samples() as f64 / self.context.rate
+    }
+
+    /// Frequencies among which one stood out.
+    fn trials(&self, hertz: f64) -> f64 {
+        let all = self.context.samples() as f64;
+        mains::trials(hertz, self.duration()).map_or(all, |few| few.min(all))
     }
 
     /// A line of that name with its functions; its frequency is known to a small part of one cycle per recording.
@@ -132,7 +215,7 @@ impl Search<'_> {
         library: &mut Library,
     ) -> Candidate {
         Candidate {
-            trials: self.context.samples() as f64,
+            trials: self.trials(hertz),
             exact: Some(Exact {
                 make: make.clone(),
                 inner: vec![hertz],
@@ -144,7 +227,8 @@ impl Search<'_> {
     }
 
     /// A line in the channels, and one with its harmonics.
-    fn interference(&self, f: f64, library: &mut Library) -> Vec<Candidate> {
+    fn interference(&self, line: &Line, library: &mut Library) -> Vec<Candidate> {
+        let f = line.f;
         let (hertz, duration) = (f * self.context.rate, self.duration());
         let reach = [1, 3].into_iter().filter(|m| *m == 1 || f * 3.0 <= 0.49);
         let one = |harmonics: usize, library: &mut Library| {
@@ -154,6 +238,7 @@ impl Search<'_> {
                     .collect()
             });
             Candidate {
+                by_radius: line.by_radius,
                 parameters: in_either(duration),
                 evidence: Rc::new(move |p| {
                     let with = if harmonics > 1 {
@@ -224,11 +309,11 @@ pub(crate) fn candidates(
 ) -> Vec<Candidate> {
     let search = Search { context, coloured };
     let mut list = vec![];
-    if let Some(f) = search.in_frame(&residual.radial, &residual.tangential) {
-        list.extend(search.interference(f, library));
+    for line in search.in_frame(&residual.radial, &residual.tangential) {
+        list.extend(search.interference(&line, library));
     }
     let ([radial, fast], length) = two_spectra(&residual.radial, residual.fast());
-    if let Some(f) = search.line(&radial, length) {
+    for f in search.lines(&radial, length) {
         list.push(search.ripple(f, library));
     }
     if let Some(f) = search.of_motion(&fast, length) {
@@ -247,8 +332,8 @@ pub(crate) fn weighed(
     let search = Search { context, coloured };
     let [radial, tangential] = &weighed.matched;
     let mut list = vec![];
-    if let Some(f) = search.in_frame(radial, tangential) {
-        list.extend(search.interference(f, library));
+    for line in search.in_frame(radial, tangential) {
+        list.extend(search.interference(&line, library));
     }
     let (power, length) = spectrum(&weighed.fast);
     if let Some(f) = search.of_motion(&power, length) {

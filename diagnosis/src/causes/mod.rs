@@ -6,6 +6,7 @@ mod direction;
 mod high_pass;
 mod lag;
 mod line;
+mod mains;
 mod mirror;
 mod place;
 mod revolution;

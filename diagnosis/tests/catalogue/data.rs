@@ -104,6 +104,16 @@ fn a_glitch_beyond_every_other_value() {
     });
 }
 
+/// On a slow axis a longer curve through the neighbours holds less noise than the sample itself.
+#[test]
+fn a_glitch_of_seven_standard_deviations() {
+    for k in [4321, 12_345] {
+        shows("glitches", |rows| {
+            rows[k][1] += 7.0 * NOISE * rows[k][1].signum()
+        });
+    }
+}
+
 /// A sample that is off and a filter behind it: the next swings back by four tenths, and both together are half a step.
 #[test]
 fn a_glitch_that_rings() {

@@ -1,0 +1,242 @@
+//! Glitches: isolated samples far from what their neighbours say.
+
+use nonius_quantity::{agree, counted};
+use nonius_recording::Recording;
+
+use crate::checks::{Checked, ninth, repeats};
+use crate::edges::{Edges, edges};
+use crate::finding::{Finding, Parameter, Place};
+use crate::solve::dot;
+use crate::units;
+
+/// Samples on either side of the curve through the neighbours.
+const REACH: usize = 3;
+/// The same of a longer curve.
+const MORE: usize = 10;
+/// So many times the ninth decile is far off: six standard deviations of Gaussian noise, which not one sample in 10⁸ is.
+pub(crate) const FAR: f64 = 3.65;
+/// Ranges of values in each of which noise may have a size of its own.
+const RANGES: usize = 16;
+/// Samples on either side that tell how large the noise is just there.
+const AROUND: usize = 100;
+/// So many times larger the ninth decile of so few may be by chance: two standard deviations.
+const BY_CHANCE: f64 = 1.2;
+
+/// How far a sample is off the fifth-order curve through its three neighbours on either side: motion leaves the sixth power
+/// of its share of a period per sample.
+fn off_the_curve(values: &[f64], k: usize) -> f64 {
+    if k < REACH || k + REACH >= values.len() {
+        return 0.0;
+    }
+    let both = |j: usize| values[k - j] + values[k + j];
+    values[k] - (15.0 * both(1) - 6.0 * both(2) + both(3)) / 20.0
+}
+
+/// How far each sample is off a fifth-order curve through more of its neighbours, where that leaves less: on axes that are slow
+/// beside the noise, for the curve through three on either side has as much noise itself as the sample.
+fn off_the_longer_curve(values: &[f64], short: &[f64]) -> Option<Vec<f64>> {
+    const ORDER: i32 = 5;
+    let place = |i: usize| (i as f64 - MORE as f64) / MORE as f64;
+    let column =
+        |f: &dyn Fn(f64) -> f64| -> Vec<f64> { (0..=2 * MORE).map(|i| f(place(i))).collect() };
+    let curve: Vec<Vec<f64>> = (0..=ORDER)
+        .map(|order| column(&|x| x.powi(order)))
+        .collect();
+    let free = crate::solve::without(&column(&|x| f64::from(x == 0.0)), &curve);
+    let weights: Vec<f64> = free.iter().map(|w| w / free[MORE]).collect();
+    let mut long = vec![0.0; MORE.min(values.len())];
+    long.extend(
+        values
+            .windows(weights.len())
+            .map(|near| dot(near, &weights)),
+    );
+    long.resize(values.len(), 0.0);
+    let size = |off: &[f64]| ninth(&off.iter().map(|o| o.abs()).collect::<Vec<f64>>());
+    (size(&long) < size(short)).then_some(long)
+}
+
+/// Whether what stands out at a sample is that sample, and no step of the signal before or after it: a code that the ADC
+/// gets wrong, or a time base that jumps, which either channel shows. The next sample may ring.
+fn isolated(channels: &[Vec<f64>; 2], which: usize, k: usize) -> bool {
+    /// What one sample does to the ones around it, and what a step does.
+    const ONE: [f64; 7] = [-1.0, 6.0, -15.0, 20.0, -15.0, 6.0, -1.0];
+    const STEP: [f64; 6] = [-1.0, 5.0, -10.0, 10.0, -5.0, 1.0];
+    /// A step looks like one sample by 0.917; one whose next rings back by four tenths is as much like either.
+    const AS_MUCH: f64 = 0.96;
+    let off = &channels[which];
+    if off[k].abs() < off[k - 1].abs().max(off[k + 1].abs()) {
+        return false;
+    }
+    // The share of the square that a pattern holds.
+    let like = |pattern: &[f64], from: usize| {
+        let along = |off: &Vec<f64>| -> f64 {
+            let pairs = pattern.iter().zip(off.iter().skip(from));
+            pairs.map(|(p, o)| p * o).sum()
+        };
+        let squares = channels.iter().map(|off| along(off).powi(2));
+        squares.sum::<f64>() / pattern.iter().map(|p| p * p).sum::<f64>()
+    };
+    let one = like(&ONE, k - REACH);
+    let step = like(&STEP, k - REACH).max(like(&STEP, k + 1 - REACH));
+    one > AS_MUCH * step
+}
+
+/// What a step of both channels before or after a sample, or a corner, leaves there, over what is left if the sample is off: of a
+/// jump of the time base, or a step of the speed, the samples farther away tell.
+fn step_over_one(recording: &Recording, k: usize) -> f64 {
+    /// Samples on either side, and the order of the curve through them.
+    const SIDE: usize = 8;
+    const ORDER: i32 = 5;
+    if k < SIDE || k + SIDE >= recording.samples() {
+        return 1.0;
+    }
+    let place = |i: usize| (i as f64 - SIDE as f64) / SIDE as f64;
+    let column =
+        |f: &dyn Fn(f64) -> f64| -> Vec<f64> { (0..=2 * SIDE).map(|i| f(place(i))).collect() };
+    let left = |f: &dyn Fn(f64) -> f64| -> f64 {
+        let curve = (0..=ORDER).map(|order| column(&|x| x.powi(order)));
+        let shapes: Vec<Vec<f64>> = curve.chain([column(f)]).collect();
+        let channels = [&recording.cos, &recording.sin];
+        let rest = channels.map(|v| crate::solve::without(&v[k - SIDE..=k + SIDE], &shapes));
+        rest.iter().flatten().map(|r| r * r).sum()
+    };
+    let one = left(&|x| f64::from(x == 0.0));
+    let step = left(&|x| f64::from(x >= 0.0)).min(left(&|x| f64::from(x > 0.0)));
+    // A drive that is faster at once bends both.
+    let sample = 1.0 / SIDE as f64;
+    let corners = [-0.5, 0.0, 0.5].map(|at| left(&|x| (x - at * sample).max(0.0)));
+    let corner = corners.into_iter().fold(f64::MAX, f64::min);
+    step.min(corner) / one
+}
+
+/// Lowest and highest value.
+fn ends(values: &[f64]) -> (f64, f64) {
+    let start = (f64::MAX, f64::MIN);
+    let fold = |(a, b): (f64, f64), v: &f64| (a.min(*v), b.max(*v));
+    values.iter().fold(start, fold)
+}
+
+/// How far samples are off curves through so many neighbours on either side.
+struct Curve<'a> {
+    off: &'a [f64],
+    reach: usize,
+}
+
+impl Curve<'_> {
+    /// Samples of a channel that are farther off than noise is there, and how far.
+    fn far_off(&self, values: &[f64], recording: &Recording, weight: &[f64]) -> Vec<(usize, f64)> {
+        let (n, reach) = (values.len(), self.reach);
+        let rate = recording.metadata.sample_rate_hz;
+        let sizes: Vec<f64> = self.off.iter().map(|o| o.abs()).collect();
+        let typical = ninth(&sizes);
+        // Where the neighbours say that it is: a glitch beyond the others would be alone in its range, and typical there.
+        let expected: Vec<f64> = values.iter().zip(self.off).map(|(v, o)| v - o).collect();
+        let (low, high) = ends(&expected);
+        let range = |v: f64| (((v - low) / (high - low) * RANGES as f64) as usize).min(RANGES - 1);
+        let mut alike: Vec<Vec<f64>> = vec![vec![]; RANGES];
+        for (v, size) in expected.iter().zip(&sizes) {
+            alike[range(*v)].push(*size);
+        }
+        let alike: Vec<f64> = alike.iter().map(|a| ninth(a) / typical).collect();
+        let floor = 6.0 * recording.metadata.adc.cos.lsb;
+        let far = |k: &usize| {
+            let k = *k;
+            // Most samples need no look at their surroundings.
+            if sizes[k] <= (FAR * typical).max(floor) {
+                return false;
+            }
+            // Noise that grows with the signal, its slope or the speed is larger at some values and times than at others.
+            let near = &sizes[k.saturating_sub(AROUND)..(k + AROUND + 1).min(n)];
+            let there = (ninth(near) / typical / BY_CHANCE).max(1.0);
+            let larger = there * alike[range(expected[k])].max(1.0);
+            let limit = (FAR * typical * larger).max(floor);
+            // A doubled sample is late, not wrong; a longer curve is bent by any that are wrong beside it.
+            let beside = if reach > REACH { reach } else { 1 };
+            let bad = (k - beside..=k + beside).any(|near| weight[near] == 0.0);
+            let doubled = bad || repeats(recording, k) || repeats(recording, k + 1);
+            // Across a gap in time there is no such curve.
+            let step = |j: usize| recording.time_s[j] - recording.time_s[j - 1];
+            let gap = (k + 1 - reach..=k + reach).any(|j| step(j) * rate > 1.5);
+            sizes[k] > limit && !doubled && !gap
+        };
+        let inside = reach..n.saturating_sub(reach);
+        inside.filter(far).map(|k| (k, sizes[k])).collect()
+    }
+}
+
+/// Isolated samples far from what their neighbours say.
+pub(crate) fn find(recording: &Recording, checked: &mut Checked) {
+    /// Share of what is left beside a sample that is off, below which a step is there instead.
+    const CLEARLY: f64 = 0.7;
+    /// The same where only the longer curve shows it.
+    const FAR_MORE: f64 = 1.5;
+    let n = recording.samples();
+    let Edges {
+        channels,
+        far: mut found,
+    } = edges(recording);
+    let off = [0, 1].map(|which: usize| {
+        let values = &channels[which];
+        (0..n)
+            .map(|k| off_the_curve(values, k))
+            .collect::<Vec<f64>>()
+    });
+    for (which, values) in channels.iter().enumerate() {
+        let short = Curve {
+            off: &off[which],
+            reach: REACH,
+        };
+        let mut own = short.far_off(values, recording, &checked.weight);
+        own.retain(|(k, _)| isolated(&off, which, *k) && step_over_one(recording, *k) >= CLEARLY);
+        if let Some(longer) = off_the_longer_curve(values, &off[which]) {
+            let long = Curve {
+                off: &longer,
+                reach: MORE,
+            };
+            let mut more = long.far_off(values, recording, &checked.weight);
+            // Such a one is hardly a pattern on the short curve; and what is far off itself bends the long one near it.
+            let highest =
+                |k: usize| longer[k].abs() >= longer[k - 1].abs().max(longer[k + 1].abs());
+            let near = |k: usize| own.iter().any(|(known, _)| k.abs_diff(*known) <= MORE);
+            more.retain(|(k, _)| {
+                highest(*k) && !near(*k) && step_over_one(recording, *k) > FAR_MORE
+            });
+            own.extend(more);
+        }
+        found.extend(own);
+    }
+    found.sort_by_key(|f| f.0);
+    found.dedup_by_key(|f| f.0);
+    // Many of them are no isolated samples.
+    if found.is_empty() || found.len() > n / 50 {
+        return;
+    }
+    let mut left_out = 0;
+    for (k, _) in &found {
+        for near in k.saturating_sub(1)..=(k + 1).min(n - 1) {
+            left_out += usize::from(checked.weight[near] > 0.0);
+            checked.weight[near] = 0.0;
+        }
+    }
+    let largest = found.iter().map(|f| f.1).fold(0.0, f64::max);
+    let largest = Parameter::exact("largest", largest, units::of_columns(recording));
+    let share = found.len() as f64 / n as f64;
+    let error = (found.len() as f64).sqrt() / n as f64;
+    let n = found.len();
+    let evidence = format!(
+        "{} {} from the curve through {} neighbours by up to {}; {} sample {}",
+        counted(n, "isolated sample"),
+        agree(n, "deviates", "deviate"),
+        agree(n, "its", "their"),
+        match largest.unit.as_str() {
+            "counts" => largest.brief(),
+            _ => format!("{:.4} (unit of the columns)", largest.value),
+        },
+        agree(n, "it is", "the first is"),
+        found[0].0
+    );
+    let parameters = vec![Parameter::measured("share", share, error, "1"), largest];
+    let finding = Finding::digital("glitches", parameters, evidence);
+    let finding = finding.at(Place::Sample(found[0].0)).repairing(left_out);
+    checked.findings.push(finding);
+}
