@@ -113,9 +113,10 @@ fn run(arguments: &Arguments) -> Result<()> {
 fn case(seed: u64, arguments: &Arguments, folder: &Path) -> Result<Option<Score>> {
     let case = Case::draw(seed, arguments.samples)?;
     let wanted = arguments.drive.as_ref();
-    let snr = case.truth.hidden.first().map_or(0.0, |hidden| hidden.snr);
+    let first = case.truth.hidden.first();
+    let weak = |below: f64| first.is_some_and(|hidden| hidden.snr < below);
     if wanted.is_some_and(|drive| *drive != case.truth.drive)
-        || arguments.below.is_some_and(|below| snr >= below)
+        || arguments.below.is_some_and(|below| !weak(below))
     {
         return Ok(None);
     }
