@@ -35,9 +35,8 @@ const DRIFT: &str = "offset_drift";
 pub(crate) const GAIN_DRIFT: &str = "gain_drift";
 /// A cause that adds less than this probability says nothing new.
 const NOTHING_NEW: f64 = 1e-3;
-/// A rival to which the best adds less than this probability is beaten where another is nearer: between equally large causes,
-/// by about twenty to one.
-const BEATEN: f64 = 0.015;
+/// Log-likelihood by which a rival is beaten, if others are left: twenty to one.
+const BEATEN: f64 = 3.0;
 
 /// A drift of the offsets or of the gains: slow, as noise may be.
 pub(crate) fn is_drift(cause: &str) -> bool {
@@ -239,13 +238,13 @@ fn fewer_first(scored: &mut [Scored]) {
     }
 }
 
-/// Causes of other names to which the best adds nothing, and that need no more parameters: the nearest, and
-/// those that are not beaten.
+/// Causes of other names to which the best adds nothing, and that need no more parameters. Of several, those that it beats by
+/// twenty to one are none, where that leaves one.
 fn rivals(beside: &Beside, best: &Scored, others: &[&Scored]) -> Vec<String> {
     let mut found: Vec<(&str, f64)> = vec![];
     for other in others {
         let name = other.candidate.name;
-        if name == best.candidate.name {
+        if name == best.candidate.name || found.iter().any(|(n, _)| *n == name) {
             continue;
         }
         // Far behind, or bought with more parameters: no rival.
@@ -257,17 +256,13 @@ fn rivals(beside: &Beside, best: &Scored, others: &[&Scored]) -> Vec<String> {
         let together = both(&other.candidate.shapes, &best.candidate.shapes);
         let (gain, rank) = beside.gain(&together);
         let (adds, freedom) = (gain - other.gain, rank.saturating_sub(other.freedom));
-        // Of several choices of one name the nearest counts.
-        let log_p = log_tail(2.0 * adds, freedom);
-        match found.iter_mut().find(|(known, _)| *known == name) {
-            Some((_, known)) => *known = known.max(log_p),
-            None => found.push((name, log_p)),
+        if freedom == 0 || log_tail(2.0 * adds, freedom) > NOTHING_NEW.ln() {
+            found.push((name, adds));
         }
     }
-    found.retain(|(_, log_p)| *log_p > NOTHING_NEW.ln());
-    let nearest = found.iter().map(|f| f.1).fold(f64::MIN, f64::max);
-    found.retain(|(_, log_p)| *log_p >= BEATEN.ln().min(nearest));
-    found.into_iter().map(|(name, _)| name.to_owned()).collect()
+    let near: Vec<(&str, f64)> = found.iter().copied().filter(|f| f.1 < BEATEN).collect();
+    let left = if near.len() == 1 { near } else { found };
+    left.into_iter().map(|(name, _)| name.to_owned()).collect()
 }
 
 /// A cause of the same place that has more parameters and is this one for some of their values, as a harmonic of the scale
