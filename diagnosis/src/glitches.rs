@@ -51,12 +51,7 @@ fn off_the_longer_curve(values: &[f64], short: &[f64]) -> Option<Vec<f64>> {
             .map(|near| dot(near, &weights)),
     );
     long.resize(values.len(), 0.0);
-    let size = |off: &[f64]| {
-        let inside = off
-            .get(MORE..off.len().saturating_sub(MORE))
-            .unwrap_or_default();
-        ninth(&inside.iter().map(|o| o.abs()).collect::<Vec<f64>>())
-    };
+    let size = |off: &[f64]| ninth(&off.iter().map(|o| o.abs()).collect::<Vec<f64>>());
     (size(&long) < size(short)).then_some(long)
 }
 
@@ -133,11 +128,7 @@ impl Curve<'_> {
         let (n, reach) = (values.len(), self.reach);
         let rate = recording.metadata.sample_rate_hz;
         let sizes: Vec<f64> = self.off.iter().map(|o| o.abs()).collect();
-        let typical = ninth(
-            sizes
-                .get(reach..n.saturating_sub(reach))
-                .unwrap_or_default(),
-        );
+        let typical = ninth(&sizes);
         // Where the neighbours say that it is: a glitch beyond the others would be alone in its range, and typical there.
         let expected: Vec<f64> = values.iter().zip(self.off).map(|(v, o)| v - o).collect();
         let (low, high) = ends(&expected);

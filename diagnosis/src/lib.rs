@@ -16,7 +16,6 @@ mod checks;
 mod codes;
 mod contender;
 mod context;
-mod correlate;
 mod diagnose;
 mod doubt;
 mod edges;

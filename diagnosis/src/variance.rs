@@ -76,7 +76,7 @@ impl Squares<'_> {
         let count = start.len();
         let (mut x, mut h) = (start, vec![0.0; count]);
         let mut last = None;
-        let coarse = self.every.max(self.weight.len() / FIRST);
+        let coarse = self.every.max(self.weight.len().div_ceil(FIRST));
         for step in 0..STEPS {
             let every = if step + LAST < STEPS {
                 coarse

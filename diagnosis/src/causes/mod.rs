@@ -3,7 +3,6 @@
 mod angle;
 mod code;
 mod direction;
-mod frequencies;
 mod high_pass;
 mod lag;
 mod line;
