@@ -44,7 +44,7 @@ impl<'a> Beside<'a> {
 
     /// Whether the radius shows its part of shapes in these amounts. A vibration that the prediction of the noise does not
     /// hold is in every shape that stands along the circle, but it never shows in the radius; a cause of the sensor does.
-    /// `trials`: choices that the radius itself had a part in.
+    /// `trials`: choices that it has to make up for.
     pub(crate) fn in_radius(
         &self,
         shapes: &[Shape],

@@ -76,7 +76,7 @@ pub(crate) struct Candidate {
     pub domain: Domain,
     /// How many choices like this one were tried.
     pub trials: f64,
-    /// Among how many the radius had a part in choosing it: where the axis vibrates, the radius has to show it beyond that.
+    /// Choices that the radius has to make up for where the axis vibrates and it judges what was found.
     pub by_radius: f64,
     /// The shapes.
     pub shapes: Vec<Shape>,

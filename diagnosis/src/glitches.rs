@@ -6,7 +6,7 @@ use nonius_recording::Recording;
 use crate::checks::{Checked, ninth, repeats};
 use crate::edges::{Edges, edges};
 use crate::finding::{Finding, Parameter, Place};
-use crate::solve::dot;
+use crate::solve::{dot, weights_of};
 use crate::units;
 
 /// Samples on either side of the curve through the neighbours.
@@ -32,18 +32,22 @@ fn off_the_curve(values: &[f64], k: usize) -> f64 {
     values[k] - (15.0 * both(1) - 6.0 * both(2) + both(3)) / 20.0
 }
 
-/// How far each sample is off a fifth-order curve through more of its neighbours, where that leaves less: on axes that are slow
-/// beside the noise, for the curve through three on either side has as much noise itself as the sample.
+/// A function of the place among a sample and `side` neighbours on either side, which are the places from −1 to 1.
+fn column(side: usize, f: impl Fn(f64) -> f64) -> Vec<f64> {
+    let place = |i: usize| (i as f64 - side as f64) / side as f64;
+    (0..=2 * side).map(|i| f(place(i))).collect()
+}
+
+/// The functions of a fifth-order curve through them.
+fn curve(side: usize) -> impl Iterator<Item = Vec<f64>> {
+    (0..=5).map(move |order| column(side, |x| x.powi(order)))
+}
+
+/// How far each sample of a channel is off a fifth-order curve through more of its neighbours, if that leaves less: on axes that
+/// are slow beside the noise, for the curve through three on either side has more noise itself than the sample.
 fn off_the_longer_curve(values: &[f64], short: &[f64]) -> Option<Vec<f64>> {
-    const ORDER: i32 = 5;
-    let place = |i: usize| (i as f64 - MORE as f64) / MORE as f64;
-    let column =
-        |f: &dyn Fn(f64) -> f64| -> Vec<f64> { (0..=2 * MORE).map(|i| f(place(i))).collect() };
-    let curve: Vec<Vec<f64>> = (0..=ORDER)
-        .map(|order| column(&|x| x.powi(order)))
-        .collect();
-    let free = crate::solve::without(&column(&|x| f64::from(x == 0.0)), &curve);
-    let weights: Vec<f64> = free.iter().map(|w| w / free[MORE]).collect();
+    let curve: Vec<Vec<f64>> = curve(MORE).collect();
+    let weights = weights_of(&column(MORE, |x| f64::from(x == 0.0)), &curve);
     let mut long = vec![0.0; MORE.min(values.len())];
     long.extend(
         values
@@ -84,18 +88,13 @@ fn isolated(channels: &[Vec<f64>; 2], which: usize, k: usize) -> bool {
 /// What a step of both channels before or after a sample, or a corner, leaves there, over what is left if the sample is off: of a
 /// jump of the time base, or a step of the speed, the samples farther away tell.
 fn step_over_one(recording: &Recording, k: usize) -> f64 {
-    /// Samples on either side, and the order of the curve through them.
+    /// Samples on either side.
     const SIDE: usize = 8;
-    const ORDER: i32 = 5;
     if k < SIDE || k + SIDE >= recording.samples() {
         return 1.0;
     }
-    let place = |i: usize| (i as f64 - SIDE as f64) / SIDE as f64;
-    let column =
-        |f: &dyn Fn(f64) -> f64| -> Vec<f64> { (0..=2 * SIDE).map(|i| f(place(i))).collect() };
     let left = |f: &dyn Fn(f64) -> f64| -> f64 {
-        let curve = (0..=ORDER).map(|order| column(&|x| x.powi(order)));
-        let shapes: Vec<Vec<f64>> = curve.chain([column(f)]).collect();
+        let shapes: Vec<Vec<f64>> = curve(SIDE).chain([column(SIDE, f)]).collect();
         let channels = [&recording.cos, &recording.sin];
         let rest = channels.map(|v| crate::solve::without(&v[k - SIDE..=k + SIDE], &shapes));
         rest.iter().flatten().map(|r| r * r).sum()
@@ -169,7 +168,7 @@ pub(crate) fn find(recording: &Recording, checked: &mut Checked) {
     /// Share of what is left beside a sample that is off, below which a step is there instead.
     const CLEARLY: f64 = 0.7;
     /// The same where only the longer curve shows it.
-    const FAR_MORE: f64 = 1.5;
+    const SURELY: f64 = 1.5;
     let n = recording.samples();
     let Edges {
         channels,
@@ -198,9 +197,7 @@ pub(crate) fn find(recording: &Recording, checked: &mut Checked) {
             let highest =
                 |k: usize| longer[k].abs() >= longer[k - 1].abs().max(longer[k + 1].abs());
             let near = |k: usize| own.iter().any(|(known, _)| k.abs_diff(*known) <= MORE);
-            more.retain(|(k, _)| {
-                highest(*k) && !near(*k) && step_over_one(recording, *k) > FAR_MORE
-            });
+            more.retain(|(k, _)| highest(*k) && !near(*k) && step_over_one(recording, *k) > SURELY);
             own.extend(more);
         }
         found.extend(own);

@@ -1,12 +1,12 @@
 //! Samples that are missing without a gap in time: the angle jumps by what it moves in whole samples.
 
-use nonius_fourier::Complex;
 use nonius_recording::Recording;
 
 use crate::checks::{Checked, ninth, repeats};
 use crate::context::{against, unwrapped};
+use crate::correlate::sums;
 use crate::first;
-use crate::solve::dot;
+use crate::solve::{dot, weights_of};
 
 /// Samples on either side of a jump that are compared, and the order of the curve through them; on slow axes more of them
 /// show it, and on axes that shake a curve that bends more.
@@ -54,9 +54,7 @@ fn step_weights(side: usize, order: i32, but: Option<usize>) -> Vec<f64> {
         .chain(but.map(single))
         .collect();
     let step = column(side, |x| 0.5 * x.signum());
-    let free = crate::solve::without(&step, &curve);
-    let square: f64 = free.iter().map(|v| v * v).sum();
-    free.iter().map(|v| v / square).collect()
+    weights_of(&step, &curve)
 }
 
 /// Corners of a drive: places where the speed, the acceleration or its change is another at once. A curve does not follow
@@ -141,41 +139,6 @@ pub(crate) fn angle(recording: &Recording, weight: &[f64]) -> Option<Vec<f64>> {
     let mut angle = unwrapped(angle.collect());
     bridge(&mut angle, weight);
     Some(angle)
-}
-
-/// The sum of the values from each place on, times the weights.
-fn sums(values: &[f64], weights: &[f64]) -> Vec<f64> {
-    /// From so many weights on by transforms, whose time does not grow with their number.
-    const MANY: usize = 200;
-    if weights.len() < MANY {
-        let windows = values.windows(weights.len());
-        return windows.map(|near| dot(near, weights)).collect();
-    }
-    /// Values that are transformed together; far more than there are weights.
-    const BLOCK: usize = 16_384;
-    let transformed = |of: &[f64]| {
-        let padded = of.iter().copied().chain(std::iter::repeat(0.0));
-        let mut all: Vec<Complex<f64>> = padded.take(BLOCK).map(Complex::from).collect();
-        nonius_fourier::forward(&mut all);
-        all
-    };
-    let by = transformed(weights);
-    // Further on in a block, the sums would go round its end.
-    let inside = BLOCK + 1 - weights.len();
-    let places = (values.len() + 1).saturating_sub(weights.len());
-    let mut all = Vec::with_capacity(places);
-    for from in (0..places).step_by(inside) {
-        let block = &values[from..values.len().min(from + BLOCK)];
-        let mut product = transformed(block);
-        product
-            .iter_mut()
-            .zip(&by)
-            .for_each(|(p, w)| *p *= w.conj());
-        nonius_fourier::inverse(&mut product);
-        let own = product.iter().take(inside.min(places - from));
-        all.extend(own.map(|p| p.re / BLOCK as f64));
-    }
-    all
 }
 
 /// An angle, looked at with curves through so many samples on either side.

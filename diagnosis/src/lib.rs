@@ -16,6 +16,7 @@ mod checks;
 mod codes;
 mod contender;
 mod context;
+mod correlate;
 mod diagnose;
 mod doubt;
 mod edges;

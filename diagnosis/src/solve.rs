@@ -34,6 +34,13 @@ pub(crate) fn without(values: &[f64], shapes: &[Vec<f64>]) -> Vec<f64> {
     left
 }
 
+/// Weights of values that give the amount of a shape in them, free of others.
+pub(crate) fn weights_of(shape: &[f64], others: &[Vec<f64>]) -> Vec<f64> {
+    let free = without(shape, others);
+    let square: f64 = free.iter().map(|v| v * v).sum();
+    free.iter().map(|v| v / square).collect()
+}
+
 /// Normal equations.
 #[derive(Clone, Debug)]
 pub(crate) struct Normal {

@@ -300,7 +300,7 @@ impl Basis {
     }
 }
 
-/// See [`Basis::take_off`].
+/// See [`Basis::take_off`]. Fused by the processor or, on an old one, slowly: all find the same values.
 #[multiversion::multiversion(targets("x86_64+avx2+fma"))]
 fn taken_off(basis: &Basis, coefficients: &[f64], values: &[f64], to: &mut [f64]) {
     for (first, range) in &basis.pieces {

@@ -125,7 +125,7 @@ impl Whitener {
 }
 
 /// Values without what their past predicts; `plain` are the values, `ORDER` of their past before them. For the widest registers
-/// that the processor has: a sixth of a diagnosis is spent here.
+/// that the processor has, and fused by it or, on an old one, slowly: all find the same values.
 #[multiversion::multiversion(targets("x86_64+avx512f+fma", "x86_64+avx2+fma"))]
 fn predicted_off(coefficients: &[f64], plain: &[f64], white: &mut [f64]) {
     // Several at once: each sample is read and written less often.

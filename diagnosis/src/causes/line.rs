@@ -74,7 +74,7 @@ fn two(place: Place, shape: fn(&Place, usize) -> Shape) -> Vec<Shape> {
 struct Line {
     /// Its frequency in cycles per sample.
     f: f64,
-    /// Frequencies among which the radius had a part in choosing it.
+    /// Among how many it was chosen, but 1 for the highest of all: the radius alone judges that for the first time.
     by_radius: f64,
 }
 
@@ -163,13 +163,14 @@ impl Search<'_> {
         list
     }
 
-    /// The same of the radius alone, for an axis that stands still much of the time: there a line along the circle goes with the
+    /// The same of the radius alone, for an axis that stands near one angle for a part of the time: there a line along the circle goes with the
     /// motion, and the best amounts in both channels, of which one direction is seen more than the other, explain so much at each
     /// frequency. What is large over a range of frequencies is none.
     fn in_radius(&self, radial: &[f64]) -> Vec<f64> {
-        /// An axis that stands still is seen in one direction so many times as much as in the other.
+        /// Of an axis that stands at one angle for a fifth of the time, so many times as much is seen in one direction as in the
+        /// other.
         const STANDS: f64 = 1.5;
-        /// Share of the samples that a direction counts for at least.
+        /// Share of the samples that every direction is taken to be seen in besides, so that none has to be divided by zero.
         const LEAST: f64 = 0.01;
         let context = self.context;
         let sum = |a: &[f64], b: &[f64]| -> f64 {

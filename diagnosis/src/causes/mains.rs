@@ -14,8 +14,8 @@ pub(crate) fn places() -> impl Iterator<Item = [f64; 2]> {
     all.map(|f| [f * (1.0 - OFF), f * (1.0 + OFF)])
 }
 
-/// How many frequencies a line of the mains has in a recording of so many seconds, where this is one of them, within what such
-/// a recording tells. Twice as many: the others are as likely together.
+/// Trials of a line at a frequency of the mains: as many as such frequencies can be told apart in so many seconds, and twice that,
+/// for the mains has half of all that may be named by chance. `None` at any other frequency.
 pub(crate) fn trials(hertz: f64, seconds: f64) -> Option<f64> {
     let off = 0.5 / seconds;
     let mut inside = places().filter(|[low, high]| (low - off..=high + off).contains(&hertz));
