@@ -97,6 +97,11 @@ pub(crate) fn peak(power: &[f64], length: usize, low: f64, high: f64) -> Option<
     let index = |f: f64| ((f * length as f64) as usize).min(power.len() - 1);
     let (low, high) = (index(low).max(1), index(high));
     let best = (low..=high).max_by(|a, b| power[*a].total_cmp(&power[*b]))?;
+    Some(refined(power, best) / length as f64)
+}
+
+/// Index of a peak between the points of a spectrum: that of a parabola through three of them.
+pub(crate) fn refined(power: &[f64], best: usize) -> f64 {
     let at = |k: usize| power.get(k).copied().unwrap_or(0.0);
     let (left, middle, right) = (at(best - 1), at(best), at(best + 1));
     let bend = left - 2.0 * middle + right;
@@ -105,7 +110,7 @@ pub(crate) fn peak(power: &[f64], length: usize, low: f64, high: f64) -> Option<
     } else {
         0.0
     };
-    Some((best as f64 + shift.clamp(-0.5, 0.5)) / length as f64)
+    best as f64 + shift.clamp(-0.5, 0.5)
 }
 
 /// cos and sin of a frequency in hertz at the given times.

@@ -3,21 +3,15 @@
 use std::f64::consts::TAU;
 use std::rc::Rc;
 
-use super::mains;
-use super::mirror::unmirrored;
+use super::frequencies::{Line, Search};
 use crate::block::Block;
 use crate::cause::{Candidate, Domain, Estimate, Exact, Make, Reads, polar};
 use crate::context::Context;
 use crate::finding::{Chip, Parameter};
 use crate::library::{Fill, Library, Place, Shape, Use};
-use crate::lines::{flattened, pair_spectrum, peak, spectrum, two_spectra, two_transforms};
+use crate::lines::{spectrum, two_spectra};
 use crate::model::{Residual, Weighed};
 
-/// Lowest frequency of a line, in cycles per recording: below, it is drift.
-const SLOWEST: f64 = 4.0;
-
-/// So many times what is near it in the spectrum, a line stands out of noise of any colour.
-const STANDS_OUT: f64 = 40.0;
 /// Samples between two evaluations of a line's sine; between them it is rotated on.
 const ROTATED: usize = 64;
 /// Share of a sample by which the time base may be off to be regular.
@@ -70,142 +64,7 @@ fn two(place: Place, shape: fn(&Place, usize) -> Shape) -> Vec<Shape> {
     (0..2).map(|i| shape(&place, i)).collect()
 }
 
-/// A line that may be.
-struct Line {
-    /// Its frequency in cycles per sample.
-    f: f64,
-    /// Among how many it was chosen, but 1 for the highest of all: the radius alone judges that for the first time.
-    by_radius: f64,
-}
-
-/// Where lines are looked for.
-struct Search<'a> {
-    context: &'a Context,
-    /// Lines have to stand out of what is near them.
-    coloured: bool,
-}
-
 impl Search<'_> {
-    /// Frequency of the highest line of a spectrum, in cycles per sample.
-    fn line(&self, power: &[f64], length: usize) -> Option<f64> {
-        if self.coloured {
-            return self.narrow(power, length);
-        }
-        peak(power, length, self.lowest(), 0.499)
-    }
-
-    /// Frequency of the highest line where the mains has one, in cycles per sample.
-    fn of_mains(&self, power: &[f64], length: usize) -> Option<f64> {
-        if self.coloured {
-            return None;
-        }
-        let rate = self.context.rate;
-        let places = mains::places().map(|[low, high]| [low / rate, high / rate]);
-        let inside = places.filter(|[low, high]| *low > self.lowest() && *high < 0.499);
-        let peaks = inside.filter_map(|[low, high]| peak(power, length, low, high));
-        let at = |f: &f64| power[(f * length as f64).round() as usize];
-        peaks.max_by(|a, b| at(a).total_cmp(&at(b)))
-    }
-
-    /// Frequencies of the highest line, and of the highest of the mains.
-    fn lines(&self, power: &[f64], length: usize) -> impl Iterator<Item = f64> + use<> {
-        let both = [self.line(power, length), self.of_mains(power, length)];
-        both.into_iter().flatten()
-    }
-
-    /// Frequency of the line that stands highest above what is near it, where one stands out.
-    fn narrow(&self, power: &[f64], length: usize) -> Option<f64> {
-        let level = flattened(power);
-        let f = peak(&level, length, self.lowest(), 0.499)?;
-        let highest = level[(f * length as f64).round() as usize];
-        (highest > STANDS_OUT).then_some(f)
-    }
-
-    /// Frequency of a line in the motion: an axis that shakes has broad peaks, too, which may be the higher ones.
-    fn of_motion(&self, power: &[f64], length: usize) -> Option<f64> {
-        let narrow = self.narrow(power, length);
-        let seen = narrow.or_else(|| self.line(power, length))?;
-        Some(unmirrored(self.context, seen))
-    }
-
-    /// Cycles per sample below which nothing is a line.
-    fn lowest(&self) -> f64 {
-        SLOWEST / self.context.samples() as f64
-    }
-
-    /// Frequencies that may be lines in the frame of the channels, of what is along the radius and along the circle.
-    fn in_frame(&self, radial: &[f64], tangential: &[f64]) -> Vec<Line> {
-        let frame = |k: usize| {
-            let (r, t) = (radial[k], tangential[k]);
-            let (c, s) = (self.context.cos[k], self.context.sin[k]);
-            (r * c - t * s, r * s + t * c)
-        };
-        let (in_c, in_s): (Vec<f64>, Vec<f64>) = (0..radial.len()).map(frame).unzip();
-        let (power, length) = pair_spectrum(&in_c, &in_s);
-        let mut list: Vec<Line> = vec![];
-        let highest = self
-            .line(&power, length)
-            .map(|f| Line { f, by_radius: 1.0 });
-        let mains = self.of_mains(&power, length);
-        let radius = self.in_radius(radial);
-        let few = mains.into_iter().chain(radius);
-        let few = few.map(|f| Line {
-            f,
-            by_radius: self.trials(f * self.context.rate),
-        });
-        for line in highest.into_iter().chain(few) {
-            // Two that are nearer than a cycle per recording are one.
-            let near = |known: &Line| (line.f - known.f).abs() * radial.len() as f64 <= 1.0;
-            if !list.iter().any(near) {
-                list.push(line);
-            }
-        }
-        list
-    }
-
-    /// The same of the radius alone, for an axis that stands near one angle for a part of the time: there a line along the circle goes with the
-    /// motion, and the best amounts in both channels, of which one direction is seen more than the other, explain so much at each
-    /// frequency. What is large over a range of frequencies is none.
-    fn in_radius(&self, radial: &[f64]) -> Vec<f64> {
-        /// Of an axis that stands at one angle for a fifth of the time, so many times as much is seen in one direction as in the
-        /// other.
-        const STANDS: f64 = 1.5;
-        /// Share of the samples that every direction is taken to be seen in besides, so that none has to be divided by zero.
-        const LEAST: f64 = 0.01;
-        let context = self.context;
-        let sum = |a: &[f64], b: &[f64]| -> f64 {
-            let pairs = a.iter().zip(b).zip(&context.weight);
-            pairs.map(|((a, b), w)| a * b * w).sum()
-        };
-        let least = LEAST * context.samples() as f64;
-        let cc = sum(&context.cos, &context.cos) + least;
-        let ss = sum(&context.sin, &context.sin) + least;
-        let cs = sum(&context.cos, &context.sin);
-        let (mean, apart) = (0.5 * (cc + ss), (0.5 * (cc - ss)).hypot(cs));
-        if mean + apart < STANDS * (mean - apart) {
-            return vec![];
-        }
-        let of = |by: &[f64]| -> Vec<f64> { radial.iter().zip(by).map(|(r, b)| r * b).collect() };
-        let (transforms, length) = two_transforms(&of(&context.cos), &of(&context.sin));
-        let explained = transforms.iter().map(|[c, s]| {
-            let across = 2.0 * cs * (c * s.conj()).re;
-            (ss * c.norm_sqr() + cc * s.norm_sqr() - across) / (cc * ss - cs * cs)
-        });
-        let level = flattened(&explained.collect::<Vec<f64>>());
-        self.lines(&level, length).collect()
-    }
-
-    /// Seconds.
-    fn duration(&self) -> f64 {
-        self.context.samples() as f64 / self.context.rate
-    }
-
-    /// Frequencies among which one stood out.
-    fn trials(&self, hertz: f64) -> f64 {
-        let all = self.context.samples() as f64;
-        mains::trials(hertz, self.duration()).map_or(all, |few| few.min(all))
-    }
-
     /// A line of that name with its functions; its frequency is known to a small part of one cycle per recording.
     fn candidate(
         &self,

@@ -3,6 +3,7 @@
 mod angle;
 mod code;
 mod direction;
+mod frequencies;
 mod high_pass;
 mod lag;
 mod line;

@@ -1,0 +1,158 @@
+//! Frequencies that may be lines.
+
+use super::mains;
+use super::mirror::unmirrored;
+use crate::context::Context;
+use crate::lines::{flattened, pair_spectrum, peak, refined, two_transforms};
+
+/// Lowest frequency of a line, in cycles per recording: below, it is drift.
+const SLOWEST: f64 = 4.0;
+
+/// So many times what is near it in the spectrum, a line stands out of noise of any colour.
+const STANDS_OUT: f64 = 40.0;
+
+/// A line that may be.
+pub(super) struct Line {
+    /// Its frequency in cycles per sample.
+    pub(super) f: f64,
+    /// Among how many it was chosen, but 1 for the highest of all: the radius alone judges that for the first time.
+    pub(super) by_radius: f64,
+}
+
+/// Where lines are looked for.
+pub(super) struct Search<'a> {
+    pub(super) context: &'a Context,
+    /// Lines have to stand out of what is near them.
+    pub(super) coloured: bool,
+}
+
+impl Search<'_> {
+    /// Frequency of the highest line of a spectrum, in cycles per sample.
+    fn line(&self, power: &[f64], length: usize) -> Option<f64> {
+        if self.coloured {
+            return self.narrow(power, length);
+        }
+        peak(power, length, self.lowest(), 0.499)
+    }
+
+    /// Frequency of the highest line where the mains has one, in cycles per sample; the flank of another line is none.
+    fn of_mains(&self, power: &[f64], length: usize) -> Option<f64> {
+        if self.coloured {
+            return None;
+        }
+        let bins = length as f64 / self.context.rate;
+        let inside = mains::places().flat_map(|[low, high]| {
+            let (low, high) = (low * bins, high * bins);
+            low.floor() as usize..=high.ceil() as usize
+        });
+        let lowest = (self.lowest() * length as f64).ceil() as usize;
+        let inside = inside.filter(|k| (lowest.max(1)..power.len() - 1).contains(k));
+        let peaks = inside.filter(|k| power[*k] >= power[k - 1].max(power[k + 1]));
+        let best = peaks.max_by(|a, b| power[*a].total_cmp(&power[*b]))?;
+        Some(refined(power, best) / length as f64)
+    }
+
+    /// Frequencies of the highest line, and of the highest of the mains where that is another.
+    pub(super) fn lines(&self, power: &[f64], length: usize) -> impl Iterator<Item = f64> + use<> {
+        let highest = self.line(power, length);
+        let known = |f: &f64| highest.is_some_and(|h| self.same(*f, h));
+        let mains = self.of_mains(power, length).filter(|f| !known(f));
+        highest.into_iter().chain(mains)
+    }
+
+    /// Whether two frequencies are one: they are nearer than a cycle per recording.
+    fn same(&self, a: f64, b: f64) -> bool {
+        (a - b).abs() * self.context.samples() as f64 <= 1.0
+    }
+
+    /// Frequency of the line that stands highest above what is near it, where one stands out.
+    fn narrow(&self, power: &[f64], length: usize) -> Option<f64> {
+        let level = flattened(power);
+        let f = peak(&level, length, self.lowest(), 0.499)?;
+        let highest = level[(f * length as f64).round() as usize];
+        (highest > STANDS_OUT).then_some(f)
+    }
+
+    /// Frequency of a line in the motion: an axis that shakes has broad peaks, too, which may be the higher ones.
+    pub(super) fn of_motion(&self, power: &[f64], length: usize) -> Option<f64> {
+        let narrow = self.narrow(power, length);
+        let seen = narrow.or_else(|| self.line(power, length))?;
+        Some(unmirrored(self.context, seen))
+    }
+
+    /// Cycles per sample below which nothing is a line.
+    fn lowest(&self) -> f64 {
+        SLOWEST / self.context.samples() as f64
+    }
+
+    /// Frequencies that may be lines in the frame of the channels, of what is along the radius and along the circle.
+    pub(super) fn in_frame(&self, radial: &[f64], tangential: &[f64]) -> Vec<Line> {
+        let frame = |k: usize| {
+            let (r, t) = (radial[k], tangential[k]);
+            let (c, s) = (self.context.cos[k], self.context.sin[k]);
+            (r * c - t * s, r * s + t * c)
+        };
+        let (in_c, in_s): (Vec<f64>, Vec<f64>) = (0..radial.len()).map(frame).unzip();
+        let (power, length) = pair_spectrum(&in_c, &in_s);
+        let mut list: Vec<Line> = vec![];
+        let highest = self
+            .line(&power, length)
+            .map(|f| Line { f, by_radius: 1.0 });
+        let mains = self.of_mains(&power, length);
+        let radius = self.in_radius(radial);
+        let few = mains.into_iter().chain(radius);
+        let few = few.map(|f| Line {
+            f,
+            by_radius: self.trials(f * self.context.rate),
+        });
+        for line in highest.into_iter().chain(few) {
+            if !list.iter().any(|known| self.same(line.f, known.f)) {
+                list.push(line);
+            }
+        }
+        list
+    }
+
+    /// The same of the radius alone, for an axis that stands near one angle for a part of the time: there a line along the circle goes with the
+    /// motion, and the best amounts in both channels, of which one direction is seen more than the other, explain so much at each
+    /// frequency. What is large over a range of frequencies is none.
+    fn in_radius(&self, radial: &[f64]) -> Vec<f64> {
+        /// Of an axis that stands at one angle for a fifth of the time, so many times as much is seen in one direction as in the
+        /// other.
+        const STANDS: f64 = 1.5;
+        /// Share of the samples that every direction is taken to be seen in besides, so that none has to be divided by zero.
+        const LEAST: f64 = 0.01;
+        let context = self.context;
+        let sum = |a: &[f64], b: &[f64]| -> f64 {
+            let pairs = a.iter().zip(b).zip(&context.weight);
+            pairs.map(|((a, b), w)| a * b * w).sum()
+        };
+        let least = LEAST * context.samples() as f64;
+        let cc = sum(&context.cos, &context.cos) + least;
+        let ss = sum(&context.sin, &context.sin) + least;
+        let cs = sum(&context.cos, &context.sin);
+        let (mean, apart) = (0.5 * (cc + ss), (0.5 * (cc - ss)).hypot(cs));
+        if mean + apart < STANDS * (mean - apart) {
+            return vec![];
+        }
+        let of = |by: &[f64]| -> Vec<f64> { radial.iter().zip(by).map(|(r, b)| r * b).collect() };
+        let (transforms, length) = two_transforms(&of(&context.cos), &of(&context.sin));
+        let explained = transforms.iter().map(|[c, s]| {
+            let across = 2.0 * cs * (c * s.conj()).re;
+            (ss * c.norm_sqr() + cc * s.norm_sqr() - across) / (cc * ss - cs * cs)
+        });
+        let level = flattened(&explained.collect::<Vec<f64>>());
+        self.lines(&level, length).collect()
+    }
+
+    /// Seconds.
+    pub(super) fn duration(&self) -> f64 {
+        self.context.samples() as f64 / self.context.rate
+    }
+
+    /// Frequencies among which one stood out.
+    pub(super) fn trials(&self, hertz: f64) -> f64 {
+        let all = self.context.samples() as f64;
+        mains::trials(hertz, self.duration()).map_or(all, |few| few.min(all))
+    }
+}
