@@ -244,7 +244,7 @@ fn rivals(beside: &Beside, best: &Scored, others: &[&Scored]) -> Vec<String> {
     let mut found: Vec<(&str, f64)> = vec![];
     for other in others {
         let name = other.candidate.name;
-        if name == best.candidate.name || found.iter().any(|(n, _)| *n == name) {
+        if name == best.candidate.name {
             continue;
         }
         // Far behind, or bought with more parameters: no rival.
@@ -257,7 +257,11 @@ fn rivals(beside: &Beside, best: &Scored, others: &[&Scored]) -> Vec<String> {
         let (gain, rank) = beside.gain(&together);
         let (adds, freedom) = (gain - other.gain, rank.saturating_sub(other.freedom));
         if freedom == 0 || log_tail(2.0 * adds, freedom) > NOTHING_NEW.ln() {
-            found.push((name, adds));
+            // Of several choices of one name the nearest counts.
+            match found.iter_mut().find(|(known, _)| *known == name) {
+                Some((_, nearest)) => *nearest = nearest.min(adds),
+                None => found.push((name, adds)),
+            }
         }
     }
     let near: Vec<(&str, f64)> = found.iter().copied().filter(|f| f.1 < BEATEN).collect();

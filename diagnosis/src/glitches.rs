@@ -43,6 +43,13 @@ fn curve(side: usize) -> impl Iterator<Item = Vec<f64>> {
     (0..=5).map(move |order| column(side, |x| x.powi(order)))
 }
 
+/// What belongs to the samples that have so many neighbours on either side.
+fn with_neighbours(values: &[f64], reach: usize) -> &[f64] {
+    values
+        .get(reach..values.len().saturating_sub(reach))
+        .unwrap_or_default()
+}
+
 /// How far each sample of a channel is off a fifth-order curve through more of its neighbours, if that leaves less: on axes that
 /// are slow beside the noise, for the curve through three on either side has more noise itself than the sample.
 fn off_the_longer_curve(values: &[f64], short: &[f64]) -> Option<Vec<f64>> {
@@ -55,7 +62,10 @@ fn off_the_longer_curve(values: &[f64], short: &[f64]) -> Option<Vec<f64>> {
             .map(|near| dot(near, &weights)),
     );
     long.resize(values.len(), 0.0);
-    let size = |off: &[f64]| ninth(&off.iter().map(|o| o.abs()).collect::<Vec<f64>>());
+    let size = |off: &[f64]| {
+        let sizes: Vec<f64> = off.iter().map(|o| o.abs()).collect();
+        ninth(with_neighbours(&sizes, MORE))
+    };
     (size(&long) < size(short)).then_some(long)
 }
 
@@ -127,7 +137,7 @@ impl Curve<'_> {
         let (n, reach) = (values.len(), self.reach);
         let rate = recording.metadata.sample_rate_hz;
         let sizes: Vec<f64> = self.off.iter().map(|o| o.abs()).collect();
-        let typical = ninth(&sizes);
+        let typical = ninth(with_neighbours(&sizes, reach));
         // Where the neighbours say that it is: a glitch beyond the others would be alone in its range, and typical there.
         let expected: Vec<f64> = values.iter().zip(self.off).map(|(v, o)| v - o).collect();
         let (low, high) = ends(&expected);
