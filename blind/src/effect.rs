@@ -119,6 +119,11 @@ pub(crate) trait Effect: Send + Sync {
         false
     }
 
+    /// Whether both channels are late together by a time of theirs: that is motion to anybody who does not know it.
+    fn delays_both(&self) -> bool {
+        false
+    }
+
     /// Whether it is real motion of the axis.
     fn is_motion(&self) -> bool {
         false

@@ -75,6 +75,8 @@ fn measure<'a>(
         let with = simulate(world, &[(effect, m)], finish);
         if effect.moves_time() {
             visible.moved(&with, &without)
+        } else if effect.delays_both() && !visible.knows_motion() {
+            visible.across(world, &with)
         } else {
             visible.difference(&with, &without)
         }

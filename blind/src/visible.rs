@@ -27,6 +27,7 @@ pub(crate) struct Visible {
     nuisance: DMatrix<f64>,
     solver: Cholesky<f64, Dyn>,
     sigma: f64,
+    known: bool,
 }
 
 impl Visible {
@@ -82,6 +83,7 @@ impl Visible {
             nuisance: DMatrix::zeros(0, 0),
             solver: Cholesky::new(DMatrix::identity(1, 1))?,
             sigma: world.sigma(),
+            known,
         };
         for (j, change) in calibration.iter().enumerate() {
             nuisance.set_column(j, &seen.rotated(change));
@@ -140,6 +142,26 @@ impl Visible {
         let pairs = || with.alpha.iter().zip(&without.alpha).zip(&self.slope);
         let change = [0, 1].map(|c: usize| pairs().map(|((a, b), v)| (a - b) * v[c]).collect());
         self.snr(&change)
+    }
+
+    /// Whether a reference shows the motion.
+    pub(crate) fn knows_motion(&self) -> bool {
+        self.known
+    }
+
+    /// SNR of what is not motion of a simulation: the signal less that of an axis that stands where the signal shows it. However far
+    /// that is from where the axis stands, and so from all tangents there, to anybody it is motion.
+    #[must_use]
+    pub(crate) fn across(&self, world: &World, with: &Rows) -> f64 {
+        let pairs = with.volts[0].iter().zip(&with.volts[1]);
+        let moved: Vec<[f64; 2]> = pairs
+            .map(|(c, s)| {
+                let volts = [*c, *s];
+                let on_circle = world.pair(world.angle(volts));
+                [0, 1].map(|c: usize| volts[c] - world.volts(c, on_circle[c]))
+            })
+            .collect();
+        self.snr(&[0, 1].map(|c: usize| moved.iter().map(|d| d[c]).collect()))
     }
 
     /// Along the motion (weighted), then across it.
@@ -269,6 +291,7 @@ fn basis(x: f64, intervals: usize) -> (usize, [f64; 4]) {
 mod tests {
     use super::*;
     use crate::motion::Drive;
+    use crate::simulate::{Finish, simulate};
     use crate::world::Wish;
     use rand::{SeedableRng, rngs::StdRng};
 
@@ -317,6 +340,28 @@ mod tests {
             ]
         });
         assert!(visible.snr(&slow) < 1e-2, "{}", visible.snr(&slow));
+    }
+
+    #[test]
+    fn what_is_late_altogether_is_motion_and_what_shrinks_is_seen() {
+        let world = world(false);
+        let visible = Visible::new(&world, false, false).expect("a world");
+        let rows = |size: f64| {
+            let mut rows = simulate(&world, &[], Finish::Clean);
+            for k in 0..world.samples {
+                let late = world.axis((k as f64 - 0.7) / world.rate).alpha;
+                let pair = world.pair(late);
+                for c in 0..2 {
+                    rows.volts[c][k] = world.volts(c, size * pair[c]);
+                }
+            }
+            rows
+        };
+        let late = visible.across(&world, &rows(1.0));
+        assert!(late < 1e-6, "{late}");
+        // A gain of both channels is calibrated, but for its part in both directions.
+        let shrunk = visible.across(&world, &rows(0.999));
+        assert!(shrunk < 0.1, "{shrunk}");
     }
 
     #[test]

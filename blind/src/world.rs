@@ -170,6 +170,13 @@ impl World {
         [alpha.cos(), (alpha - self.beta).sin()]
     }
 
+    /// The angle at which the channels without any cause have these volts, up to their common size, radians.
+    #[must_use]
+    pub fn angle(&self, volts: [f64; 2]) -> f64 {
+        let [c, s] = [0, 1].map(|c: usize| (volts[c] - self.offset[c]) / self.amplitude[c]);
+        (s + c * self.beta.sin()).atan2(c * self.beta.cos())
+    }
+
     /// Amplitudes to volts.
     #[must_use]
     pub fn volts(&self, channel: usize, u: f64) -> f64 {

@@ -159,6 +159,7 @@ fn beside(mut with: Diagnosis, noise: Option<Flicker>) -> Diagnosis {
         Some(Ok(mut finding)) => {
             finding.gain = finding.gain.judged(with.unchanged());
             with.findings.push(finding);
+            sort(&mut with.findings);
         }
         Some(Err(unnamed)) => {
             with.unexplained.add(unnamed.log_p, unnamed.what.said());
@@ -166,6 +167,11 @@ fn beside(mut with: Diagnosis, noise: Option<Flicker>) -> Diagnosis {
         None => {}
     }
     with
+}
+
+/// The one that explains most first.
+fn sort(findings: &mut [Finding]) {
+    findings.sort_by(|a, b| b.weight.total_cmp(&a.weight));
 }
 
 /// Looks at a recording until nothing new is found in it, and what is like flicker noise then; `coloured`: there may be such.
@@ -293,6 +299,7 @@ fn conclude(
         finding.gain.position_error_rms_after_rad = position_after;
         findings.push(finding);
     }
+    sort(&mut findings);
     let was = system.residual(&selection.base);
     let left = system.residual(&extended.fit);
     let mut unexplained = Unexplained::nothing();

@@ -67,7 +67,55 @@ pub(crate) fn doubt(system: &System, catalogue: &Catalogue, found: &mut Selectio
             closed.push(domain);
         }
     }
+    let traces = traces(system, found);
+    found.unnamed.extend(traces);
     closed
+}
+
+/// Weak names of any kind beside an error hundreds of times as large: its model is not known to the last thousandth, and what that
+/// leaves goes with the time as with the angle.
+fn traces(system: &System, found: &mut Selection) -> Vec<Unnamed> {
+    /// Share of what the strongest explains: an SNR of a thirtieth of its.
+    const TRACE: f64 = 1e-3;
+    /// Log-likelihood (an SNR of 8) from which on it is something by itself.
+    const WEAK: f64 = 32.0;
+    let sure = |i: &usize| !found.accepted[*i].doubted;
+    let gains: Vec<(f64, usize)> = (0..found.accepted.len())
+        .filter(sure)
+        .map(|i| (gain_of(system, found, &[i]), i))
+        .collect();
+    let most = gains.iter().copied().max_by(|a, b| a.0.total_cmp(&b.0));
+    let Some((most, strongest)) = most else {
+        return vec![];
+    };
+    let name = found.accepted[strongest].candidate.name;
+    let faint = gains.into_iter().filter(|(gain, i)| {
+        let own = &found.accepted[*i].candidate;
+        !own.motion && own.name != name && *gain < WEAK.min(TRACE * most)
+    });
+    let faint: Vec<(f64, usize)> = faint.collect();
+    let trace = |(gain, i): (f64, usize)| {
+        let own = &mut found.accepted[i];
+        own.doubted = true;
+        let candidate = &own.candidate;
+        unnamed(
+            candidate.domain,
+            candidate.name,
+            gain,
+            &so_small(gain, most, name),
+        )
+    };
+    faint.into_iter().map(trace).collect()
+}
+
+/// Why something weak is no error of its own.
+fn so_small(gain: f64, most: f64, strongest: &str) -> String {
+    format!(
+        "its SNR of {:.0} is so small beside the {:.0} of {} that it may be what that model leaves",
+        (2.0 * gain).sqrt(),
+        (2.0 * most).sqrt(),
+        plain(strongest)
+    )
 }
 
 /// What the fit explains more than without some of its causes.
@@ -163,11 +211,5 @@ fn leftovers(
         }
     }
     let (gain, nearest) = largest?;
-    let but = format!(
-        "its SNR of {:.0} is so small beside the {:.0} of {} that it may be what that model leaves",
-        (2.0 * gain).sqrt(),
-        (2.0 * all).sqrt(),
-        plain(name)
-    );
-    Some(unnamed(domain, nearest, gain, &but))
+    Some(unnamed(domain, nearest, gain, &so_small(gain, all, name)))
 }

@@ -50,9 +50,9 @@ fn with_neighbours(values: &[f64], reach: usize) -> &[f64] {
         .unwrap_or_default()
 }
 
-/// How far each sample of a channel is off a fifth-order curve through more of its neighbours, if that leaves less: on axes that
-/// are slow beside the noise, for the curve through three on either side has more noise itself than the sample.
-fn off_the_longer_curve(values: &[f64], short: &[f64]) -> Option<Vec<f64>> {
+/// How far each sample of a channel is off a fifth-order curve through more of its neighbours: on axes that are slow beside the
+/// noise that leaves less, for the curve through three on either side has more noise itself than the sample.
+fn off_the_longer_curve(values: &[f64]) -> Vec<f64> {
     let curve: Vec<Vec<f64>> = curve(MORE).collect();
     let weights = weights_of(&column(MORE, |x| f64::from(x == 0.0)), &curve);
     let mut long = vec![0.0; MORE.min(values.len())];
@@ -62,11 +62,31 @@ fn off_the_longer_curve(values: &[f64], short: &[f64]) -> Option<Vec<f64>> {
             .map(|near| dot(near, &weights)),
     );
     long.resize(values.len(), 0.0);
-    let size = |off: &[f64]| {
-        let sizes: Vec<f64> = off.iter().map(|o| o.abs()).collect();
-        ninth(with_neighbours(&sizes, MORE))
+    long
+}
+
+/// How large that is, where there are so many neighbours on either side: the ninth decile.
+fn typical(off: &[f64], reach: usize) -> f64 {
+    let sizes: Vec<f64> = off.iter().map(|o| o.abs()).collect();
+    ninth(with_neighbours(&sizes, reach))
+}
+
+/// Whether a sample is far out of the noise near it along the radius and along the circle, which may be of different sizes: a
+/// jitter of the clock moves both channels along the circle.
+fn out_of_either(off: &[Vec<f64>; 2], angle: impl Fn(usize) -> [f64; 2], k: usize) -> bool {
+    /// The ninth decile of so few samples is known to a tenth.
+    const SURELY_FAR: f64 = 1.1 * FAR;
+    let parts = |j: usize| {
+        let [c, s] = angle(j);
+        [off[0][j] * c + off[1][j] * s, off[1][j] * c - off[0][j] * s]
     };
-    (size(&long) < size(short)).then_some(long)
+    let near = k.saturating_sub(AROUND)..(k + AROUND + 1).min(off[0].len());
+    let near: Vec<[f64; 2]> = near.map(parts).collect();
+    let far = |which: usize| {
+        let sizes: Vec<f64> = near.iter().map(|p| p[which].abs()).collect();
+        parts(k)[which] / ninth(&sizes)
+    };
+    far(0).hypot(far(1)) > SURELY_FAR
 }
 
 /// Whether what stands out at a sample is that sample, and no step of the signal before or after it: a code that the ADC
@@ -137,7 +157,7 @@ impl Curve<'_> {
         let (n, reach) = (values.len(), self.reach);
         let rate = recording.metadata.sample_rate_hz;
         let sizes: Vec<f64> = self.off.iter().map(|o| o.abs()).collect();
-        let typical = ninth(with_neighbours(&sizes, reach));
+        let typical = typical(self.off, reach);
         // Where the neighbours say that it is: a glitch beyond the others would be alone in its range, and typical there.
         let expected: Vec<f64> = values.iter().zip(self.off).map(|(v, o)| v - o).collect();
         let (low, high) = ends(&expected);
@@ -190,6 +210,16 @@ pub(crate) fn find(recording: &Recording, checked: &mut Checked) {
             .map(|k| off_the_curve(values, k))
             .collect::<Vec<f64>>()
     });
+    let longer = [0, 1].map(|which: usize| off_the_longer_curve(&channels[which]));
+    let middles = [0, 1].map(|which: usize| {
+        let (low, high) = ends(&channels[which]);
+        [0.5 * (low + high), 0.5 * (high - low)]
+    });
+    let angle = |k: usize| {
+        let pair = [0, 1].map(|c: usize| (channels[c][k] - middles[c][0]) / middles[c][1]);
+        let radius = pair[0].hypot(pair[1]).max(f64::MIN_POSITIVE);
+        pair.map(|p| p / radius)
+    };
     for (which, values) in channels.iter().enumerate() {
         let short = Curve {
             off: &off[which],
@@ -197,17 +227,19 @@ pub(crate) fn find(recording: &Recording, checked: &mut Checked) {
         };
         let mut own = short.far_off(values, recording, &checked.weight);
         own.retain(|(k, _)| isolated(&off, which, *k) && step_over_one(recording, *k) >= CLEARLY);
-        if let Some(longer) = off_the_longer_curve(values, &off[which]) {
+        own.retain(|(k, _)| out_of_either(&off, angle, *k));
+        if typical(&longer[which], MORE) < typical(&off[which], MORE) {
             let long = Curve {
-                off: &longer,
+                off: &longer[which],
                 reach: MORE,
             };
             let mut more = long.far_off(values, recording, &checked.weight);
             // Such a one is hardly a pattern on the short curve; and what is far off itself bends the long one near it.
-            let highest =
-                |k: usize| longer[k].abs() >= longer[k - 1].abs().max(longer[k + 1].abs());
+            let size = |k: usize| longer[which][k].abs();
+            let highest = |k: usize| size(k) >= size(k - 1).max(size(k + 1));
             let near = |k: usize| own.iter().any(|(known, _)| k.abs_diff(*known) <= MORE);
             more.retain(|(k, _)| highest(*k) && !near(*k) && step_over_one(recording, *k) > SURELY);
+            more.retain(|(k, _)| out_of_either(&longer, angle, *k));
             own.extend(more);
         }
         found.extend(own);

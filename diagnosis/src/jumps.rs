@@ -29,6 +29,8 @@ const MOST: f64 = 32.0;
 const AROUND: usize = 8;
 /// Standard deviations by which the sensor has to be seen to jump with its reference.
 const TOGETHER: f64 = 3.0;
+/// Standard deviations by which fewer samples may show another jump than more of them do.
+const ALIKE: f64 = 3.5;
 
 /// A place where an angle jumps: before which sample, how far, and how large the noise is there.
 struct Jump {
@@ -205,6 +207,13 @@ impl<'a> Look<'a> {
         far
     }
 
+    /// Whether a jump that more samples show is as large here, beside the noise: what ripples, as an axis that cogs faster and
+    /// faster, is a jump for one length of curves only.
+    fn shows(&self, jump: &Jump) -> bool {
+        let sigma = (self.noise(jump.before, 0.0) / 1.645).hypot(jump.sigma);
+        (self.sizes[jump.before] - jump.size).abs() < ALIKE * sigma
+    }
+
     /// Whether it is only one sample that is off, this one beside the jump: all others show a step in the curve as well.
     fn is_one_sample(&self, jump: &Jump, one: usize) -> bool {
         /// Share of the jump that the others show at least.
@@ -247,6 +256,7 @@ pub(crate) fn jumps(recording: &Recording, checked: &Checked) -> Vec<(usize, usi
             .into_iter()
             .any(|one| repeats(recording, one) && look.is_one_sample(jump, one))
     };
+    let mut shorter: Vec<Look> = vec![];
     for (side, order) in sides(angle.len()) {
         let corners = Corners::new(side, order);
         let other = |look: &Look, j: &Jump| {
@@ -254,6 +264,7 @@ pub(crate) fn jumps(recording: &Recording, checked: &Checked) -> Vec<(usize, usi
         };
         let look = Look::new(&angle, side, order);
         let far = look.far().into_iter().filter(|j| !other(&look, j));
+        let far = far.filter(|j| shorter.iter().all(|look| look.shows(j)));
         found.extend(whole(&look, far.collect(), checked, &found));
         if let Some((reference, apart)) = reference.as_ref().zip(apart.as_ref()) {
             let exact = Look::new(reference, side, order);
@@ -261,6 +272,7 @@ pub(crate) fn jumps(recording: &Recording, checked: &Checked) -> Vec<(usize, usi
             let far = far.filter(|j| together(apart, j) && !other(&exact, j));
             found.extend(whole(&exact, far.collect(), checked, &found));
         }
+        shorter.push(look);
     }
     found.sort_unstable();
     found

@@ -132,12 +132,11 @@ impl Selection {
         (freedom > 0 && log_p <= SHOWN.ln()).then_some(Own { gain, log_p })
     }
 
-    /// The findings of what [`Self::named`] keeps, the one that explains most first; their numbers are those of the model
-    /// that can be simulated.
+    /// The findings of what [`Self::named`] keeps; their numbers are those of the model that can be simulated.
     pub(crate) fn findings(&self, system: &System, halves: &Halves) -> Vec<Finding> {
         let mut list = vec![];
         let (fit, own) = (&self.fit, self.base.shapes.len());
-        for (i, accepted) in self.accepted.iter().enumerate() {
+        for accepted in &self.accepted {
             let range = accepted.range();
             let error: Vec<f64> = range
                 .clone()
@@ -167,13 +166,12 @@ impl Selection {
                     ..Gain::of(gain)
                 },
                 chip: accepted.candidate.chip,
-                weight: gain - i as f64 * 1e-9,
+                weight: gain,
                 effect: Some(system.effect(fit, range)),
                 place: None,
             };
             list.push(finding.naming_both());
         }
-        list.sort_by(|a, b| b.weight.total_cmp(&a.weight));
         list
     }
 

@@ -82,6 +82,9 @@ impl Effect for Bandwidth {
         let chains = [chain(&self.shares[0]), chain(&self.shares[1])];
         Some((Box::new(LowPasses(chains)), 20.0 * m))
     }
+    fn delays_both(&self) -> bool {
+        self.shares[0] == self.shares[1]
+    }
     fn parameters(&self, m: f64, _world: &World) -> Vec<(&'static str, f64, bool)> {
         // A common pole shows as the square of its magnitude: value over SNR is no bound then.
         match (&*self.shares[0], &*self.shares[1]) {
