@@ -128,7 +128,9 @@ pub(crate) fn contender(
         }
         let listed = |name: &str| name != ACCELERATION_GAIN;
         let locked = goes_with_angle(system.context, &own.candidate);
-        let nameable = listed(own.candidate.name) && rivals.iter().all(|r| listed(r)) && !locked;
+        let crawling = causes::crawls(system.context, &own.candidate);
+        let nameable =
+            listed(own.candidate.name) && rivals.iter().all(|r| listed(r)) && !locked && !crawling;
         if nameable && slow && !ahead.outdone && rivals.len() <= 1 && held.refusal.is_none() {
             if rivals.is_empty() {
                 rivals.extend(wider);
@@ -149,6 +151,8 @@ pub(crate) fn contender(
         } else if locked {
             "at this constant speed an error that goes with the angle has that frequency, too"
                 .to_owned()
+        } else if crawling {
+            "it is as slow as a drift".to_owned()
         } else if !slow {
             "steps explain it as well".to_owned()
         } else if let Some(refusal) = held.refusal {

@@ -72,26 +72,30 @@ pub(crate) fn doubt(system: &System, catalogue: &Catalogue, found: &mut Selectio
     closed
 }
 
-/// Weak names of any kind beside an error hundreds of times as large: its model is not known to the last thousandth, and what that
-/// leaves goes with the time as with the angle.
+/// Weak names of any kind beside an error ten times as large: its model is not known to the last per cent of its power, and what
+/// that leaves goes with the time as with the angle.
 fn traces(system: &System, found: &mut Selection) -> Vec<Unnamed> {
-    /// Share of what the strongest explains: an SNR of a thirtieth of its.
-    const TRACE: f64 = 1e-3;
+    /// Share of what the strongest explains: an SNR of a tenth of its.
+    const TRACE: f64 = 0.01;
     /// Log-likelihood (an SNR of 8) from which on it is something by itself.
     const WEAK: f64 = 32.0;
-    let sure = |i: &usize| !found.accepted[*i].doubted;
-    let gains: Vec<(f64, usize)> = (0..found.accepted.len())
-        .filter(sure)
-        .map(|i| (gain_of(system, found, &[i]), i))
-        .collect();
-    let most = gains.iter().copied().max_by(|a, b| a.0.total_cmp(&b.0));
-    let Some((most, strongest)) = most else {
+    let count = found.accepted.len();
+    if count < 2 {
+        return vec![];
+    }
+    let name = |i: usize| found.accepted[i].candidate.name;
+    // All that has one name is one error, and one whose name does not hold is one, too.
+    let together =
+        |i: usize| -> Vec<usize> { (0..count).filter(|k| name(*k) == name(i)).collect() };
+    let all = (0..count).map(|i| (gain_of(system, found, &together(i)), name(i)));
+    let Some((most, strongest)) = all.max_by(|a, b| a.0.total_cmp(&b.0)) else {
         return vec![];
     };
-    let name = found.accepted[strongest].candidate.name;
-    let faint = gains.into_iter().filter(|(gain, i)| {
-        let own = &found.accepted[*i].candidate;
-        !own.motion && own.name != name && *gain < WEAK.min(TRACE * most)
+    let gains = (0..count).map(|i| (gain_of(system, found, &[i]), i));
+    let faint = gains.filter(|(gain, i)| {
+        let own = &found.accepted[*i];
+        let (named, motion) = (!own.doubted, own.candidate.motion);
+        named && !motion && name(*i) != strongest && *gain < WEAK.min(TRACE * most)
     });
     let faint: Vec<(f64, usize)> = faint.collect();
     let trace = |(gain, i): (f64, usize)| {
@@ -102,7 +106,7 @@ fn traces(system: &System, found: &mut Selection) -> Vec<Unnamed> {
             candidate.domain,
             candidate.name,
             gain,
-            &so_small(gain, most, name),
+            &so_small(gain, most, strongest),
         )
     };
     faint.into_iter().map(trace).collect()

@@ -292,8 +292,8 @@ fn search(
         simpler(system, catalogue, &mut found);
         closed.extend(doubt(system, catalogue, &mut found));
         if system.flicker.is_some() {
-            // Slow noise is in all that is slow, as most of what depends on the speed is.
-            closed.push(Domain::Speed);
+            // Slow noise is in all that is slow, as most of what depends on the speed or goes with the revolution is.
+            closed.extend([Domain::Speed, Domain::Revolution]);
         }
         found.left = leftover(system, catalogue, &found.fit, &closed);
     }

@@ -26,13 +26,18 @@ pub(super) struct Search<'a> {
     pub(super) coloured: bool,
 }
 
+/// Cycles per sample below which nothing is a line.
+pub(super) fn lowest(context: &Context) -> f64 {
+    SLOWEST / context.samples() as f64
+}
+
 impl Search<'_> {
     /// Frequency of the highest line of a spectrum, in cycles per sample.
     fn line(&self, power: &[f64], length: usize) -> Option<f64> {
         if self.coloured {
             return self.narrow(power, length);
         }
-        peak(power, length, self.lowest(), 0.499)
+        peak(power, length, lowest(self.context), 0.499)
     }
 
     /// Frequency of the highest line where the mains has one, in cycles per sample; the flank of another line is none.
@@ -45,7 +50,7 @@ impl Search<'_> {
             let (low, high) = (low * bins, high * bins);
             low.floor() as usize..=high.ceil() as usize
         });
-        let lowest = (self.lowest() * length as f64).ceil() as usize;
+        let lowest = (lowest(self.context) * length as f64).ceil() as usize;
         let inside = inside.filter(|k| (lowest.max(1)..power.len() - 1).contains(k));
         let peaks = inside.filter(|k| power[*k] >= power[k - 1].max(power[k + 1]));
         let best = peaks.max_by(|a, b| power[*a].total_cmp(&power[*b]))?;
@@ -68,7 +73,7 @@ impl Search<'_> {
     /// Frequency of the line that stands highest above what is near it, where one stands out.
     fn narrow(&self, power: &[f64], length: usize) -> Option<f64> {
         let level = flattened(power);
-        let f = peak(&level, length, self.lowest(), 0.499)?;
+        let f = peak(&level, length, lowest(self.context), 0.499)?;
         let highest = level[(f * length as f64).round() as usize];
         (highest > STANDS_OUT).then_some(f)
     }
@@ -78,11 +83,6 @@ impl Search<'_> {
         let narrow = self.narrow(power, length);
         let seen = narrow.or_else(|| self.line(power, length))?;
         Some(unmirrored(self.context, seen))
-    }
-
-    /// Cycles per sample below which nothing is a line.
-    fn lowest(&self) -> f64 {
-        SLOWEST / self.context.samples() as f64
     }
 
     /// Frequencies that may be lines in the frame of the channels, of what is along the radius and along the circle.

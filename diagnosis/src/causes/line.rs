@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 use std::rc::Rc;
 
-use super::frequencies::{Line, Search};
+use super::frequencies::{self, Line, Search};
 use crate::block::Block;
 use crate::cause::{Candidate, Domain, Estimate, Exact, Make, Reads, polar};
 use crate::context::Context;
@@ -159,6 +159,14 @@ impl Search<'_> {
             ..self.candidate(super::VIBRATION, Domain::Motion, hertz, make, library)
         }
     }
+}
+
+/// Whether a line has become as slow as a drift where its frequency was fitted.
+pub(crate) fn crawls(context: &Context, candidate: &Candidate) -> bool {
+    let inner = candidate.exact.as_ref().and_then(|e| e.inner.first());
+    let line = candidate.domain == Domain::Line;
+    let lowest = frequencies::lowest(context) * context.rate;
+    line && inner.is_some_and(|hertz| *hertz < lowest)
 }
 
 pub(crate) fn candidates(
