@@ -119,7 +119,7 @@ pub(crate) trait Effect: Send + Sync {
         false
     }
 
-    /// Whether both channels are late together by a time of theirs: that is motion to anybody who does not know it.
+    /// Whether low passes make both channels late together: that is motion to anybody who does not know it.
     fn delays_both(&self) -> bool {
         false
     }

@@ -3,7 +3,8 @@
 //! d is the signal with the cause minus the signal without. P takes off what the five calibration parameters and smooth
 //! motion could have done as well. Where the axis vibrates, its random part along the motion is noise to everybody and
 //! weighs the tangential component down, line by line. Against a reference, motion and vibration are known and only the
-//! zero of the reference is taken off.
+//! zero of the reference is taken off. Of a low pass in both channels, which is late by itself, d is taken from the signal of an axis
+//! that stands where the channels show it ([`Visible::across`]).
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
@@ -27,7 +28,8 @@ pub(crate) struct Visible {
     nuisance: DMatrix<f64>,
     solver: Cholesky<f64, Dyn>,
     sigma: f64,
-    known: bool,
+    /// A reference shows the motion.
+    motion_known: bool,
 }
 
 impl Visible {
@@ -83,7 +85,7 @@ impl Visible {
             nuisance: DMatrix::zeros(0, 0),
             solver: Cholesky::new(DMatrix::identity(1, 1))?,
             sigma: world.sigma(),
-            known,
+            motion_known: known,
         };
         for (j, change) in calibration.iter().enumerate() {
             nuisance.set_column(j, &seen.rotated(change));
@@ -146,7 +148,7 @@ impl Visible {
 
     /// Whether a reference shows the motion.
     pub(crate) fn knows_motion(&self) -> bool {
-        self.known
+        self.motion_known
     }
 
     /// SNR of what is not motion of a simulation: the signal less that of an axis that stands where the signal shows it. However far
@@ -154,14 +156,14 @@ impl Visible {
     #[must_use]
     pub(crate) fn across(&self, world: &World, with: &Rows) -> f64 {
         let pairs = with.volts[0].iter().zip(&with.volts[1]);
-        let moved: Vec<[f64; 2]> = pairs
+        let off_circle: Vec<[f64; 2]> = pairs
             .map(|(c, s)| {
                 let volts = [*c, *s];
                 let on_circle = world.pair(world.angle(volts));
                 [0, 1].map(|c: usize| volts[c] - world.volts(c, on_circle[c]))
             })
             .collect();
-        self.snr(&[0, 1].map(|c: usize| moved.iter().map(|d| d[c]).collect()))
+        self.snr(&[0, 1].map(|c: usize| off_circle.iter().map(|d| d[c]).collect()))
     }
 
     /// Along the motion (weighted), then across it.
@@ -343,25 +345,38 @@ mod tests {
     }
 
     #[test]
-    fn what_is_late_altogether_is_motion_and_what_shrinks_is_seen() {
+    fn what_is_late_altogether_is_motion_and_what_shrinks_with_speed_is_seen() {
         let world = world(false);
         let visible = Visible::new(&world, false, false).expect("a world");
-        let rows = |size: f64| {
+        let fastest = (0..world.samples)
+            .map(|k| world.motion.at(k as f64 / world.rate).speed.abs())
+            .fold(0.0, f64::max);
+        // Of the size at rest, and of the fastest.
+        let rows = |rest: f64, fast: f64| {
             let mut rows = simulate(&world, &[], Finish::Clean);
             for k in 0..world.samples {
                 let late = world.axis((k as f64 - 0.7) / world.rate).alpha;
                 let pair = world.pair(late);
+                let speed = world.motion.at(k as f64 / world.rate).speed / fastest;
+                let size = rest + (fast - rest) * speed * speed;
                 for c in 0..2 {
                     rows.volts[c][k] = world.volts(c, size * pair[c]);
                 }
             }
             rows
         };
-        let late = visible.across(&world, &rows(1.0));
+        let late = visible.across(&world, &rows(1.0, 1.0));
         assert!(late < 1e-6, "{late}");
-        // A gain of both channels is calibrated, but for its part in both directions.
-        let shrunk = visible.across(&world, &rows(0.999));
-        assert!(shrunk < 0.1, "{shrunk}");
+        // A gain of both channels is calibrated.
+        let calibrated = visible.across(&world, &rows(0.999, 0.999));
+        assert!(calibrated < 0.1, "{calibrated}");
+        let seen = visible.across(&world, &rows(1.0, 0.999));
+        let noise = world.sigma() / world.mean_amplitude();
+        let most = 1e-3 * (world.samples as f64).sqrt() / noise;
+        assert!(
+            (0.05 * most..0.5 * most).contains(&seen),
+            "{seen} of {most}"
+        );
     }
 
     #[test]

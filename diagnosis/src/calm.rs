@@ -313,8 +313,7 @@ pub(crate) fn beside(mut found: Diagnosis, calm: Diagnosis, mark: Mark) -> Diagn
     }
     if let Some(mut finding) = calm.findings.into_iter().find(one) {
         finding.evidence += "; it shows away from the starts, stops and reversals of the drive";
-        finding.gain = finding.gain.judged(found.unchanged());
-        found.findings.push(finding);
+        found.add(finding);
     }
     found
 }

@@ -152,7 +152,7 @@ pub(crate) fn contender(
             "at this constant speed an error that goes with the angle has that frequency, too"
                 .to_owned()
         } else if crawling {
-            "it is as slow as a drift".to_owned()
+            "it goes to and fro less than four times".to_owned()
         } else if !slow {
             "steps explain it as well".to_owned()
         } else if let Some(refusal) = held.refusal {
@@ -170,13 +170,19 @@ pub(crate) fn contender(
         let hertz = own.candidate.exact.as_ref().and_then(|e| e.inner.first());
         let hertz = hertz
             .copied()
-            .filter(|_| own.candidate.domain == Domain::Line);
+            .filter(|_| own.candidate.domain == Domain::Line && !crawling);
+        // Such a line says nothing against faster ones.
+        let domain = if crawling {
+            Domain::Time
+        } else {
+            own.candidate.domain
+        };
         let likeness = like(own.candidate.name, &why);
         let unnamed = Unnamed {
             log_p: own.log_p,
             // What a drift leaves of steps can look like anything, too.
             gain: own.gain.max(steps.unwrap_or_default()),
-            what: What::Error(own.candidate.domain, hertz, likeness),
+            what: What::Error(domain, hertz, likeness),
         };
         if first.is_some() {
             system.retain(|i| i < mark);
@@ -187,7 +193,7 @@ pub(crate) fn contender(
         let paid = paid_where_noise_shows(system, fit, &own.candidate.shapes, own.freedom as f64);
         first = Some(Contender::Unnamed(Nameless {
             unnamed,
-            domain: Some(own.candidate.domain),
+            domain: Some(domain),
             name: own.candidate.name,
             shapes,
             paid: paid.max(steps.unwrap_or_default()),

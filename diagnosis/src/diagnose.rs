@@ -78,8 +78,15 @@ impl Diagnosis {
         }
     }
 
+    /// One more finding, which takes nothing off the signals.
+    pub(crate) fn add(&mut self, mut finding: Finding) {
+        finding.gain = finding.gain.judged(self.unchanged());
+        self.findings.push(finding);
+        sort(&mut self.findings);
+    }
+
     /// The gain of what takes nothing off the signals.
-    pub(crate) fn unchanged(&self) -> Gain {
+    fn unchanged(&self) -> Gain {
         let model = &self.extended;
         Gain {
             held_out_residual_rms_before: model.held_out_residual_rms,
@@ -156,10 +163,8 @@ fn whole(
 /// A diagnosis with flicker noise beside its names, where there is any.
 fn beside(mut with: Diagnosis, noise: Option<Flicker>) -> Diagnosis {
     match noise.as_ref().map(Flicker::finding) {
-        Some(Ok(mut finding)) => {
-            finding.gain = finding.gain.judged(with.unchanged());
-            with.findings.push(finding);
-            sort(&mut with.findings);
+        Some(Ok(finding)) => {
+            with.add(finding);
         }
         Some(Err(unnamed)) => {
             with.unexplained.add(unnamed.log_p, unnamed.what.said());

@@ -45,8 +45,7 @@ pub(crate) fn doubt(system: &System, catalogue: &Catalogue, found: &mut Selectio
         Domain::Revolution,
     ] {
         // Slow noise is in all that is slow, and has its own name.
-        let slow = matches!(domain, Domain::Speed | Domain::Time);
-        if slow && system.flicker.is_some() {
+        if system.flicker.is_some() && domain != Domain::Angle {
             continue;
         }
         let own: Vec<usize> = (0..found.accepted.len())
@@ -72,44 +71,50 @@ pub(crate) fn doubt(system: &System, catalogue: &Catalogue, found: &mut Selectio
     closed
 }
 
-/// Weak names of any kind beside an error ten times as large: its model is not known to the last per cent of its power, and what
-/// that leaves goes with the time as with the angle.
+/// Weak names of any kind beside an error of the sensor that is ten times as large: its model is not known to the last per cent of
+/// its power, and what that leaves goes with the time as with the angle.
 fn traces(system: &System, found: &mut Selection) -> Vec<Unnamed> {
     /// Share of what the strongest explains: an SNR of a tenth of its.
     const TRACE: f64 = 0.01;
     /// Log-likelihood (an SNR of 8) from which on it is something by itself.
     const WEAK: f64 = 32.0;
-    let count = found.accepted.len();
-    if count < 2 {
+    if found.accepted.len() < 2 {
         return vec![];
     }
-    let name = |i: usize| found.accepted[i].candidate.name;
-    // All that has one name is one error, and one whose name does not hold is one, too.
-    let together =
-        |i: usize| -> Vec<usize> { (0..count).filter(|k| name(*k) == name(i)).collect() };
-    let all = (0..count).map(|i| (gain_of(system, found, &together(i)), name(i)));
-    let Some((most, strongest)) = all.max_by(|a, b| a.0.total_cmp(&b.0)) else {
+    // What has no name stands aside: it spans names, too.
+    let everything = found.of(found.accepted.clone(), system);
+    // All that has one name is one error.
+    let mut names: Vec<(&'static str, Vec<usize>)> = vec![];
+    for (i, one) in found.accepted.iter().enumerate() {
+        let name = one.candidate.name;
+        match names.iter_mut().find(|(known, _)| *known == name) {
+            _ if one.candidate.motion => {}
+            Some((_, own)) => own.push(i),
+            None => names.push((name, vec![i])),
+        }
+    }
+    let gains: Vec<f64> = names
+        .iter()
+        .map(|(_, own)| gain_of(system, &everything, own))
+        .collect();
+    let most = gains.iter().copied().fold(0.0, f64::max);
+    let Some(strongest) = gains.iter().position(|gain| *gain >= most) else {
         return vec![];
     };
-    let gains = (0..count).map(|i| (gain_of(system, found, &[i]), i));
-    let faint = gains.filter(|(gain, i)| {
-        let own = &found.accepted[*i];
-        let (named, motion) = (!own.doubted, own.candidate.motion);
-        named && !motion && name(*i) != strongest && *gain < WEAK.min(TRACE * most)
-    });
-    let faint: Vec<(f64, usize)> = faint.collect();
-    let trace = |(gain, i): (f64, usize)| {
-        let own = &mut found.accepted[i];
-        own.doubted = true;
-        let candidate = &own.candidate;
-        unnamed(
-            candidate.domain,
-            candidate.name,
-            gain,
-            &so_small(gain, most, strongest),
-        )
-    };
-    faint.into_iter().map(trace).collect()
+    let mut list = vec![];
+    for ((name, own), gain) in names.iter().zip(&gains) {
+        let sure = own.iter().any(|i| !found.accepted[*i].doubted);
+        if !sure || *gain >= WEAK.min(TRACE * most) {
+            continue;
+        }
+        own.iter().for_each(|i| found.accepted[*i].doubted = true);
+        if *gain > ANYTHING {
+            let domain = found.accepted[own[0]].candidate.domain;
+            let but = so_small(*gain, most, names[strongest].0);
+            list.push(unnamed(domain, name, *gain, &but));
+        }
+    }
+    list
 }
 
 /// Why something weak is no error of its own.

@@ -73,14 +73,19 @@ fn typical(off: &[f64], reach: usize) -> f64 {
 
 /// Whether a sample is far out of the noise near it along the radius and along the circle, which may be of different sizes: a
 /// jitter of the clock moves both channels along the circle.
-fn out_of_either(off: &[Vec<f64>; 2], angle: impl Fn(usize) -> [f64; 2], k: usize) -> bool {
+fn out_of_either(
+    off: &[Vec<f64>; 2],
+    reach: usize,
+    angle: impl Fn(usize) -> [f64; 2],
+    k: usize,
+) -> bool {
     /// The ninth decile of so few samples is known to a tenth.
     const SURELY_FAR: f64 = 1.1 * FAR;
     let parts = |j: usize| {
         let [c, s] = angle(j);
         [off[0][j] * c + off[1][j] * s, off[1][j] * c - off[0][j] * s]
     };
-    let near = k.saturating_sub(AROUND)..(k + AROUND + 1).min(off[0].len());
+    let near = k.saturating_sub(AROUND).max(reach)..(k + AROUND + 1).min(off[0].len() - reach);
     let near: Vec<[f64; 2]> = near.map(parts).collect();
     let far = |which: usize| {
         let sizes: Vec<f64> = near.iter().map(|p| p[which].abs()).collect();
@@ -212,7 +217,9 @@ pub(crate) fn find(recording: &Recording, checked: &mut Checked) {
     });
     let longer = [0, 1].map(|which: usize| off_the_longer_curve(&channels[which]));
     let middles = [0, 1].map(|which: usize| {
-        let (low, high) = ends(&channels[which]);
+        // Where the neighbours say that it is: a glitch may be beyond all others.
+        let pairs = channels[which].iter().zip(&off[which]);
+        let (low, high) = ends(&pairs.map(|(v, o)| v - o).collect::<Vec<f64>>());
         [0.5 * (low + high), 0.5 * (high - low)]
     });
     let angle = |k: usize| {
@@ -227,7 +234,7 @@ pub(crate) fn find(recording: &Recording, checked: &mut Checked) {
         };
         let mut own = short.far_off(values, recording, &checked.weight);
         own.retain(|(k, _)| isolated(&off, which, *k) && step_over_one(recording, *k) >= CLEARLY);
-        own.retain(|(k, _)| out_of_either(&off, angle, *k));
+        own.retain(|(k, _)| out_of_either(&off, REACH, angle, *k));
         if typical(&longer[which], MORE) < typical(&off[which], MORE) {
             let long = Curve {
                 off: &longer[which],
@@ -239,7 +246,7 @@ pub(crate) fn find(recording: &Recording, checked: &mut Checked) {
             let highest = |k: usize| size(k) >= size(k - 1).max(size(k + 1));
             let near = |k: usize| own.iter().any(|(known, _)| k.abs_diff(*known) <= MORE);
             more.retain(|(k, _)| highest(*k) && !near(*k) && step_over_one(recording, *k) > SURELY);
-            more.retain(|(k, _)| out_of_either(&longer, angle, *k));
+            more.retain(|(k, _)| out_of_either(&longer, MORE, angle, *k));
             own.extend(more);
         }
         found.extend(own);

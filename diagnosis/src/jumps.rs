@@ -256,7 +256,8 @@ pub(crate) fn jumps(recording: &Recording, checked: &Checked) -> Vec<(usize, usi
             .into_iter()
             .any(|one| repeats(recording, one) && look.is_one_sample(jump, one))
     };
-    let mut shorter: Vec<Look> = vec![];
+    // Looks with shorter curves, at the sensor and at its reference.
+    let (mut shorter, mut exacter): (Vec<Look>, Vec<Look>) = (vec![], vec![]);
     for (side, order) in sides(angle.len()) {
         let corners = Corners::new(side, order);
         let other = |look: &Look, j: &Jump| {
@@ -264,13 +265,13 @@ pub(crate) fn jumps(recording: &Recording, checked: &Checked) -> Vec<(usize, usi
         };
         let look = Look::new(&angle, side, order);
         let far = look.far().into_iter().filter(|j| !other(&look, j));
-        let far = far.filter(|j| shorter.iter().all(|look| look.shows(j)));
-        found.extend(whole(&look, far.collect(), checked, &found));
+        found.extend(whole(&look, &shorter, far.collect(), checked, &found));
         if let Some((reference, apart)) = reference.as_ref().zip(apart.as_ref()) {
             let exact = Look::new(reference, side, order);
             let far = exact.far().into_iter();
             let far = far.filter(|j| together(apart, j) && !other(&exact, j));
-            found.extend(whole(&exact, far.collect(), checked, &found));
+            found.extend(whole(&exact, &exacter, far.collect(), checked, &found));
+            exacter.push(exact);
         }
         shorter.push(look);
     }
@@ -344,10 +345,11 @@ fn together(apart: &[f64], reference: &Jump) -> bool {
     surest.is_some_and(|(size, sigma)| size + TOGETHER * sigma < reference.size.abs())
 }
 
-/// Those of the jumps that are of whole samples, where no sample nearby is bad and none was found before; none where the
-/// angle jumps by anything, for a whole number is chance there.
+/// Those of the jumps that are of whole samples, and that shorter curves show, where no sample nearby is bad and none was found
+/// before; none where the angle jumps by anything, for a whole number is chance there.
 fn whole(
     look: &Look,
+    shorter: &[Look],
     far: Vec<Jump>,
     checked: &Checked,
     found: &[(usize, usize)],
@@ -362,7 +364,8 @@ fn whole(
         if bad || found.iter().any(|f| known(f.0)) {
             continue;
         }
-        match look.missing(&jump) {
+        let missing = look.missing(&jump);
+        match missing.filter(|_| shorter.iter().all(|look| look.shows(&jump))) {
             Some(samples) => list.push((k, samples)),
             None => others += 1,
         }

@@ -100,10 +100,10 @@ pub(crate) fn peak(power: &[f64], length: usize, low: f64, high: f64) -> Option<
     Some(refined(power, best) / length as f64)
 }
 
-/// Index of a peak between the points of a spectrum: that of a parabola through three of them.
+/// Index of a peak between the points of a spectrum, not the first: that of a parabola through three of them.
 pub(crate) fn refined(power: &[f64], best: usize) -> f64 {
     let at = |k: usize| power.get(k).copied().unwrap_or(0.0);
-    let (left, middle, right) = (at(best - 1), at(best), at(best + 1));
+    let (left, middle, right) = (at(best.saturating_sub(1)), at(best), at(best + 1));
     let bend = left - 2.0 * middle + right;
     let shift = if bend < 0.0 {
         0.5 * (left - right) / bend

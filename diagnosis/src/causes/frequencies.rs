@@ -8,6 +8,9 @@ use crate::lines::{flattened, pair_spectrum, peak, refined, two_transforms};
 /// Lowest frequency of a line, in cycles per recording: below, it is drift.
 const SLOWEST: f64 = 4.0;
 
+/// Highest frequency of a line, in cycles per sample: at half the sample rate one of two phases is not seen.
+const HIGHEST: f64 = 0.499;
+
 /// So many times what is near it in the spectrum, a line stands out of noise of any colour.
 const STANDS_OUT: f64 = 40.0;
 
@@ -37,23 +40,29 @@ impl Search<'_> {
         if self.coloured {
             return self.narrow(power, length);
         }
-        peak(power, length, lowest(self.context), 0.499)
+        peak(power, length, lowest(self.context), HIGHEST)
     }
 
-    /// Frequency of the highest line where the mains has one, in cycles per sample; the flank of another line is none.
+    /// Frequency of the highest line where the mains has one, in cycles per sample; flank and side lobes of another line are none.
     fn of_mains(&self, power: &[f64], length: usize) -> Option<f64> {
         if self.coloured {
             return None;
         }
+        // Cycles per recording within which a line is the highest.
+        let reach = (3 * length).div_ceil(self.context.samples());
         let bins = length as f64 / self.context.rate;
+        let first = (lowest(self.context) * length as f64).ceil() as usize;
+        let last = (HIGHEST * length as f64) as usize;
         let inside = mains::places().flat_map(|[low, high]| {
-            let (low, high) = (low * bins, high * bins);
-            low.floor() as usize..=high.ceil() as usize
+            ((low * bins) as usize).max(first.max(1))..=((high * bins).ceil() as usize).min(last)
         });
-        let lowest = (lowest(self.context) * length as f64).ceil() as usize;
-        let inside = inside.filter(|k| (lowest.max(1)..power.len() - 1).contains(k));
-        let peaks = inside.filter(|k| power[*k] >= power[k - 1].max(power[k + 1]));
-        let best = peaks.max_by(|a, b| power[*a].total_cmp(&power[*b]))?;
+        let stands_alone = |k: &usize| {
+            let near = k.saturating_sub(reach)..=(k + reach).min(power.len() - 1);
+            power[near].iter().all(|p| *p <= power[*k])
+        };
+        let best = inside
+            .filter(stands_alone)
+            .max_by(|a, b| power[*a].total_cmp(&power[*b]))?;
         Some(refined(power, best) / length as f64)
     }
 
@@ -73,7 +82,7 @@ impl Search<'_> {
     /// Frequency of the line that stands highest above what is near it, where one stands out.
     fn narrow(&self, power: &[f64], length: usize) -> Option<f64> {
         let level = flattened(power);
-        let f = peak(&level, length, lowest(self.context), 0.499)?;
+        let f = peak(&level, length, lowest(self.context), HIGHEST)?;
         let highest = level[(f * length as f64).round() as usize];
         (highest > STANDS_OUT).then_some(f)
     }
