@@ -48,7 +48,8 @@ fn short_campaign() {
 /// gains, a harmonic of the scale at such a phase was a bend of the channels alone, and gains that step drifted. Stray codes hid
 /// coarse steps, and two levels that are not quite two were flicker noise. Gains that step coupled with a delay where the speed
 /// only rose, and a corner of a drive was a sample put in. A resonance of the axis was hum, cogging whose frequency passes by was a lost
-/// sample, one sample of a jittering clock was a glitch, and what the model of a large hysteresis leaves was hum. Every sixth; in
+/// sample, one sample of a jittering clock was a glitch, a drift was a line,
+/// and what the model of a large hysteresis leaves was hum. Every sixth; in
 /// the long form all.
 #[test]
 fn wrong_names_do_not_come_back() {
@@ -56,6 +57,8 @@ fn wrong_names_do_not_come_back() {
         110_000_395,
         111_001_044,
         111_001_301,
+        103_001_682,
+        103_002_602,
         100_000_950,
         20_000_447,
         71_000_308,
@@ -98,10 +101,12 @@ fn wrong_names_do_not_come_back() {
 /// noise that steps explained in the radius, but not against the reference, slow noise that is too weak for its spectrum, and
 /// samples put in where the scale moves by less than its noise. A single sample lost on a slow axis, and a delay beside a bend that
 /// errors of the speed explained too. Hum while the axis mostly stands still, and hum beside a shaking axis; one sample off by eight
-/// times the noise on a slow axis. Every sixth; in the long form all.
+/// times the noise on a slow axis. Noise with the signal, or of the clock, beside flicker noise. Every sixth; in the long form all.
 #[test]
 fn what_was_missed_is_found() {
     let seeds = [
+        103_001_556,
+        103_003_305,
         100_000_238,
         86_000_804,
         86_000_315,

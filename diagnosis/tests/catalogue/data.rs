@@ -43,6 +43,15 @@ fn samples() {
     });
 }
 
+/// A logger that takes a sample an hour: no frequency of the mains is within its spectrum.
+#[test]
+fn a_sample_an_hour() {
+    let found = damaged(&PLAIN, |rows| {
+        rows.iter_mut().for_each(|row| row[0] *= 3600.0 * 50e3);
+    });
+    assert_eq!(names(&found), [""; 0]);
+}
+
 /// Rows of zeros hold no signal: a logger shows them before its ADC has begun, after it has ended, and while its link is down.
 /// They are left out, the notes say how many, and neither they nor the samples beside them are a cause.
 #[test]

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use crate::harness::{Case, PLAIN, alone, finds, near, within_errors};
+use crate::harness::{Case, PLAIN, alone, diagnosed, finds, near, within_errors};
 
 #[test]
 fn lines() {
@@ -69,6 +69,24 @@ fn warming_up_is_a_drift() {
         assert_eq!(first.cause, "offset_drift");
         assert_eq!(first.confounded_with, ["ac_coupling"]);
     }
+}
+
+/// What goes to and fro less than four times is no line, whatever it is, and does not hide one.
+#[test]
+fn hum_beside_a_slow_wave() {
+    let case = Case {
+        channels: |c, s, t, _, _| {
+            let slow = 0.001 * (TAU * 7.0 * t + 1.0).cos();
+            let hum = 0.002 * (TAU * 350.0 * t).cos();
+            (c + slow + hum, s - 0.5 * slow)
+        },
+        ..PLAIN
+    };
+    let found = diagnosed(&case, 7);
+    let lines = found.findings.iter().filter(|f| f.cause == "interference");
+    let hertz: Vec<f64> = lines.filter_map(|f| f.parameter("frequency_hz")).collect();
+    let hum = |hertz: &f64| (hertz - 350.0).abs() < 1.0;
+    assert!(hertz.len() == 1 && hertz.iter().all(hum), "{hertz:?}");
 }
 
 #[test]
