@@ -34,7 +34,7 @@ struct Arguments {
     /// Only recordings of which the first cause has a smaller SNR; the others are drawn and left out.
     #[arg(long, value_name = "SNR", conflicts_with = "docs")]
     below: Option<f64>,
-    /// Folder for blind.md, or blind_DRIVE.md of one drive.
+    /// Folder for blind.md, or blind-DRIVE.md of one drive.
     #[arg(long)]
     docs: Option<PathBuf>,
     /// Folder for the sealed truths; a temporary one if none is given.
@@ -180,7 +180,7 @@ fn write(docs: &Path, arguments: &Arguments, text: &str) -> Result<()> {
     if let Some(drive) = &arguments.drive {
         option = format!(" --drive {drive}");
         only = format!(", those of {drive} drives");
-        name = format!("blind_{drive}.md");
+        name = format!("blind-{drive}.md");
     }
     let page = format!(
         "# Blind campaign\n\n<!-- Written by the command below; do not edit. -->\n\n    cargo run --release -p nonius-blind \
