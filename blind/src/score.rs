@@ -108,10 +108,11 @@ impl Score {
     }
 }
 
-/// A motion that is named where the axis truly vibrates is no rival of a hidden sensor cause.
+/// A motion that is named where the axis truly vibrates is no rival of a hidden sensor cause, unless it may be that cause.
 fn counts(truth: &Truth, named: &Named) -> bool {
     let true_motion = named.motion && truth.vibration_rad.is_some();
-    !true_motion || truth.hidden.iter().any(|h| h.motion)
+    let hidden = |h: &HiddenCause| h.motion || named.holds(&h.name);
+    !true_motion || truth.hidden.iter().any(hidden)
 }
 
 fn outcome(hidden: &HiddenCause, named: &[&Named], unexplained: bool) -> Outcome {

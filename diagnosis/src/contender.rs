@@ -108,6 +108,9 @@ pub(crate) fn contender(
         if rivals.is_empty() {
             rivals.extend(ahead.rival.map(str::to_owned));
         }
+        if rivals.is_empty() {
+            rivals.extend(along_the_circle(&beside, &own, catalogue));
+        }
         let wider = wider(&beside, &own, &rest);
         if own.candidate.as_drift {
             rivals.retain(|name| name != DRIFT);
@@ -277,6 +280,25 @@ fn rivals(beside: &Beside, best: &Scored, others: &[&Scored]) -> Vec<String> {
     let near: Vec<(&str, f64)> = found.iter().copied().filter(|f| f.1 < BEATEN).collect();
     let left = if near.len() == 1 { near } else { found };
     left.into_iter().map(|(name, _)| name.to_owned()).collect()
+}
+
+/// What a static error of the sensor does that the radius does not show: two bends that make up for each other there, beside
+/// other gains. To that, cogging of an order of the scale period adds nothing.
+fn along_the_circle(beside: &Beside, best: &Scored, catalogue: &Catalogue) -> Option<String> {
+    let own = &best.candidate;
+    if own.domain != Domain::Motion || own.name == causes::VIBRATION {
+        return None;
+    }
+    let adds_nothing = |c: &&Candidate| {
+        let (gain, freedom) = beside.gain(&c.shapes);
+        let (together, rank) = beside.gain(&both(&c.shapes, &own.shapes));
+        let more = rank.saturating_sub(freedom);
+        more == 0 || log_tail(2.0 * (together - gain), more) > NOTHING_NEW.ln()
+    };
+    let harmonic = |c: &&Candidate| c.domain == Domain::Angle && c.exact.is_none();
+    let alike = catalogue.candidates.iter().filter(harmonic);
+    let fewest = alike.filter(adds_nothing).min_by_key(|c| c.shapes.len());
+    fewest.map(|c| c.name.to_owned())
 }
 
 /// A cause of the same place that has more parameters and is this one for some of their values, as a harmonic of the scale

@@ -151,7 +151,10 @@ impl Selection {
             let Own { gain, log_p } = accepted.own;
             let p_value = log_p.exp();
             let without = without(fit, &range, system);
-            let seen = (accepted.candidate.evidence)(&parameters);
+            let mut seen = (accepted.candidate.evidence)(&parameters);
+            if accepted.candidate.motion && accepted.confounded.is_empty() {
+                seen += ", so the motion is real";
+            }
             let finding = Finding {
                 cause: accepted.candidate.name.into(),
                 confounded_with: accepted.confounded.clone(),

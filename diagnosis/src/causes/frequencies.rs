@@ -122,9 +122,9 @@ impl Search<'_> {
         list
     }
 
-    /// The same of the radius alone, for an axis that stands near one angle for a part of the time: there a line along the circle goes with the
-    /// motion, and the best amounts in both channels, of which one direction is seen more than the other, explain so much at each
-    /// frequency. What is large over a range of frequencies is none.
+    /// The same of the radius alone, for an axis that stands near one angle for a part of the time: there a line along the circle
+    /// goes with the motion, and the best amounts in both channels, of which one direction is seen more than the other, explain so
+    /// much at each frequency. What is large over a range of frequencies is none.
     fn in_radius(&self, radial: &[f64]) -> Vec<f64> {
         /// Of an axis that stands at one angle for a fifth of the time, so many times as much is seen in one direction as in the
         /// other.

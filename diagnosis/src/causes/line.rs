@@ -151,7 +151,7 @@ impl Search<'_> {
             parameters: one_wave("amplitude", "rad", self.duration()),
             evidence: Rc::new(|p| {
                 format!(
-                    "the axis vibrates at {} with an amplitude of {} of electrical angle; the radius does not change, so the motion is real",
+                    "the axis vibrates at {} with an amplitude of {} of electrical angle; the radius does not change",
                     p[0].brief(),
                     p[1].brief()
                 )

@@ -201,7 +201,7 @@ fn of_order(order: usize, trials: f64, library: &mut Library) -> Candidate {
         parameters: harmonic(order, "amplitude", "rad"),
         evidence: Rc::new(move |p| {
             format!(
-                "the axis moves unevenly {} per revolution, with an amplitude of {} of electrical angle; the radius does not change, so the motion is real",
+                "the axis moves unevenly {} per revolution, with an amplitude of {} of electrical angle; the radius does not change",
                 times(order as usize),
                 p[1].brief()
             )

@@ -259,6 +259,24 @@ fn cogging_at_orders_of_the_scale_period() {
     }
 }
 
+/// Bends that make up for each other in the radius are motion of two orders of the period to anybody who sees no more than that
+/// of them; and so they are on an axis that shakes.
+#[test]
+fn bends_that_the_radius_does_not_show() {
+    let found = finds(
+        "odd_nonlinearity",
+        &Case {
+            motion: |t, _| rumble(t),
+            channels: |c, s, _, _, _| (c + 0.003 * c.powi(3), s - 0.003 * s.powi(3)),
+            ..REVOLVING
+        },
+    );
+    let first = &found.findings[0];
+    assert_eq!(first.cause, "cogging");
+    assert_eq!(first.confounded_with, ["odd_nonlinearity"]);
+    assert!(!first.evidence.contains("is real"), "{}", first.evidence);
+}
+
 /// Knots make a vibration slower than half their frequency look like one at their frequency less its own, and the other way
 /// round. Whatever the knots of this recording are, some of these stand on either side of the half.
 #[test]
