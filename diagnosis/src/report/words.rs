@@ -43,6 +43,9 @@ pub(super) fn chip(finding: &Finding) -> &'static str {
             "The chip cannot correct it. Behind the chip: add the speed times this delay to the position."
         }
         (Chip::CannotCorrect, _) => "The chip cannot correct it; mend it in front of the ADC.",
+        (Chip::NotASensorError, _) if !finding.confounded_with.is_empty() => {
+            "If it is real motion, the position shows it, and should; the chip corrects nothing before that is known."
+        }
         (Chip::NotASensorError, _) => {
             "It is real motion, not an error of the sensor: the position shows it, and should."
         }
