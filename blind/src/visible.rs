@@ -359,8 +359,8 @@ mod tests {
                 let pair = world.pair(late);
                 let speed = world.motion.at(k as f64 / world.rate).speed / fastest;
                 let size = rest + (fast - rest) * speed * speed;
-                for c in 0..2 {
-                    rows.volts[c][k] = world.volts(c, size * pair[c]);
+                for (c, u) in pair.into_iter().enumerate() {
+                    rows.volts[c][k] = world.volts(c, size * u);
                 }
             }
             rows
