@@ -66,9 +66,7 @@ fn systematic(world: &World, rows: &Rows, angle: &dyn Fn(usize) -> f64) -> f64 {
     let errors: Vec<f64> = (0..rows.len())
         .map(|k| {
             let alpha = rows.alpha[k];
-            let c = rows.noise[0][k] / world.amplitude[0];
-            let s = rows.noise[1][k] / world.amplitude[1];
-            let s = (s + c * world.beta.sin()) / world.beta.cos();
+            let [c, s] = world.upright([rows.noise[0][k], rows.noise[1][k]]);
             let noise = s * alpha.cos() - c * alpha.sin();
             let off = angle(k) - alpha - noise;
             off - TAU * (off / TAU).round()

@@ -170,11 +170,18 @@ impl World {
         [alpha.cos(), (alpha - self.beta).sin()]
     }
 
+    /// Volts without the offsets as multiples of cos and sin of an angle.
+    #[must_use]
+    pub fn upright(&self, volts: [f64; 2]) -> [f64; 2] {
+        let [c, s] = [0, 1].map(|c: usize| volts[c] / self.amplitude[c]);
+        [c, (s + c * self.beta.sin()) / self.beta.cos()]
+    }
+
     /// The angle at which the channels without any cause have these volts, up to their common size, radians.
     #[must_use]
     pub fn angle(&self, volts: [f64; 2]) -> f64 {
-        let [c, s] = [0, 1].map(|c: usize| (volts[c] - self.offset[c]) / self.amplitude[c]);
-        (s + c * self.beta.sin()).atan2(c * self.beta.cos())
+        let [c, s] = self.upright([0, 1].map(|c: usize| volts[c] - self.offset[c]));
+        s.atan2(c)
     }
 
     /// Amplitudes to volts.

@@ -47,10 +47,9 @@ fn short_campaign() {
 /// a drive that shakes was a drift, a high pass whose corner is near the signals' frequency was a latency or a drift of the
 /// gains, a harmonic of the scale at such a phase was a bend of the channels alone, and gains that step drifted. Stray codes hid
 /// coarse steps, and two levels that are not quite two were flicker noise. Gains that step coupled with a delay where the speed
-/// only rose, and a corner of a drive was a sample put in. A resonance of the axis was hum, cogging whose frequency passes by was a lost
-/// sample, one sample of a jittering clock was a glitch, a drift was a line,
-/// and what the model of a large hysteresis leaves was hum. Every sixth; in
-/// the long form all.
+/// only rose, and a corner of a drive was a sample put in. A resonance of the axis was hum, cogging whose frequency passes by was
+/// a lost sample, one sample of a jittering clock was a glitch, a drift was a line, and what the model of a large hysteresis leaves
+/// was hum. Every sixth; in the long form all.
 #[test]
 fn wrong_names_do_not_come_back() {
     let seeds = [

@@ -99,6 +99,11 @@ pub(crate) struct Candidate {
 }
 
 impl Candidate {
+    /// The first of the numbers that its shapes depend on, where there is one: of a line its frequency, Hz.
+    pub(crate) fn inner(&self) -> Option<f64> {
+        self.exact.as_ref()?.inner.first().copied()
+    }
+
     /// One choice, of amounts that can be anything, of shapes that are what they are; the chip cannot correct it, and
     /// nothing is said of it yet.
     pub(crate) fn new(name: &'static str, domain: Domain, shapes: Vec<Shape>) -> Self {

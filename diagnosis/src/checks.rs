@@ -182,6 +182,11 @@ pub(crate) fn repeats(recording: &Recording, k: usize) -> bool {
     recording.cos[k] == recording.cos[k - 1] && recording.sin[k] == recording.sin[k - 1]
 }
 
+/// Values without their signs.
+pub(crate) fn magnitudes(values: &[f64]) -> Vec<f64> {
+    values.iter().map(|v| v.abs()).collect()
+}
+
 /// Ninth decile of sizes.
 pub(crate) fn ninth(sizes: &[f64]) -> f64 {
     let mut sizes = sizes.to_vec();

@@ -154,11 +154,10 @@ pub(crate) fn beside(
     let many = small.count() > MANY;
     let limit = |i: usize| {
         let candidate = &found.accepted[i].candidate;
-        let frequency = candidate.exact.as_ref().and_then(|e| e.inner.first());
         let ordered = match candidate.domain {
-            Domain::Line | Domain::Motion => {
-                frequency.is_some_and(|f| is_an_order(context, *f, error.step))
-            }
+            Domain::Line | Domain::Motion => candidate
+                .inner()
+                .is_some_and(|hertz| is_an_order(context, hertz, error.step)),
             _ => false,
         };
         if ordered {

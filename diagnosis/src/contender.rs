@@ -170,16 +170,13 @@ pub(crate) fn contender(
                 agree(rivals.len(), "explains", "explain")
             )
         };
-        let hertz = own.candidate.exact.as_ref().and_then(|e| e.inner.first());
-        let hertz = hertz
-            .copied()
-            .filter(|_| own.candidate.domain == Domain::Line && !crawling);
         // Such a line says nothing against faster ones.
         let domain = if crawling {
             Domain::Time
         } else {
             own.candidate.domain
         };
+        let hertz = own.candidate.inner().filter(|_| domain == Domain::Line);
         let likeness = like(own.candidate.name, &why);
         let unnamed = Unnamed {
             log_p: own.log_p,
@@ -266,10 +263,9 @@ fn rivals(beside: &Beside, best: &Scored, others: &[&Scored]) -> Vec<String> {
         {
             continue;
         }
-        let together = both(&other.candidate.shapes, &best.candidate.shapes);
-        let (gain, rank) = beside.gain(&together);
-        let (adds, freedom) = (gain - other.gain, rank.saturating_sub(other.freedom));
-        if freedom == 0 || log_tail(2.0 * adds, freedom) > NOTHING_NEW.ln() {
+        let own = (other.gain, other.freedom);
+        let shapes = &other.candidate.shapes;
+        if let Some(adds) = nothing_new(beside, &best.candidate, shapes, own) {
             // Of several choices of one name the nearest counts.
             match found.iter_mut().find(|(known, _)| *known == name) {
                 Some((_, nearest)) => *nearest = nearest.min(adds),
@@ -282,6 +278,18 @@ fn rivals(beside: &Beside, best: &Scored, others: &[&Scored]) -> Vec<String> {
     left.into_iter().map(|(name, _)| name.to_owned()).collect()
 }
 
+/// How much a cause adds to shapes that explain so much with so many numbers, where that says nothing new.
+fn nothing_new(
+    beside: &Beside,
+    cause: &Candidate,
+    shapes: &[Shape],
+    (gain, freedom): (f64, usize),
+) -> Option<f64> {
+    let (together, rank) = beside.gain(&both(shapes, &cause.shapes));
+    let (adds, more) = (together - gain, rank.saturating_sub(freedom));
+    (more == 0 || log_tail(2.0 * adds, more) > NOTHING_NEW.ln()).then_some(adds)
+}
+
 /// What a static error of the sensor does that the radius does not show: two bends that make up for each other there, beside
 /// other gains. To that, cogging of an order of the scale period adds nothing.
 fn along_the_circle(beside: &Beside, best: &Scored, catalogue: &Catalogue) -> Option<String> {
@@ -289,15 +297,12 @@ fn along_the_circle(beside: &Beside, best: &Scored, catalogue: &Catalogue) -> Op
     if own.domain != Domain::Motion || own.name == causes::VIBRATION {
         return None;
     }
-    let adds_nothing = |c: &&Candidate| {
-        let (gain, freedom) = beside.gain(&c.shapes);
-        let (together, rank) = beside.gain(&both(&c.shapes, &own.shapes));
-        let more = rank.saturating_sub(freedom);
-        more == 0 || log_tail(2.0 * (together - gain), more) > NOTHING_NEW.ln()
+    let alike = |c: &&Candidate| {
+        let harmonic = c.domain == Domain::Angle && c.exact.is_none();
+        harmonic && nothing_new(beside, own, &c.shapes, beside.gain(&c.shapes)).is_some()
     };
-    let harmonic = |c: &&Candidate| c.domain == Domain::Angle && c.exact.is_none();
-    let alike = catalogue.candidates.iter().filter(harmonic);
-    let fewest = alike.filter(adds_nothing).min_by_key(|c| c.shapes.len());
+    let alike = catalogue.candidates.iter().filter(alike);
+    let fewest = alike.min_by_key(|c| c.shapes.len());
     fewest.map(|c| c.name.to_owned())
 }
 
@@ -328,12 +333,11 @@ fn goes_with_angle(context: &Context, candidate: &Candidate) -> bool {
     const TOP: i32 = 8;
     /// Fewest scale periods, so that hardly a line stands there by chance.
     const FEWEST: f64 = 50.0;
-    let inner = candidate.exact.as_ref().and_then(|e| e.inner.first());
     // Vibration too: where it goes with the angle it may be an error of the sensor.
     let line = candidate.domain == Domain::Line || candidate.name == causes::VIBRATION;
     let many = context.periods_travelled() > FEWEST;
     let told = line && many && !causes::speed_varies_much(context);
-    let Some(hertz) = inner.filter(|_| told) else {
+    let Some(hertz) = candidate.inner().filter(|_| told) else {
         return false;
     };
     let duration = context.samples() as f64 / context.rate;

@@ -26,6 +26,9 @@ const ALIKE: f64 = 0.95;
 /// angle only, neither is what the other leaves.
 const APART: f64 = 2.0;
 
+/// Domains that slow noise of the channels is in: all that can be slow.
+pub(crate) const SLOW: [Domain; 3] = [Domain::Speed, Domain::Time, Domain::Revolution];
+
 /// What depends on the code depends on the angle too.
 pub(crate) fn home(domain: Domain) -> Domain {
     if domain == Domain::Code {
@@ -44,8 +47,8 @@ pub(crate) fn doubt(system: &System, catalogue: &Catalogue, found: &mut Selectio
         Domain::Time,
         Domain::Revolution,
     ] {
-        // Slow noise is in all that is slow, and has its own name.
-        if system.flicker.is_some() && domain != Domain::Angle {
+        // Slow noise has its own name.
+        if system.flicker.is_some() && SLOW.contains(&domain) {
             continue;
         }
         let own: Vec<usize> = (0..found.accepted.len())

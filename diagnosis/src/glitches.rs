@@ -3,10 +3,11 @@
 use nonius_quantity::{agree, counted};
 use nonius_recording::Recording;
 
-use crate::checks::{Checked, ninth, repeats};
+use crate::checks::{Checked, magnitudes, ninth, repeats};
+use crate::correlate::sums;
 use crate::edges::{Edges, edges};
 use crate::finding::{Finding, Parameter, Place};
-use crate::solve::{dot, weights_of};
+use crate::solve::weights_of;
 use crate::units;
 
 /// Samples on either side of the curve through the neighbours.
@@ -56,19 +57,19 @@ fn off_the_longer_curve(values: &[f64]) -> Vec<f64> {
     let curve: Vec<Vec<f64>> = curve(MORE).collect();
     let weights = weights_of(&column(MORE, |x| f64::from(x == 0.0)), &curve);
     let mut long = vec![0.0; MORE.min(values.len())];
-    long.extend(
-        values
-            .windows(weights.len())
-            .map(|near| dot(near, &weights)),
-    );
+    long.extend(sums(values, &weights));
     long.resize(values.len(), 0.0);
     long
 }
 
+/// Where the neighbours say that each sample is.
+fn expected(values: &[f64], off: &[f64]) -> Vec<f64> {
+    values.iter().zip(off).map(|(v, o)| v - o).collect()
+}
+
 /// How large that is, where there are so many neighbours on either side: the ninth decile.
 fn typical(off: &[f64], reach: usize) -> f64 {
-    let sizes: Vec<f64> = off.iter().map(|o| o.abs()).collect();
-    ninth(with_neighbours(&sizes, reach))
+    ninth(&magnitudes(with_neighbours(off, reach)))
 }
 
 /// Whether a sample is far out of the noise near it along the radius and along the circle, which may be of different sizes: a
@@ -161,10 +162,10 @@ impl Curve<'_> {
     fn far_off(&self, values: &[f64], recording: &Recording, weight: &[f64]) -> Vec<(usize, f64)> {
         let (n, reach) = (values.len(), self.reach);
         let rate = recording.metadata.sample_rate_hz;
-        let sizes: Vec<f64> = self.off.iter().map(|o| o.abs()).collect();
+        let sizes = magnitudes(self.off);
         let typical = typical(self.off, reach);
-        // Where the neighbours say that it is: a glitch beyond the others would be alone in its range, and typical there.
-        let expected: Vec<f64> = values.iter().zip(self.off).map(|(v, o)| v - o).collect();
+        // A glitch beyond the others would be alone in its range, and typical there.
+        let expected = expected(values, self.off);
         let (low, high) = ends(&expected);
         let range = |v: f64| (((v - low) / (high - low) * RANGES as f64) as usize).min(RANGES - 1);
         let mut alike: Vec<Vec<f64>> = vec![vec![]; RANGES];
@@ -217,9 +218,8 @@ pub(crate) fn find(recording: &Recording, checked: &mut Checked) {
     });
     let longer = [0, 1].map(|which: usize| off_the_longer_curve(&channels[which]));
     let middles = [0, 1].map(|which: usize| {
-        // Where the neighbours say that it is: a glitch may be beyond all others.
-        let pairs = channels[which].iter().zip(&off[which]);
-        let (low, high) = ends(&pairs.map(|(v, o)| v - o).collect::<Vec<f64>>());
+        // A glitch may be beyond all others.
+        let (low, high) = ends(&expected(&channels[which], &off[which]));
         [0.5 * (low + high), 0.5 * (high - low)]
     });
     let angle = |k: usize| {

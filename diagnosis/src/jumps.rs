@@ -2,7 +2,7 @@
 
 use nonius_recording::Recording;
 
-use crate::checks::{Checked, ninth, repeats};
+use crate::checks::{Checked, magnitudes, ninth, repeats};
 use crate::context::{against, unwrapped};
 use crate::correlate::sums;
 use crate::first;
@@ -183,6 +183,11 @@ impl<'a> Look<'a> {
         typical.max(ninth(before)).max(ninth(after))
     }
 
+    /// Standard deviation of the sizes there.
+    fn sigma(&self, k: usize) -> f64 {
+        self.noise(k, 0.0) / 1.645
+    }
+
     /// Where it jumps farther than noise does.
     fn far(&self) -> Vec<Jump> {
         let (n, side) = (self.sizes.len(), self.side);
@@ -210,7 +215,7 @@ impl<'a> Look<'a> {
     /// Whether a jump that more samples show is as large here, beside the noise: what ripples, as an axis that cogs faster and
     /// faster, is a jump for one length of curves only.
     fn shows(&self, jump: &Jump) -> bool {
-        let sigma = (self.noise(jump.before, 0.0) / 1.645).hypot(jump.sigma);
+        let sigma = self.sigma(jump.before).hypot(jump.sigma);
         (self.sizes[jump.before] - jump.size).abs() < ALIKE * sigma
     }
 
@@ -236,10 +241,6 @@ impl<'a> Look<'a> {
     }
 }
 
-fn magnitudes(values: &[f64]) -> Vec<f64> {
-    values.iter().map(|v| v.abs()).collect()
-}
-
 /// Places where the angle jumps by what it moves in whole samples: before which sample, how many are missing. What only a
 /// reference shows counts where the sensor jumps with it.
 pub(crate) fn jumps(recording: &Recording, checked: &Checked) -> Vec<(usize, usize)> {
@@ -257,7 +258,7 @@ pub(crate) fn jumps(recording: &Recording, checked: &Checked) -> Vec<(usize, usi
             .any(|one| repeats(recording, one) && look.is_one_sample(jump, one))
     };
     // Looks with shorter curves, at the sensor and at its reference.
-    let (mut shorter, mut exacter): (Vec<Look>, Vec<Look>) = (vec![], vec![]);
+    let mut shorter: [Vec<Look>; 2] = [vec![], vec![]];
     for (side, order) in sides(angle.len()) {
         let corners = Corners::new(side, order);
         let other = |look: &Look, j: &Jump| {
@@ -265,15 +266,15 @@ pub(crate) fn jumps(recording: &Recording, checked: &Checked) -> Vec<(usize, usi
         };
         let look = Look::new(&angle, side, order);
         let far = look.far().into_iter().filter(|j| !other(&look, j));
-        found.extend(whole(&look, &shorter, far.collect(), checked, &found));
+        found.extend(whole(&look, &shorter[0], far.collect(), checked, &found));
         if let Some((reference, apart)) = reference.as_ref().zip(apart.as_ref()) {
             let exact = Look::new(reference, side, order);
             let far = exact.far().into_iter();
             let far = far.filter(|j| together(apart, j) && !other(&exact, j));
-            found.extend(whole(&exact, &exacter, far.collect(), checked, &found));
-            exacter.push(exact);
+            found.extend(whole(&exact, &shorter[1], far.collect(), checked, &found));
+            shorter[1].push(exact);
         }
-        shorter.push(look);
+        shorter[0].push(look);
     }
     found.sort_unstable();
     found
@@ -338,7 +339,7 @@ fn together(apart: &[f64], reference: &Jump) -> bool {
         let near = k.saturating_sub(reach)..(k + reach).min(apart.len());
         let look = Look::new(&apart[near.clone()], side, order);
         let here = k - near.start;
-        (look.sizes[here].abs(), look.noise(here, 0.0) / 1.645)
+        (look.sizes[here].abs(), look.sigma(here))
     };
     let looks = sides(apart.len()).map(jumps);
     let surest = looks.min_by(|a, b| a.1.total_cmp(&b.1));

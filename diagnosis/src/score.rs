@@ -56,15 +56,12 @@ pub(crate) fn can_be(candidate: &Candidate, own: &[f64], error: impl Fn(usize) -
             let below_zero = |(i, x): (usize, &f64)| *x < -4.0 * error(i);
             most > 0.0 && !own.iter().enumerate().any(below_zero)
         }
-        Sign::Known(least) => {
-            let inner = candidate.exact.as_ref().and_then(|e| e.inner.first());
-            inner.is_none_or(|f| {
-                let near = own[0] > least && own[0] < f * GRID;
-                // A fitted number may have left its place on the grid.
-                let (low, high) = (least.min(*f), least.max(*f));
-                near || (own[0] - own[0].clamp(low, high)).abs() < 4.0 * error(0)
-            })
-        }
+        Sign::Known(least) => candidate.inner().is_none_or(|f| {
+            let near = own[0] > least && own[0] < f * GRID;
+            // A fitted number may have left its place on the grid.
+            let (low, high) = (least.min(f), least.max(f));
+            near || (own[0] - own[0].clamp(low, high)).abs() < 4.0 * error(0)
+        }),
     }
 }
 

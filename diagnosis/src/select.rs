@@ -6,7 +6,7 @@ use crate::causes::{self, AC_COUPLING, Catalogue, HYSTERESIS};
 use crate::channels::Channels;
 use crate::contender::{Contender, contender, paid_where_noise_shows};
 use crate::context::Context;
-use crate::doubt::doubt;
+use crate::doubt::{self, doubt};
 use crate::exact::{self, Start};
 use crate::flicker;
 use crate::library::Shape;
@@ -292,8 +292,7 @@ fn search(
         simpler(system, catalogue, &mut found);
         closed.extend(doubt(system, catalogue, &mut found));
         if system.flicker.is_some() {
-            // Slow noise is in all that is slow, as most of what depends on the speed or goes with the revolution is.
-            closed.extend([Domain::Speed, Domain::Revolution]);
+            closed.extend(doubt::SLOW);
         }
         found.left = leftover(system, catalogue, &found.fit, &closed);
     }

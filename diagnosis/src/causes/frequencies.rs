@@ -48,7 +48,7 @@ impl Search<'_> {
         if self.coloured {
             return None;
         }
-        // Cycles per recording within which a line is the highest.
+        // A line is the highest within three cycles per recording.
         let reach = (3 * length).div_ceil(self.context.samples());
         let bins = length as f64 / self.context.rate;
         let first = (lowest(self.context) * length as f64).ceil() as usize;

@@ -163,10 +163,8 @@ impl Search<'_> {
 
 /// Whether a line has become as slow as a drift where its frequency was fitted.
 pub(crate) fn crawls(context: &Context, candidate: &Candidate) -> bool {
-    let inner = candidate.exact.as_ref().and_then(|e| e.inner.first());
-    let line = candidate.domain == Domain::Line;
     let lowest = frequencies::lowest(context) * context.rate;
-    line && inner.is_some_and(|hertz| *hertz < lowest)
+    candidate.domain == Domain::Line && candidate.inner().is_some_and(|hertz| hertz < lowest)
 }
 
 pub(crate) fn candidates(
