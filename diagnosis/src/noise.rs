@@ -1,8 +1,8 @@
 //! Noise whose size depends on something: on the signal, on the speed.
 //!
-//! What the model leaves is whitened; then its squares tell how the variance depends on angle, speed and time (Gamma
-//! likelihood). A name is given where one shape holds what knots over all three explain, and where what is called random
-//! is no line.
+//! What the model leaves is whitened; then the squares of its residuals, and their product, tell how the covariance depends
+//! on angle, speed and time (Gaussian likelihood). A name is given where one shape holds what knots over all three explain,
+//! and where what is called random is no line.
 
 use nonius_quantity::{Quantity, Unit};
 
@@ -13,7 +13,7 @@ use crate::lines;
 use crate::model::{Residual, System};
 use crate::statistics::{after_trials, log_tail};
 use crate::unexplained::{Unnamed, What, explains_only, like};
-use crate::variance::{ENOUGH, Fitted, Squares};
+use crate::variance::{ENOUGH, Fitted, Pairs, Products};
 
 /// Global probability below which it is shown.
 const SHOWN: f64 = 1e-3;
@@ -31,8 +31,8 @@ const MUCH: f64 = 0.2;
 /// Names of the contract.
 const CLOCK_JITTER: &str = "clock_jitter";
 const AMPLITUDE_NOISE: &str = "amplitude_noise";
-/// Equal noise of either row, unequal noise of the channels.
-const BASE: usize = 3;
+/// Noise of either residual, and unequal and common noise of the channels.
+const BASE: usize = 4;
 
 /// A kind of noise.
 #[derive(Clone, Copy, PartialEq)]
@@ -47,50 +47,61 @@ struct Dependence<'a> {
 }
 
 impl Dependence<'_> {
-    fn base(&self, row: usize, k: usize, out: &mut [f64]) {
-        let sense = if row == 0 { 1.0 } else { -1.0 };
-        let unequal = self.context.cos[k].powi(2) - self.context.sin[k].powi(2);
-        out[0] = if row == 0 { 1.0 } else { 0.0 };
-        out[1] = 1.0 - out[0];
-        out[2] = sense * unequal;
+    /// The covariance that more noise of the cosine makes, and less of the sine; and that noise in common makes: where the
+    /// channels are not at right angles, the correction of the sine brings that of the cosine along.
+    fn channels(&self, k: usize) -> [Products; 2] {
+        let (c, s) = (self.context.cos[k], self.context.sin[k]);
+        let (unequal, common) = (c * c - s * s, 2.0 * c * s);
+        [
+            Products([unequal, -unequal, -common]),
+            Products([common, -common, unequal]),
+        ]
     }
 
-    /// The variance of a row that a kind of noise makes, before it is whitened.
-    fn kind(&self, kind: Kind, row: usize, k: usize) -> f64 {
-        match (kind, row) {
-            (Kind::Amplitude, 0) => self.context.cos[k].powi(4) + self.context.sin[k].powi(4),
-            (Kind::Amplitude, _) => 2.0 * (self.context.cos[k] * self.context.sin[k]).powi(2),
-            (Kind::Jitter, 0) => 0.0,
-            (Kind::Jitter, _) => (self.context.speed[k] / self.context.top_speed()).powi(2),
+    /// The covariance that a kind of noise makes, before it is whitened.
+    fn kind(&self, kind: Kind, k: usize) -> Products {
+        match kind {
+            Kind::Amplitude => {
+                let (c, s) = (self.context.cos[k], self.context.sin[k]);
+                let (cc, ss) = (c * c, s * s);
+                Products([cc * cc + ss * ss, 2.0 * cc * ss, c * s * (ss - cc)])
+            }
+            Kind::Jitter => {
+                let speed = self.context.speed[k] / self.context.top_speed();
+                Products([0.0, speed * speed, 0.0])
+            }
         }
     }
 
-    /// Knots in time and over the speeds, and waves of the angle: of one row, then of the other.
-    fn anything(&self, row: usize, k: usize, out: &mut [f64]) {
-        out.fill(0.0);
-        let half = out.len() / 2;
-        let out = &mut out[row * half..][..half];
+    /// Knots in time and over the speeds, of either residual's variance; then waves of the angle, of what they have in
+    /// common, too.
+    fn anything(&self, k: usize, out: &mut [Products]) {
+        out.fill(Products::default());
         let context = self.context;
         let when = k as f64 / context.samples() as f64;
         let fast = context.speed[k].abs() / context.top_speed();
-        let (in_time, rest) = out.split_at_mut(KNOTS[0]);
-        let (over_speeds, waves) = rest.split_at_mut(KNOTS[1]);
-        for (i, o) in in_time.iter_mut().enumerate() {
-            *o = hat(KNOTS[0], i, when);
+        let (knots, waves) = out.split_at_mut(2 * (KNOTS[0] + KNOTS[1]));
+        for (row, own) in knots.chunks_mut(KNOTS[0] + KNOTS[1]).enumerate() {
+            let (in_time, over_speeds) = own.split_at_mut(KNOTS[0]);
+            for (i, o) in in_time.iter_mut().enumerate() {
+                o.0[row] = hat(KNOTS[0], i, when);
+            }
+            for (i, o) in over_speeds.iter_mut().enumerate() {
+                o.0[row] = hat(KNOTS[1], i, fast);
+            }
         }
-        for (i, o) in over_speeds.iter_mut().enumerate() {
-            *o = hat(KNOTS[1], i, fast);
-        }
-        let waves = waves.chunks_mut(2);
-        for (pair, order) in waves.zip(ORDERS) {
+        for (waves, order) in waves.chunks_mut(2 * 3).zip(ORDERS) {
             let (sin, cos) = (order * context.alpha[k]).sin_cos();
-            pair.copy_from_slice(&[cos, sin]);
+            for (product, pair) in waves.chunks_mut(2).enumerate() {
+                pair[0].0[product] = cos;
+                pair[1].0[product] = sin;
+            }
         }
     }
 }
 
 /// Numbers of [`Dependence::anything`].
-const ANYTHING: usize = 2 * (KNOTS[0] + KNOTS[1] + 2 * ORDERS.len());
+const ANYTHING: usize = 2 * (KNOTS[0] + KNOTS[1]) + 3 * 2 * ORDERS.len();
 
 /// Kinds of noise in a residual, and what depends on something and is none of them.
 pub(crate) fn findings(system: &System, residual: &Residual) -> (Vec<Finding>, Vec<Unnamed>) {
@@ -107,14 +118,13 @@ pub(crate) fn findings(system: &System, residual: &Residual) -> (Vec<Finding>, V
         .iter()
         .map(|w| w.iter().map(|w| w * w).sum::<f64>() / total.max(1.0))
         .collect();
-    // Fractions of a row's mean square that white noise of unit variance in the channels would be.
-    let unit = [0, 1].map(|row| whiteners[row].of_white() / power[row].max(1e-300));
-    let squares = |row: usize| -> Vec<f64> {
-        let share = |w: &f64| w * w / power[row].max(1e-300);
-        white[row].iter().map(share).collect()
-    };
-    let squares = Squares {
-        rows: [squares(0), squares(1)],
+    let rms: Vec<f64> = power.iter().map(|p| p.max(1e-300).sqrt()).collect();
+    // What white noise of unit variance in the channels would be of the mean products.
+    let unit = [(0, 0), (1, 1), (0, 1)]
+        .map(|(row, other)| whiteners[row].of_white(&whiteners[other]) / (rms[row] * rms[other]));
+    let in_rms = |row: usize| -> Vec<f64> { white[row].iter().map(|w| w / rms[row]).collect() };
+    let pairs = Pairs {
+        rows: [in_rms(0), in_rms(1)],
         weight: &context.weight,
         every: 1,
     };
@@ -126,25 +136,23 @@ pub(crate) fn findings(system: &System, residual: &Residual) -> (Vec<Finding>, V
     ] {
         // In units in which the shape of the kind has a mean near one in the row that shows it.
         let scale = unit[usize::from(kind == Kind::Jitter)];
-        let shape =
-            |kind: Kind, row: usize, k: usize| depends.kind(kind, row, k) * unit[row] / scale;
-        let both = |row: usize, k: usize, out: &mut [f64]| {
-            depends.base(row, k, out);
-            out[BASE] = shape(other, row, k);
+        let whitened = |of: Products| Products([0, 1, 2].map(|i| of.0[i] * unit[i] / scale));
+        let both = |k: usize, out: &mut [Products]| {
+            out[0] = Products([1.0, 0.0, 0.0]);
+            out[1] = Products([0.0, 1.0, 0.0]);
+            out[2..BASE].copy_from_slice(&depends.channels(k).map(whitened));
+            out[BASE] = whitened(depends.kind(other, k));
             if let Some(own) = out.get_mut(BASE + 1) {
-                *own = shape(kind, row, k);
+                *own = whitened(depends.kind(kind, k));
             }
         };
-        let plain = [1.0, 1.0, 0.0, 0.0];
-        let with = squares.fit([&plain[..], &[0.0]].concat(), &both);
+        let plain = [1.0, 1.0, 0.0, 0.0, 0.0];
+        let with = pairs.fit([&plain[..], &[0.0]].concat(), &both);
         let amount = with.x[BASE + 1];
         if amount <= 0.0 {
             continue;
         }
-        let mut own = Squares {
-            rows: squares.rows.clone(),
-            ..squares
-        };
+        let mut own = pairs.clone();
         own.cut(&with.x, &both);
         let with = own.fit(with.x.clone(), &both);
         let without = own.fit(plain.to_vec(), &both);
@@ -197,11 +205,11 @@ pub(crate) fn is_the_reason(noisy: &[Finding], left: &[Unnamed]) -> bool {
     noisy.iter().any(|f| f.weight > FAR_LOUDER * most)
 }
 
-/// Why noise that depends on something is not of a kind, which explains `gain` where squares that go together make
+/// Why noise that depends on something is not of a kind, which explains `gain` where products that go together make
 /// everything look so many times as sure as it is.
 fn refusal(
     depends: &Dependence,
-    mut squares: Squares,
+    mut pairs: Pairs,
     kind: Kind,
     with: &Fitted,
     [gain, inflation]: [f64; 2],
@@ -213,18 +221,18 @@ fn refusal(
         Kind::Amplitude => AMPLITUDE_NOISE,
         Kind::Jitter => CLOCK_JITTER,
     };
-    squares.every = n.div_ceil(ENOUGH);
+    pairs.every = n.div_ceil(ENOUGH);
     let named = with.x.len();
-    let anything = |row: usize, k: usize, out: &mut [f64]| {
-        shapes(row, k, &mut out[..named]);
-        depends.anything(row, k, &mut out[named..]);
+    let anything = |k: usize, out: &mut [Products]| {
+        shapes(k, &mut out[..named]);
+        depends.anything(k, &mut out[named..]);
     };
-    let known = squares.fit(with.x.clone(), shapes);
-    let any = squares.fit([&with.x[..], &[0.0; ANYTHING]].concat(), &anything);
+    let known = pairs.fit(with.x.clone(), shapes);
+    let any = pairs.fit([&with.x[..], &[0.0; ANYTHING]].concat(), &anything);
     let freedom = any.rank.saturating_sub(known.rank) as f64;
     // What as many free numbers explain of noise that is of the kind does not count against it.
     let chance = freedom / 2.0 + 2.0 * (2.0 * freedom).sqrt();
-    let beyond = (any.likelihood - known.likelihood - chance).max(0.0) * squares.every as f64;
+    let beyond = (any.likelihood - known.likelihood - chance).max(0.0) * pairs.every as f64;
     let share = gain / (gain + beyond / inflation);
     if share < HOLDS {
         return Some(format!(

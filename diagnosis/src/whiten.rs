@@ -102,10 +102,11 @@ impl Whitener {
         twice
     }
 
-    /// What of the power of white noise is in it, in the same unit.
-    pub(crate) fn of_white(&self) -> f64 {
-        let sum: f64 = self.coefficients.iter().map(|a| a * a).sum();
-        (1.0 + sum) / (self.sigma * self.sigma)
+    /// What of the power of white noise is left in common after whitening by either, in the same unit.
+    pub(crate) fn of_white(&self, other: &Self) -> f64 {
+        let pairs = self.coefficients.iter().zip(&other.coefficients);
+        let sum: f64 = pairs.map(|(a, b)| a * b).sum();
+        (1.0 + sum) / (self.sigma * other.sigma)
     }
 
     /// The unpredictable part of columns that have `ORDER` values of their past before them; in the unit of the values.
