@@ -49,11 +49,19 @@ fn short_campaign() {
 /// coarse steps, and two levels that are not quite two were flicker noise. Gains that step coupled with a delay where the speed
 /// only rose, and a corner of a drive was a sample put in. A resonance of the axis was hum, cogging whose frequency passes by was
 /// a lost sample, one sample of a jittering clock was a glitch, a drift was a line, and what the model of a large hysteresis leaves
-/// was hum. Every sixth; in the long form all.
+/// was hum. A low pass in one channel was a delay for sure, by what a shaking axis does along the circle alone, a drift was a high pass
+/// by how that was when the recording began, and flicker noise that is hardly seen was a drift. Every sixth; in the long form all.
 #[test]
 fn wrong_names_do_not_come_back() {
     let seeds = [
+        108_002_242,
         110_000_395,
+        108_000_044,
+        108_002_255,
+        107_001_022,
+        107_002_567,
+        108_002_756,
+        108_001_485,
         111_001_044,
         111_001_301,
         103_001_682,
@@ -100,11 +108,20 @@ fn wrong_names_do_not_come_back() {
 /// noise that steps explained in the radius, but not against the reference, slow noise that is too weak for its spectrum, and
 /// samples put in where the scale moves by less than its noise. A single sample lost on a slow axis, and a delay beside a bend that
 /// errors of the speed explained too. Hum while the axis mostly stands still, and hum beside a shaking axis; one sample off by eight
-/// times the noise on a slow axis. Noise with the signal, or of the clock, beside flicker noise. Every sixth; in the long form all.
+/// times the noise on a slow axis. Noise with the signal, or of the clock, beside flicker noise, and what grows with the speed or the revolution beside it.
+/// Noise with the signal that what the residuals have in common shows, or beside a phase error of the channels. Every sixth; in the long form all.
 #[test]
 fn what_was_missed_is_found() {
     let seeds = [
+        108_001_745,
         103_001_556,
+        106_002_485,
+        106_003_065,
+        106_003_356,
+        108_000_585,
+        108_003_444,
+        113_000_185,
+        108_003_516,
         103_003_305,
         100_000_238,
         86_000_804,

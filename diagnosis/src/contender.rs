@@ -14,7 +14,7 @@ use crate::held::holds;
 use crate::library::Shape;
 use crate::model::{Fit, System};
 use crate::names::plain;
-use crate::score::{RIVALS, Scored, score};
+use crate::score::{ITSELF, RIVALS, Scored, score};
 use crate::select::both;
 use crate::selection::Accepted;
 use crate::stairs;
@@ -61,6 +61,8 @@ pub(crate) struct Nameless {
     pub(crate) shapes: Vec<Shape>,
     /// Log-likelihood that it explains where noise of the channels shows, its numbers paid for, or that steps do.
     pub(crate) paid: f64,
+    /// Slow noise of the channels explains it as well.
+    pub(crate) is_noise: bool,
 }
 
 /// The best cause that holds; one that explains nearly as much may hold where the first does not.
@@ -88,6 +90,11 @@ pub(crate) fn contender(
         if best.candidate.as_drift && scored.iter().any(drifts) {
             continue;
         }
+        // How it was when the recording began, at another corner, may be all of a high pass that is seen.
+        let begins = |s: &Scored| s.candidate.as_drift && s.gain > best.gain - ITSELF;
+        if best.candidate.given() > 0 && scored.iter().any(begins) {
+            continue;
+        }
         if stepped.is_some_and(|drift: usize| !stairs::stands_in(system, fit, &scored, drift, i)) {
             continue;
         }
@@ -104,7 +111,7 @@ pub(crate) fn contender(
         let rest: Vec<&Scored> = scored[..i].iter().chain(&scored[i + 1..]).collect();
         let price = price(system.context.samples() as f64);
         let ahead = ahead::look(system.context, &beside, &own, &rest, price);
-        let mut rivals = rivals(&beside, &own, &rest);
+        let mut rivals = rivals(system, fit, &beside, &own, &rest);
         if rivals.is_empty() {
             rivals.extend(ahead.rival.map(str::to_owned));
         }
@@ -120,7 +127,8 @@ pub(crate) fn contender(
         let held = holds(system, catalogue, fit, &own, &rest);
         let steps = match own.candidate.domain {
             Domain::Time => stairs::instead_of_drift(system, fit, &own, &rest),
-            Domain::Speed if held.refusal.is_none() => {
+            // Slow noise looks like steps, and is known.
+            Domain::Speed if held.refusal.is_none() && system.flicker.is_none() => {
                 stairs::instead_of_speed(system, fit, &own, &rest)
             }
             _ => None,
@@ -140,6 +148,7 @@ pub(crate) fn contender(
             }
             system.retain(|i| i < mark);
             cause.confounded = rivals;
+            cause.inflation = held.inflation;
             match &named {
                 None => named = Some(Box::new(cause)),
                 Some(_) => others.push(cause),
@@ -197,6 +206,7 @@ pub(crate) fn contender(
             name: own.candidate.name,
             shapes,
             paid: paid.max(steps.unwrap_or_default()),
+            is_noise: held.is_noise,
         }));
     }
     match (named, first) {
@@ -250,7 +260,13 @@ fn fewer_first(scored: &mut [Scored]) {
 
 /// Causes of other names to which the best adds nothing, and that need no more parameters. Of several, those that it beats by
 /// twenty to one are none, where that leaves one.
-fn rivals(beside: &Beside, best: &Scored, others: &[&Scored]) -> Vec<String> {
+fn rivals(
+    system: &System,
+    fit: &Fit,
+    beside: &Beside,
+    best: &Scored,
+    others: &[&Scored],
+) -> Vec<String> {
     let mut found: Vec<(&str, f64)> = vec![];
     for other in others {
         let name = other.candidate.name;
@@ -265,7 +281,12 @@ fn rivals(beside: &Beside, best: &Scored, others: &[&Scored]) -> Vec<String> {
         }
         let own = (other.gain, other.freedom);
         let shapes = &other.candidate.shapes;
-        if let Some(adds) = nothing_new(beside, &best.candidate, shapes, own) {
+        let as_much = best.gain - other.gain < BEATEN;
+        let adds = nothing_new(beside, &best.candidate, shapes, own).or_else(|| {
+            let unseen = as_much && only_along_the_circle(system, fit, &best.candidate, shapes);
+            unseen.then_some(0.0)
+        });
+        if let Some(adds) = adds {
             // Of several choices of one name the nearest counts.
             match found.iter_mut().find(|(known, _)| *known == name) {
                 Some((_, nearest)) => *nearest = nearest.min(adds),
@@ -288,6 +309,16 @@ fn nothing_new(
     let (together, rank) = beside.gain(&both(shapes, &cause.shapes));
     let (adds, more) = (together - gain, rank.saturating_sub(freedom));
     (more == 0 || log_tail(2.0 * adds, more) > NOTHING_NEW.ln()).then_some(adds)
+}
+
+/// Whether the radius does not show what a cause adds to shapes: where the axis vibrates, that may be what its prediction does
+/// not hold.
+fn only_along_the_circle(system: &System, fit: &Fit, cause: &Candidate, shapes: &[Shape]) -> bool {
+    let known = both(&fit.shapes, shapes);
+    let all: Vec<usize> = (0..system.total.right.len()).collect();
+    let beside = Beside::new(&system.total, &known).where_it_moves(system, &known, &all);
+    let solution = beside.solve(&cause.shapes);
+    !beside.in_radius(&cause.shapes, &solution.x, solution.rank, 1.0)
 }
 
 /// What a static error of the sensor does that the radius does not show: two bends that make up for each other there, beside

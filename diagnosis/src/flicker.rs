@@ -7,6 +7,7 @@
 //! noise, drift and hum are not 1/f. Nor are offsets that jump between two levels, though their spectrum may be: there the
 //! levels explain as much as such noise does, each by its likelihood in time.
 
+pub(crate) mod beside;
 mod held_out;
 
 use nonius_fourier::Complex;
@@ -36,7 +37,7 @@ const NEAR: usize = 8;
 /// Share of what any spectrum explains that 1/f has to hold.
 const HOLDS: f64 = 0.9;
 /// Log-likelihood that octaves of noise with the spectrum 1/f explain beyond it by chance.
-const BY_CHANCE: f64 = 2.0;
+const BY_CHANCE: f64 = 4.0;
 /// From which gain of the spectrum in log-likelihood on the samples are asked.
 const SUSPECT: f64 = 2.0;
 /// Shapes of noise that could have been claimed.
@@ -97,7 +98,7 @@ fn likelihood(bands: &[Band], expected: impl Fn(&Band) -> f64) -> f64 {
 }
 
 /// The best white level beside flicker noise of a corner frequency, and its log-likelihood.
-fn beside(bands: &[Band], corner: f64) -> (f64, f64) {
+fn white_beside(bands: &[Band], corner: f64) -> (f64, f64) {
     // White noise and its image.
     let shape = |b: &Band| 2.0 + corner * b.flicker;
     let sum: f64 = bands.iter().map(|b| b.count * b.power / shape(b)).sum();
@@ -126,7 +127,7 @@ fn corner(lines: &[Line], bands: &[Band]) -> (f64, f64) {
     for _ in 0..6 {
         for i in -20..=20 {
             let corner = centre * (reach / 2.0 * f64::from(i) / 20.0).exp();
-            let value = beside(bands, corner).1;
+            let value = white_beside(bands, corner).1;
             if value > best.1 {
                 best = (corner, value);
             }
@@ -286,7 +287,7 @@ fn find_from(seen: Channels, slowest: usize) -> Option<Flicker> {
     }
     without_hum(&mut lines);
     let bands = bands(&lines);
-    let white = beside(&bands, 0.0).1;
+    let white = white_beside(&bands, 0.0).1;
     let best = corner(&lines, &bands);
     let gain = best.1 - white;
     if gain < SUSPECT {
@@ -301,7 +302,7 @@ fn find_from(seen: Channels, slowest: usize) -> Option<Flicker> {
     }
     let mut alike = bands.clone();
     alike.iter_mut().for_each(|b| b.count = b.count.min(ALIKE));
-    let flat = beside(&alike, 0.0).1;
+    let flat = white_beside(&alike, 0.0).1;
     let (own, any) = (corner(&lines, &alike).1 - flat, octaves(&alike) - flat);
     if any - own > ((1.0 - HOLDS) * any).max(BY_CHANCE) || any - own > MISFIT {
         return None;
@@ -309,9 +310,9 @@ fn find_from(seen: Channels, slowest: usize) -> Option<Flicker> {
     let paid = in_time.all - price(n as f64);
     // From the curvature in the logarithm of the corner.
     let step: f64 = 0.05;
-    let at = |by: f64| beside(&bands, best.0 * by.exp()).1;
+    let at = |by: f64| white_beside(&bands, best.0 * by.exp()).1;
     let curvature = (2.0 * best.1 - at(step) - at(-step)) / (step * step);
-    let (level, _) = beside(&bands, best.0);
+    let (level, _) = white_beside(&bands, best.0);
     // The level is that of both channels over two sides of the spectrum: as much as that of one channel over one side.
     let density = (level * best.0 / context.rate).sqrt();
     Some(Flicker {

@@ -3,6 +3,8 @@
 use crate::beside::Beside;
 use crate::cause::{Candidate, Domain};
 use crate::causes::{AC_COUPLING, Catalogue, GRADUATION_ERROR};
+use crate::doubt;
+use crate::flicker::beside::{Records, by_chance};
 use crate::generic::{self, HOLDS};
 use crate::library::Shape;
 use crate::model::{Fit, System, atoms_of};
@@ -36,6 +38,10 @@ pub(crate) struct Held {
     pub(crate) refusal: Option<String>,
     /// Generic shapes that tell.
     pub(crate) beyond: Vec<Shape>,
+    /// So many times the variance of white noise alone, its amounts have.
+    pub(crate) inflation: f64,
+    /// Slow noise of the channels explains it as well: nothing is left that has no name.
+    pub(crate) is_noise: bool,
 }
 
 impl Held {
@@ -48,7 +54,12 @@ impl Held {
         } else {
             None
         };
-        Self { refusal, beyond }
+        Self {
+            refusal,
+            beyond,
+            inflation: 1.0,
+            is_noise: false,
+        }
     }
 }
 
@@ -81,8 +92,16 @@ pub(crate) fn holds(
         beside.gain(&sure(system, shapes)).0
     };
     let held = gained(system, &named[fit.shapes.len()..]);
-    let beside = Beside::new(&system.total, &sure(system, &named));
-    let share = share(held, beside.gain(&sure(system, basis)));
+    // Slow noise is in all that can be slow.
+    let slow = doubt::SLOW.contains(&domain);
+    let noise = slow.then(|| Records::draw(system)).flatten();
+    let allowed = |system: &mut System, known: &[Shape], shapes: &[Shape]| {
+        let noise = noise.as_ref();
+        noise.map_or(0.0, |n| n.allowed(system, known, shapes))
+    };
+    let [known, any] = [&named[..], basis].map(|list| sure(system, list));
+    let (beyond, freedom) = Beside::new(&system.total, &known).gain(&any);
+    let share = share(held, (beyond - allowed(system, &known, &any), freedom));
     if share < HOLDS {
         return Held::new(&best.candidate, share, 1.0, basis.to_vec());
     }
@@ -105,10 +124,26 @@ pub(crate) fn holds(
         |shapes: &[Shape]| -> Vec<Shape> { shapes.iter().map(|s| s.among(&atoms)).collect() };
     let beside = Beside::new(&whole, &among(&known));
     let more = beside.gain(&among(&free)).0;
-    let sizes = self::share(held, beside.gain(&among(&sizes)));
-    let beside = Beside::new(&whole, &among(&both(&known, &free)));
-    let own = self::share(held + more, beside.gain(&among(&any)));
-    Held::new(&best.candidate, own, sizes, around)
+    let (beyond, freedom) = beside.gain(&among(&sizes));
+    let sizes = self::share(held, (beyond - allowed(system, &known, &sizes), freedom));
+    let known = both(&known, &free);
+    let (beyond, freedom) = Beside::new(&whole, &among(&known)).gain(&among(&any));
+    let own = self::share(
+        held + more,
+        (beyond - allowed(system, &known, &any), freedom),
+    );
+    let mut held = Held::new(&best.candidate, own, sizes, around);
+    if let Some(noise) = noise {
+        let shapes = sure(system, &best.candidate.shapes);
+        held.inflation = noise.inflation(system, &sure(system, &fit.shapes), &shapes);
+        let trials = best.candidate.trials * KINDS;
+        let log_p = by_chance(best.gain, held.inflation, best.freedom, trials);
+        held.is_noise = log_p > SHOWN.ln();
+        if held.is_noise {
+            held.refusal = Some("slow noise of the channels explains it as well".to_owned());
+        }
+    }
+    held
 }
 
 /// Adds causes that stand beside the named ones; what they explain.

@@ -19,7 +19,7 @@ const LARGEST: f64 = 0.1;
 /// Share of the power of what it does that is little.
 const SEEN: f64 = 0.05;
 /// Gain in log-likelihood (an SNR of 4) that a cause has to have beyond how it was when the recording began.
-const ITSELF: f64 = 8.0;
+pub(crate) const ITSELF: f64 = 8.0;
 /// Share of the best gain below which another cause is no rival.
 pub(crate) const RIVALS: f64 = 0.6;
 

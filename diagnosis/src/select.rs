@@ -232,6 +232,8 @@ fn search(
             Contender::Unnamed(one) => match one.domain {
                 // Real motion that is no line is the axis at work, and no error.
                 Some(Domain::Motion) => refused.push(one.name),
+                // It has a name.
+                _ if one.is_noise => refused.push(one.name),
                 Some(Domain::Time) if slow_noise(system, &residual, one.paid) => {
                     closed.push(Domain::Time);
                     refused.extend(SLOW);

@@ -19,6 +19,8 @@ pub(crate) struct Accepted {
     pub(crate) x: Vec<f64>,
     /// Standard errors of inner numbers, where they were fitted.
     pub(crate) inner_error: Option<Vec<f64>>,
+    /// So many times the variance of white noise alone, its numbers have.
+    pub(crate) inflation: f64,
     /// What is left of it beside the others and what has no name, in the end.
     pub(crate) own: Own,
     /// It does not hold in the end, and gets no name.
@@ -42,6 +44,7 @@ impl Accepted {
             confounded: vec![],
             x: vec![0.0; candidate.shapes.len()],
             inner_error: None,
+            inflation: 1.0,
             own: Own::default(),
             doubted: false,
             candidate,
@@ -138,15 +141,20 @@ impl Selection {
         let (fit, own) = (&self.fit, self.base.shapes.len());
         for accepted in &self.accepted {
             let range = accepted.range();
+            let wider = accepted.inflation.sqrt();
             let error: Vec<f64> = range
                 .clone()
-                .map(|k| fit.solution.covariance[(k, k)].sqrt())
+                .map(|k| wider * fit.solution.covariance[(k, k)].sqrt())
                 .collect();
+            let inner_error: Option<Vec<f64>> = accepted
+                .inner_error
+                .as_ref()
+                .map(|all| all.iter().map(|e| wider * e).collect());
             let parameters = (accepted.candidate.parameters)(&Estimate {
                 x: &fit.solution.x[range.clone()],
                 error: &error,
                 inner: accepted.candidate.exact.as_ref().map_or(&[], |e| &e.inner),
-                inner_error: accepted.inner_error.as_deref(),
+                inner_error: inner_error.as_deref(),
             });
             let Own { gain, log_p } = accepted.own;
             let p_value = log_p.exp();

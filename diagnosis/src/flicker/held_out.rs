@@ -1,6 +1,6 @@
 //! What flicker noise gains on data that it was not fitted to.
 
-use super::{Line, bands, beside, corner, likelihood};
+use super::{Line, bands, corner, likelihood, white_beside};
 
 /// Lines of the spectrum that are left together.
 const BLOCK: usize = 2;
@@ -19,7 +19,7 @@ pub(super) fn gain(lines: &[Line]) -> f64 {
     let one = |fitted: &[Line], judged: &[Line]| {
         let (fitted_bands, judged) = (bands(fitted), bands(judged));
         let of = |corner: f64| {
-            let (white, _) = beside(&fitted_bands, corner);
+            let (white, _) = white_beside(&fitted_bands, corner);
             likelihood(&judged, |b| white * (2.0 + corner * b.flicker))
         };
         of(corner(fitted, &fitted_bands).0) - of(0.0)
