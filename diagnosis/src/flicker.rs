@@ -289,13 +289,17 @@ fn find_from(seen: Channels, slowest: usize) -> Option<Flicker> {
     let bands = bands(&lines);
     let white = white_beside(&bands, 0.0).1;
     let best = corner(&lines, &bands);
-    let gain = best.1 - white;
-    if gain < SUSPECT {
+    let in_spectrum = best.1 - white;
+    if in_spectrum < SUSPECT {
         return None;
     }
-    // A spectrum holds half of what the samples tell.
+    // A spectrum holds half of what the samples tell. Where those tell less, and another spectrum explains more, it is another.
     let in_time = one_over_f::gain(seen, best.0);
-    let gain = gain.max(in_time.seen);
+    let holds = in_spectrum >= HOLDS * (octaves(&bands) - white);
+    if in_time.all < 0.5 * in_spectrum && !holds {
+        return None;
+    }
+    let gain = in_spectrum.max(in_time.seen);
     let log_p = after_trials(log_tail(2.0 * gain, 1), TRIALS);
     if log_p > SHOWN.ln() {
         return None;

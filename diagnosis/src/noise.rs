@@ -252,7 +252,9 @@ fn refusal(
         let line = highest / mean;
         let at = power.iter().position(|p| *p == highest).unwrap_or(0);
         let hertz = at as f64 / length as f64 * depends.context.rate;
-        if n as f64 * (-line).exp() < A_LINE && line > MUCH * gain {
+        // The axis vibrates at any speed alike.
+        let vibrates = line_near(tangential, at) > line;
+        if n as f64 * (-line).exp() < A_LINE && line > MUCH * gain && !vibrates {
             return Some(format!(
                 "the sampling time wanders periodically, at {}; {}",
                 Quantity::rounded(hertz, 3, Unit::Prefixed("Hz")).brief(),
@@ -261,6 +263,17 @@ fn refusal(
         }
     }
     None
+}
+
+/// The highest line of a spectrum near a place in it, over the spectrum's mean.
+fn line_near(values: &[f64], at: usize) -> f64 {
+    /// Share of the frequency by which what changes with the speed is beside it.
+    const NEAR: f64 = 0.2;
+    let (power, _) = lines::spectrum(values);
+    let mean = power.iter().sum::<f64>() / power.len() as f64;
+    let reach = (NEAR * at as f64) as usize;
+    let near = at - reach..(at + reach + 1).min(power.len());
+    power[near].iter().copied().fold(0.0, f64::max) / mean
 }
 
 /// `gain` and `held_out`: log-likelihood of all data, and of data that was not fitted.
