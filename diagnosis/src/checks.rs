@@ -21,15 +21,24 @@ pub(crate) struct Checked {
 
 const CHANNELS: [&str; 2] = ["cos", "sin"];
 
+/// Whether samples that are lost or put in are looked for where the clock shows nothing of it.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum TimeBase {
+    Searched,
+    AsItIs,
+}
+
 /// Checks a recording; `weight` is 0 for samples that are known to hold no signal.
-pub(crate) fn check(recording: &Recording, weight: Vec<f64>) -> Checked {
+pub(crate) fn check(recording: &Recording, weight: Vec<f64>, time_base: TimeBase) -> Checked {
     let mut checked = Checked {
         findings: vec![],
         weight,
         gaps: vec![],
         extra: vec![],
     };
-    timebase::repeated(recording, &mut checked);
+    if time_base == TimeBase::Searched {
+        timebase::repeated(recording, &mut checked);
+    }
     glitches::find(recording, &mut checked);
     let clipped = rail::rails(recording, &mut checked.weight);
     checked.findings.extend(clipped);
@@ -72,7 +81,7 @@ pub(crate) fn check(recording: &Recording, weight: Vec<f64>) -> Checked {
         }
     }
     checked.findings.splice(..0, digital);
-    timebase::dropped(recording, &mut checked);
+    timebase::dropped(recording, &mut checked, time_base);
     checked
 }
 

@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use crate::calm::{self, Calm};
 use crate::channels::Channels;
-use crate::checks::{self, Checked};
+use crate::checks::{self, Checked, TimeBase};
 use crate::codes;
 use crate::contender::is_drift;
 use crate::context::{Context, ContextError};
@@ -17,12 +17,13 @@ use crate::library::Row;
 use crate::model::System;
 use crate::noise;
 use crate::reference;
-use crate::repair::{Repaired, repair};
+use crate::repair::Repaired;
 use crate::score::KINDS;
 use crate::select::select;
 use crate::selection::{Accepted, Selection};
 use crate::silent;
 use crate::simulation::{Simulation, simulation};
+use crate::slips::Looked;
 use crate::statistics;
 use crate::unexplained::Unexplained;
 use crate::units;
@@ -109,24 +110,28 @@ pub fn diagnose(recording: &Recording) -> Result<Diagnosis, ContextError> {
         None => (recording, vec![1.0; recording.samples()]),
     };
     let recording = &*reference::checked(recording);
-    let checked = checks::check(recording, weight);
-    let repaired = repair(recording, &checked);
-    let context = || Context::new(&repaired.recording, repaired.weight.clone());
-    let first = context()?;
-    let calm = Calm::of(&first);
-    let found = whole(first, &checked, &repaired)?;
+    let checked = checks::check(recording, weight.clone(), TimeBase::Searched);
+    let context = |repaired: &Repaired| Context::new(&repaired.recording, repaired.weight.clone());
+    let looked = Looked::at(recording, checked, context)?;
+    let looked = looked.without_slips(recording, weight, context)?;
+    let Looked {
+        found,
+        checked,
+        repaired,
+    } = looked;
+    let calm = Calm::of(&context(&repaired)?);
     let Some(calm) = calm.filter(|calm| calm.is_worth_it(&found)) else {
         return Ok(found);
     };
     let reference = repaired.recording.reference_rad.as_deref();
     let mark = calm.mark;
-    let calm = calm.without_corners(context()?, reference);
+    let calm = calm.without_corners(context(&repaired)?, reference);
     let (calm, _) = search(calm, &checked, &repaired, true);
     Ok(calm::beside(found, calm, mark))
 }
 
 /// Diagnoses all of a recording.
-fn whole(
+pub(crate) fn whole(
     context: Context,
     checked: &Checked,
     repaired: &Repaired,

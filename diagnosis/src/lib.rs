@@ -51,6 +51,7 @@ mod sensor;
 mod silent;
 mod simpler;
 mod simulation;
+mod slips;
 mod solve;
 mod spline;
 mod stairs;

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use nonius_quantity::{agree, counted};
 use nonius_recording::Recording;
 
-use crate::checks::{Checked, ninth, repeats};
+use crate::checks::{Checked, TimeBase, ninth, repeats};
 use crate::finding::{Finding, Parameter, Place};
 use crate::jumps::{jumps, late};
 
@@ -182,7 +182,7 @@ pub(crate) fn repeated(recording: &Recording, checked: &mut Checked) {
 }
 
 /// Samples that are missing: where the clock shows a gap, and where the angle jumps by what it moves in whole samples.
-pub(crate) fn dropped(recording: &Recording, checked: &mut Checked) {
+pub(crate) fn dropped(recording: &Recording, checked: &mut Checked, time_base: TimeBase) {
     let (time, rate) = (&recording.time_s, recording.metadata.sample_rate_hz);
     let n = time.len();
     let gaps: Vec<(usize, f64)> = (1..n)
@@ -202,7 +202,7 @@ pub(crate) fn dropped(recording: &Recording, checked: &mut Checked) {
         .iter()
         .map(|g| (g.0, g.1.round() as usize - 1))
         .collect();
-    if gaps.is_empty() {
+    if gaps.is_empty() && time_base == TimeBase::Searched {
         gaps = jumps(recording, checked);
     }
     if gaps.is_empty() {
