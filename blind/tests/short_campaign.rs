@@ -50,11 +50,15 @@ fn short_campaign() {
 /// only rose, and a corner of a drive was a sample put in. A resonance of the axis was hum, cogging whose frequency passes by was
 /// a lost sample, one sample of a jittering clock was a glitch, a drift was a line, and what the model of a large hysteresis leaves
 /// was hum. A low pass in one channel was a delay for sure, by what a shaking axis does along the circle alone, a drift was a high pass
-/// by how that was when the recording began, and flicker noise that is hardly seen was a drift. Every sixth; in the long form all.
+/// by how that was when the recording began, and flicker noise that is hardly seen was a drift.
+/// A code at which the ADC jumps was a lost or a repeated sample. Every sixth; in the long form all.
 #[test]
 fn wrong_names_do_not_come_back() {
     let seeds = [
         108_002_242,
+        114_000_421,
+        114_002_741,
+        107_003_301,
         110_000_395,
         108_000_044,
         108_002_255,
@@ -109,12 +113,14 @@ fn wrong_names_do_not_come_back() {
 /// samples put in where the scale moves by less than its noise. A single sample lost on a slow axis, and a delay beside a bend that
 /// errors of the speed explained too. Hum while the axis mostly stands still, and hum beside a shaking axis; one sample off by eight
 /// times the noise on a slow axis. Noise with the signal, or of the clock, beside flicker noise, and what grows with the speed or the revolution beside it.
-/// Noise with the signal that what the residuals have in common shows, or beside a phase error of the channels. Every sixth; in the long form all.
+/// Noise with the signal that what the residuals have in common shows, or beside a phase error of the channels. A
+/// sample lost on an axis that shakes. Every sixth; in the long form all.
 #[test]
 fn what_was_missed_is_found() {
     let seeds = [
         108_001_745,
         103_001_556,
+        114_003_035,
         106_002_485,
         106_003_065,
         106_003_356,

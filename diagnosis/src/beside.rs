@@ -69,14 +69,15 @@ impl<'a> Beside<'a> {
         (solution.gain(), solution.rank)
     }
 
-    /// What shapes explain of another beside the fit, as if that were the data: log-likelihood.
-    pub(crate) fn gain_of(&self, data: &Shape, shapes: &[Shape]) -> f64 {
+    /// What shapes explain of another beside the fit, as if that were the data, and how many numbers they have for it.
+    pub(crate) fn gain_of(&self, data: &Shape, shapes: &[Shape]) -> (f64, usize) {
         let mut rest = self.rest.clone();
         rest.right.fill(0.0);
         for (i, x) in &data.0 {
             rest.right.axpy(*x, &self.rest.gram.column(*i), 1.0);
         }
-        rest.solve_beside(self.whole, shapes).gain()
+        let solution = rest.solve_beside(self.whole, shapes);
+        (solution.gain(), solution.rank)
     }
 
     /// Whether wide shapes do all that simple ones do: those have no number of their own beside them.

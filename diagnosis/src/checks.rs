@@ -15,7 +15,9 @@ pub(crate) struct Checked {
     pub(crate) weight: Vec<f64>,
     /// Samples that are missing before a sample of the recording: index, how many.
     pub(crate) gaps: Vec<(usize, usize)>,
-    /// Samples that were put in: what follows is late by one each.
+    /// Samples that repeat the one before while the scale moves.
+    pub(crate) repeated: Vec<usize>,
+    /// Those of them that were put in: what follows is late by one each.
     pub(crate) extra: Vec<usize>,
 }
 
@@ -34,6 +36,7 @@ pub(crate) fn check(recording: &Recording, weight: Vec<f64>, time_base: TimeBase
         findings: vec![],
         weight,
         gaps: vec![],
+        repeated: vec![],
         extra: vec![],
     };
     if time_base == TimeBase::Searched {

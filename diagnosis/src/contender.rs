@@ -86,12 +86,15 @@ pub(crate) fn contender(
         if tried.contains(&one) || best.gain < NEARLY * most {
             continue;
         }
-        let drifts = |s: &Scored| s.candidate.name == DRIFT && s.gain > AS_WELL * best.gain;
+        let tried_too = |s: &Scored| s.gain >= NEARLY * most;
+        let drifts =
+            |s: &Scored| s.candidate.name == DRIFT && s.gain > AS_WELL * best.gain && tried_too(s);
         if best.candidate.as_drift && scored.iter().any(drifts) {
             continue;
         }
         // How it was when the recording began, at another corner, may be all of a high pass that is seen.
-        let begins = |s: &Scored| s.candidate.as_drift && s.gain > best.gain - ITSELF;
+        let begins =
+            |s: &Scored| s.candidate.as_drift && s.gain > best.gain - ITSELF && tried_too(s);
         if best.candidate.given() > 0 && scored.iter().any(begins) {
             continue;
         }
@@ -148,7 +151,6 @@ pub(crate) fn contender(
             }
             system.retain(|i| i < mark);
             cause.confounded = rivals;
-            cause.inflation = held.inflation;
             match &named {
                 None => named = Some(Box::new(cause)),
                 Some(_) => others.push(cause),

@@ -3,7 +3,7 @@
 use nonius_recording::Recording;
 use serde::Serialize;
 
-use crate::calm::{self, Calm};
+use crate::calm;
 use crate::channels::Channels;
 use crate::checks::{self, Checked, TimeBase};
 use crate::codes;
@@ -111,21 +111,19 @@ pub fn diagnose(recording: &Recording) -> Result<Diagnosis, ContextError> {
     };
     let recording = &*reference::checked(recording);
     let checked = checks::check(recording, weight.clone(), TimeBase::Searched);
-    let context = |repaired: &Repaired| Context::new(&repaired.recording, repaired.weight.clone());
-    let looked = Looked::at(recording, checked, context)?;
-    let looked = looked.without_slips(recording, weight, context)?;
+    let looked = Looked::at(recording, checked)?.without_slips(recording, weight);
     let Looked {
         found,
         checked,
         repaired,
+        calm,
     } = looked;
-    let calm = Calm::of(&context(&repaired)?);
     let Some(calm) = calm.filter(|calm| calm.is_worth_it(&found)) else {
         return Ok(found);
     };
     let reference = repaired.recording.reference_rad.as_deref();
     let mark = calm.mark;
-    let calm = calm.without_corners(context(&repaired)?, reference);
+    let calm = calm.without_corners(repaired.context()?, reference);
     let (calm, _) = search(calm, &checked, &repaired, true);
     Ok(calm::beside(found, calm, mark))
 }
@@ -141,7 +139,7 @@ pub(crate) fn whole(
         return Ok(found);
     };
     // A cause that is slow looks like flicker noise before it is known: names that explain it all are preferred.
-    let context = Context::new(&repaired.recording, repaired.weight.clone())?;
+    let context = repaired.context()?;
     let (other, _) = search(context, checked, repaired, false);
     let known = |name: &str| found.findings.iter().any(|f| f.cause == name);
     let more: Vec<&Finding> = other.findings.iter().filter(|f| !known(&f.cause)).collect();

@@ -7,8 +7,8 @@
 //! noise, drift and hum are not 1/f. Nor are offsets that jump between two levels, though their spectrum may be: there the
 //! levels explain as much as such noise does, each by its likelihood in time.
 
-pub(crate) mod beside;
 mod held_out;
+pub(crate) mod records;
 
 use nonius_fourier::Complex;
 

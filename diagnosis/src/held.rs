@@ -4,13 +4,13 @@ use crate::beside::Beside;
 use crate::cause::{Candidate, Domain};
 use crate::causes::{AC_COUPLING, Catalogue, GRADUATION_ERROR};
 use crate::doubt;
-use crate::flicker::beside::{Records, by_chance};
+use crate::flicker::records::Records;
 use crate::generic::{self, HOLDS};
 use crate::library::Shape;
 use crate::model::{Fit, System, atoms_of};
 use crate::score::{KINDS, SHOWN, Scored};
 use crate::select::both;
-use crate::statistics::{after_trials, log_tail};
+use crate::statistics::by_chance;
 use crate::unexplained::explains_only;
 
 /// Share that it has to hold of what grows with the size of the speed: there a law has no shapes of its own.
@@ -38,8 +38,6 @@ pub(crate) struct Held {
     pub(crate) refusal: Option<String>,
     /// Generic shapes that tell.
     pub(crate) beyond: Vec<Shape>,
-    /// So many times the variance of white noise alone, its amounts have.
-    pub(crate) inflation: f64,
     /// Slow noise of the channels explains it as well: nothing is left that has no name.
     pub(crate) is_noise: bool,
 }
@@ -57,7 +55,6 @@ impl Held {
         Self {
             refusal,
             beyond,
-            inflation: 1.0,
             is_noise: false,
         }
     }
@@ -94,7 +91,7 @@ pub(crate) fn holds(
     let held = gained(system, &named[fit.shapes.len()..]);
     // Slow noise is in all that can be slow.
     let slow = doubt::SLOW.contains(&domain);
-    let noise = slow.then(|| Records::draw(system)).flatten();
+    let noise = slow.then(|| Records::of(system)).flatten();
     let allowed = |system: &mut System, known: &[Shape], shapes: &[Shape]| {
         let noise = noise.as_ref();
         noise.map_or(0.0, |n| n.allowed(system, known, shapes))
@@ -132,18 +129,17 @@ pub(crate) fn holds(
         held + more,
         (beyond - allowed(system, &known, &any), freedom),
     );
-    let mut held = Held::new(&best.candidate, own, sizes, around);
+    let mut of = Held::new(&best.candidate, own, sizes, around);
     if let Some(noise) = noise {
         let shapes = sure(system, &best.candidate.shapes);
-        held.inflation = noise.inflation(system, &sure(system, &fit.shapes), &shapes);
+        let inflation = noise.inflation(system, &sure(system, &fit.shapes), &shapes);
         let trials = best.candidate.trials * KINDS;
-        let log_p = by_chance(best.gain, held.inflation, best.freedom, trials);
-        held.is_noise = log_p > SHOWN.ln();
-        if held.is_noise {
-            held.refusal = Some("slow noise of the channels explains it as well".to_owned());
+        of.is_noise = by_chance(held, inflation, best.freedom, trials) > SHOWN.ln();
+        if of.is_noise {
+            of.refusal = Some("slow noise of the channels explains it as well".to_owned());
         }
     }
-    held
+    of
 }
 
 /// Adds causes that stand beside the named ones; what they explain.
@@ -161,7 +157,7 @@ pub(crate) fn stand_beside(
             .filter(|o| wanted(o))
             .filter_map(|o| {
                 let (gain, freedom) = beside.gain(&o.candidate.shapes);
-                let log_p = after_trials(log_tail(2.0 * gain, freedom), o.candidate.trials * KINDS);
+                let log_p = by_chance(gain, 1.0, freedom, o.candidate.trials * KINDS);
                 (freedom > 0 && log_p < SHOWN.ln()).then_some((log_p, gain, o))
             })
             .min_by(|a, b| a.0.total_cmp(&b.0));

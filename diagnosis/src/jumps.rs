@@ -9,8 +9,9 @@ use crate::first;
 use crate::solve::{dot, weights_of};
 
 /// Samples on either side of a jump that are compared, and the order of the curve through them; on slow axes more of them
-/// show it, and on axes that shake a curve that bends more.
-const SIDES: [(usize, i32); 7] = [
+/// show it, and on axes that shake a curve that bends more, or fewer of them.
+const SIDES: [(usize, i32); 8] = [
+    (4, 3),
     (8, 3),
     (8, 5),
     (24, 3),

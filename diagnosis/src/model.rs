@@ -3,10 +3,13 @@
 mod halves;
 mod residual;
 
+use std::rc::Rc;
+
 use nalgebra::{DMatrix, DVector};
 
 use crate::causes::{self, Catalogue};
 use crate::context::Context;
+use crate::flicker::records::Record;
 use crate::flicker::{self, Flicker};
 use crate::library::{ROWS, Row, Shape};
 use crate::selection::Accepted;
@@ -35,6 +38,8 @@ pub(crate) struct System<'a> {
     tried: usize,
     /// Flicker noise in what everything that any cause could explain leaves.
     pub(crate) flicker: Option<Flicker>,
+    /// Records of such noise, drawn when they are asked for.
+    pub(crate) records: Option<Vec<Rc<Record>>>,
     /// Such noise is not looked for.
     pub(crate) only_white: bool,
 }
@@ -77,6 +82,7 @@ impl<'a> System<'a> {
             every,
             tried: every,
             flicker: None,
+            records: None,
             only_white: false,
         };
         let atoms: Vec<usize> = (0..this.samples.library.atoms.len()).collect();

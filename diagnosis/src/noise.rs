@@ -28,6 +28,8 @@ const A_LINE: f64 = 1e-4;
 /// Share of what jitter explains that such a line has to explain to be the reason for it: what is left of a shaking axis
 /// has weak ones.
 const MUCH: f64 = 0.2;
+/// Log-likelihood by which a line of the axis has to stand higher to be the reason for one of the clock.
+const CLEARLY: f64 = 3.0;
 /// Names of the contract.
 const CLOCK_JITTER: &str = "clock_jitter";
 const AMPLITUDE_NOISE: &str = "amplitude_noise";
@@ -118,6 +120,10 @@ pub(crate) fn findings(system: &System, residual: &Residual) -> (Vec<Finding>, V
         .iter()
         .map(|w| w.iter().map(|w| w * w).sum::<f64>() / total.max(1.0))
         .collect();
+    // Of a reference that the angle follows exactly nothing is left.
+    if power.contains(&0.0) {
+        return (vec![], vec![]);
+    }
     let rms: Vec<f64> = power.iter().map(|p| p.max(1e-300).sqrt()).collect();
     // What white noise of unit variance in the channels would be of the mean products.
     let unit = [(0, 0), (1, 1), (0, 1)]
@@ -253,7 +259,7 @@ fn refusal(
         let at = power.iter().position(|p| *p == highest).unwrap_or(0);
         let hertz = at as f64 / length as f64 * depends.context.rate;
         // The axis vibrates at any speed alike.
-        let vibrates = line_near(tangential, at) > line;
+        let vibrates = line_near(tangential, at) > line + CLEARLY;
         if n as f64 * (-line).exp() < A_LINE && line > MUCH * gain && !vibrates {
             return Some(format!(
                 "the sampling time wanders periodically, at {}; {}",

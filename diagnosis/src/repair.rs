@@ -3,6 +3,7 @@
 use nonius_recording::Recording;
 
 use crate::checks::Checked;
+use crate::context::{Context, ContextError};
 
 /// A recording on a regular time base, and where the samples of the original stand in it.
 pub(crate) struct Repaired {
@@ -10,6 +11,13 @@ pub(crate) struct Repaired {
     pub(crate) weight: Vec<f64>,
     /// One per sample of the original.
     pub(crate) place: Vec<usize>,
+}
+
+impl Repaired {
+    /// Its motion, and what is left of the signals.
+    pub(crate) fn context(&self) -> Result<Context, ContextError> {
+        Context::new(&self.recording, self.weight.clone())
+    }
 }
 
 /// Fills each gap (index of the sample behind it, how many are missing) with a straight line that does not count, and

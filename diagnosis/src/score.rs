@@ -6,7 +6,7 @@ use crate::causes::AC_COUPLING;
 use crate::library::Shape;
 use crate::model::{Fit, System, atoms_of};
 use crate::solve::Solution;
-use crate::statistics::{after_trials, log_tail};
+use crate::statistics::by_chance;
 
 /// Global probability below which a cause is shown.
 pub(crate) const SHOWN: f64 = 3e-4;
@@ -84,7 +84,7 @@ pub(crate) fn score(beside: &Beside, candidate: Candidate) -> Option<Scored> {
     {
         return None;
     }
-    let log_p = after_trials(log_tail(2.0 * gain, freedom), candidate.trials * KINDS);
+    let log_p = by_chance(gain, 1.0, freedom, candidate.trials * KINDS);
     let size = beside.size(&candidate.shapes, &solution.x);
     Some(Scored {
         candidate,

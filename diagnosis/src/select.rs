@@ -8,7 +8,7 @@ use crate::contender::{Contender, contender, paid_where_noise_shows};
 use crate::context::Context;
 use crate::doubt::{self, doubt};
 use crate::exact::{self, Start};
-use crate::flicker;
+use crate::flicker::{self, records::Records};
 use crate::library::Shape;
 use crate::model::{Fit, Residual, System, atoms_of};
 use crate::score::{SHOWN, Scored, likely, score, worth};
@@ -232,7 +232,7 @@ fn search(
             Contender::Unnamed(one) => match one.domain {
                 // Real motion that is no line is the axis at work, and no error.
                 Some(Domain::Motion) => refused.push(one.name),
-                // It has a name.
+                // Slow noise explains it, and has a name.
                 _ if one.is_noise => refused.push(one.name),
                 Some(Domain::Time) if slow_noise(system, &residual, one.paid) => {
                     closed.push(Domain::Time);
@@ -293,13 +293,32 @@ fn search(
     if system.every() == 1 {
         simpler(system, catalogue, &mut found);
         closed.extend(doubt(system, catalogue, &mut found));
-        if system.flicker.is_some() {
+        if let Some(noise) = Records::of(system) {
             closed.extend(doubt::SLOW);
+            widen(system, &mut found, &noise);
         }
         found.left = leftover(system, catalogue, &found.fit, &closed);
     }
     keep_used(system, fixed, &mut found);
     found
+}
+
+/// Slow noise of the channels is in the numbers of what can be slow.
+fn widen(system: &mut System, found: &mut Selection, noise: &Records) {
+    for one in &mut found.accepted {
+        if !doubt::SLOW.contains(&one.candidate.domain) {
+            continue;
+        }
+        let range = one.range();
+        let shapes = found.fit.shapes.iter().enumerate();
+        let others: Vec<Shape> = shapes
+            .filter(|(k, _)| !range.contains(k))
+            .map(|(_, s)| s.clone())
+            .collect();
+        let [others, own] =
+            [&others, &found.fit.shapes[range.clone()].to_vec()].map(|list| system.sure(list));
+        one.inflation = noise.inflation(system, &others, &own);
+    }
 }
 
 /// Where to look anew from: with the cause that was accepted last, or with another in its place.

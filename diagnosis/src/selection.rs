@@ -6,7 +6,7 @@ use crate::finding::{Finding, Gain};
 use crate::generic::HOLDS;
 use crate::model::{Fit, Halves, System, amounts};
 use crate::score::{KINDS, SHOWN};
-use crate::statistics::{after_trials, log_tail};
+use crate::statistics::by_chance;
 use crate::unexplained::Unnamed;
 
 /// A cause that was accepted; its shapes stand in the fit from `first` on.
@@ -131,7 +131,7 @@ impl Selection {
         let gain = self.fit.solution.gain() - others.solution.gain();
         let freedom = self.fit.solution.rank.saturating_sub(others.solution.rank);
         let trials = accepted.candidate.trials * KINDS;
-        let log_p = after_trials(log_tail(2.0 * gain, freedom), trials);
+        let log_p = by_chance(gain, accepted.inflation, freedom, trials);
         (freedom > 0 && log_p <= SHOWN.ln()).then_some(Own { gain, log_p })
     }
 

@@ -2,12 +2,11 @@
 //! there by what it moves in a sample, or goes back to the code before. The time base is looked at before anything is fitted;
 //! once the ADC's steps are known, the recording is diagnosed anew with its time base as it is.
 
-use std::ops::Range;
-
 use nonius_recording::Recording;
 
+use crate::calm::Calm;
 use crate::checks::{self, Checked, TimeBase};
-use crate::context::{Context, ContextError};
+use crate::context::ContextError;
 use crate::diagnose::{Diagnosis, whole};
 use crate::repair::{Repaired, repair};
 
@@ -23,21 +22,21 @@ pub(crate) struct Looked {
     pub(crate) found: Diagnosis,
     pub(crate) checked: Checked,
     pub(crate) repaired: Repaired,
+    pub(crate) calm: Option<Calm>,
 }
 
 impl Looked {
     /// Diagnoses all of a recording with its time base repaired as it was checked.
-    pub(crate) fn at(
-        recording: &Recording,
-        checked: Checked,
-        context: impl Fn(&Repaired) -> Result<Context, ContextError>,
-    ) -> Result<Self, ContextError> {
+    pub(crate) fn at(recording: &Recording, checked: Checked) -> Result<Self, ContextError> {
         let repaired = repair(recording, &checked);
-        let found = whole(context(&repaired)?, &checked, &repaired)?;
+        let context = repaired.context()?;
+        let calm = Calm::of(&context);
+        let found = whole(context, &checked, &repaired)?;
         Ok(Self {
             found,
             checked,
             repaired,
+            calm,
         })
     }
 
@@ -46,40 +45,52 @@ impl Looked {
         let (radial, tangential) = &self.found.residuals[1];
         // A reference slips with the sensor, and what is between them does not show it.
         let circle = self.found.left_motion.as_ref().unwrap_or(tangential);
-        let near = |k: &usize| -> Range<usize> {
-            let k = self.repaired.place[*k];
-            k.saturating_sub(REACH)..(k + REACH).min(radial.len())
-        };
+        let mut near = vec![false; radial.len()];
+        for k in places.iter().map(|k| self.repaired.place[*k]) {
+            near[k.saturating_sub(REACH)..(k + REACH).min(radial.len())].fill(true);
+        }
+        let near = (0..near.len()).filter(|k| near[*k]);
         let square = |k: usize| (radial[k].powi(2) + circle[k].powi(2)) / noise.powi(2);
-        places.iter().flat_map(near).map(square).sum()
+        near.map(square).sum()
     }
 
-    /// Samples before which some are missing, and those that were put in.
+    /// Samples before which some are missing, and those that repeat the one before.
     fn slips(&self) -> Vec<usize> {
         let gaps = self.checked.gaps.iter().map(|gap| gap.0);
-        gaps.chain(self.checked.extra.iter().copied()).collect()
+        gaps.chain(self.checked.repeated.iter().copied()).collect()
     }
 
     /// The same without slips that the clock does not show, where the ADC's steps explain them.
-    pub(crate) fn without_slips(
-        self,
-        recording: &Recording,
-        weight: Vec<f64>,
-        context: impl Fn(&Repaired) -> Result<Context, ContextError>,
-    ) -> Result<Self, ContextError> {
-        if !self.found.findings.iter().any(|f| f.cause == ADC) {
-            return Ok(self);
+    pub(crate) fn without_slips(self, recording: &Recording, weight: Vec<f64>) -> Self {
+        let slips = self.slips();
+        if slips.is_empty() || !self.has_steps() {
+            return self;
         }
         let checked = checks::check(recording, weight, TimeBase::AsItIs);
-        if checked.findings.len() == self.checked.findings.len() {
-            return Ok(self);
+        // What the clock shows stays as it is.
+        let by_clock: Vec<usize> = checked.gaps.iter().map(|gap| gap.0).collect();
+        let slips: Vec<usize> = slips
+            .into_iter()
+            .filter(|k| !by_clock.contains(k))
+            .collect();
+        if slips.is_empty() {
+            return self;
         }
-        let other = Self::at(recording, checked, context)?;
-        let steps = other.found.findings.iter().any(|f| f.cause == ADC);
+        let Ok(other) = Self::at(recording, checked) else {
+            return self;
+        };
         let stranger = other.found.unexplained.significant && !self.found.unexplained.significant;
-        let (slips, noise) = (self.slips(), self.found.extended.residual_rms);
+        // Of the radius, in which no axis shakes.
+        let radial = &self.found.residuals[1].0;
+        let counts: f64 = self.repaired.weight.iter().sum();
+        let power: f64 = radial.iter().map(|r| r * r).sum();
+        let noise = (power / counts.max(1.0)).sqrt();
         let worth = other.left_near(&slips, noise) - self.left_near(&slips, noise);
-        let as_well = steps && !stranger && worth < WORTH;
-        Ok(if as_well { other } else { self })
+        let as_well = other.has_steps() && !stranger && worth < WORTH;
+        if as_well { other } else { self }
+    }
+
+    fn has_steps(&self) -> bool {
+        self.found.findings.iter().any(|f| f.cause == ADC)
     }
 }

@@ -19,6 +19,12 @@ pub(crate) fn after_trials(log_p: f64, trials: f64) -> f64 {
     (log_p + trials.max(1.0).ln()).min(0.0)
 }
 
+/// ln of the probability that so many numbers explain so much log-likelihood by chance, after so many trials, where noise has so many
+/// times the variance of white noise alone in them.
+pub(crate) fn by_chance(gain: f64, inflation: f64, freedom: usize, trials: f64) -> f64 {
+    after_trials(log_tail(2.0 * gain / inflation, freedom), trials)
+}
+
 /// Log-likelihood that a free number has to be worth among so many samples (Bayesian information criterion).
 pub(crate) fn price(samples: f64) -> f64 {
     0.5 * samples.ln()
@@ -26,7 +32,13 @@ pub(crate) fn price(samples: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::log_tail;
+    use super::{by_chance, log_tail};
+
+    #[test]
+    fn inflated_noise_explains_more_by_chance() {
+        assert!((by_chance(20.0, 1.0, 2, 1.0) + 20.0).abs() < 1e-9);
+        assert!((by_chance(20.0, 4.0, 2, 1.0) + 5.0).abs() < 1e-9);
+    }
 
     #[test]
     fn tails_agree_with_tables() {

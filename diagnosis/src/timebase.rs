@@ -165,6 +165,7 @@ pub(crate) fn repeated(recording: &Recording, checked: &mut Checked) {
     if next < 1.5f64.powi(2) * usual {
         checked.extra.clone_from(&twins);
     }
+    checked.repeated.clone_from(&twins);
     let (count, first) = (twins.len(), twins[0]);
     let evidence = format!(
         "{} {} the one before while the scale moves{} sample {first}",

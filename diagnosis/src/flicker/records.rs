@@ -12,27 +12,30 @@ use crate::beside::Beside;
 use crate::block::Block;
 use crate::library::Shape;
 use crate::model::{System, atoms_of};
-use crate::statistics::{after_trials, log_tail};
 
 /// Records that are drawn.
 const RECORDS: u64 = 16;
 /// Values of a record in a period of the corner frequency: faster parts are lost in the white noise.
 const PER_PERIOD: f64 = 16.0;
-/// Standard deviations of what shapes explain of them that do not count against a name.
-const FAR: f64 = 2.0;
+/// Standard deviations beyond the mean of what shapes explain of them that do not count against a name.
+const ALLOWED: f64 = 2.0;
 
 /// Records of the noise, as functions of the library.
 pub(crate) struct Records(Vec<Shape>);
 
 impl Records {
     /// Of the flicker noise of a recording, if there is any.
-    pub(crate) fn draw(system: &mut System) -> Option<Self> {
-        let flicker = system.flicker.clone()?;
-        let context = system.context;
+    pub(crate) fn of(system: &mut System) -> Option<Self> {
+        let flicker = system.flicker.as_ref()?;
         let noise = [flicker.density[0], flicker.corner];
+        let (samples, rate) = (system.context.samples(), system.context.rate);
+        let drawn = system.records.get_or_insert_with(|| {
+            let draw = |seed| Rc::new(Record::draw(samples, rate, noise, seed));
+            (0..RECORDS).map(draw).collect()
+        });
         let library = &mut system.samples.library;
-        let shapes = (0..RECORDS).map(|seed| {
-            let record = Rc::new(Record::draw(context.samples(), context.rate, noise, seed));
+        let shapes = drawn.iter().map(|record| {
+            let record = Rc::clone(record);
             library.pair(move |block: &Block, c, s| {
                 for (k, (c, s)) in c.iter_mut().zip(s).enumerate() {
                     [*c, *s] = record.at(block.start + k);
@@ -42,8 +45,13 @@ impl Records {
         Some(Self(shapes.collect()))
     }
 
-    /// Log-likelihood that shapes explain of each record beside known ones.
-    fn explained(&self, system: &mut System, known: &[Shape], shapes: &[Shape]) -> Vec<f64> {
+    /// Log-likelihood that shapes explain of each record beside known ones, and how many numbers they have for it.
+    fn explained(
+        &self,
+        system: &mut System,
+        known: &[Shape],
+        shapes: &[Shape],
+    ) -> Vec<(f64, usize)> {
         let atoms = atoms_of(&[known, shapes, &self.0].concat());
         let whole = system.among(&atoms);
         let among =
@@ -61,27 +69,23 @@ impl Records {
     pub(crate) fn allowed(&self, system: &mut System, known: &[Shape], shapes: &[Shape]) -> f64 {
         let all = self.explained(system, known, shapes);
         let n = all.len() as f64;
-        let mean = all.iter().sum::<f64>() / n;
-        let square = all.iter().map(|g| (g - mean).powi(2)).sum::<f64>() / (n - 1.0);
-        mean + FAR * square.sqrt()
+        let mean = all.iter().map(|g| g.0).sum::<f64>() / n;
+        let square = all.iter().map(|g| (g.0 - mean).powi(2)).sum::<f64>() / (n - 1.0);
+        mean + ALLOWED * square.sqrt()
     }
 
     /// So many times the variance of white noise alone, the amounts of shapes have in it.
     pub(crate) fn inflation(&self, system: &mut System, known: &[Shape], shapes: &[Shape]) -> f64 {
         let all = self.explained(system, known, shapes);
-        let numbers = (all.len() * shapes.len().max(1)) as f64;
-        1.0 + 2.0 * all.iter().sum::<f64>() / numbers
+        let numbers: usize = all.iter().map(|g| g.1).sum();
+        let gain: f64 = all.iter().map(|g| g.0).sum();
+        1.0 + 2.0 * gain / numbers.max(1) as f64
     }
-}
-
-/// Log of the probability that so many numbers explain so much by chance where noise inflates it, after so many trials.
-pub(crate) fn by_chance(gain: f64, inflation: f64, freedom: usize, trials: f64) -> f64 {
-    after_trials(log_tail(2.0 * gain / inflation, freedom), trials)
 }
 
 /// Noise of cosine and sine, in amplitudes, at every so many samples.
 #[derive(Debug)]
-struct Record {
+pub(crate) struct Record {
     pairs: Vec<[f32; 2]>,
     step: usize,
 }
@@ -92,7 +96,7 @@ impl Record {
         let step = (rate / (PER_PERIOD * corner)).max(1.0) as usize;
         let count = samples / step + 2;
         // Slower parts than the recording is long are in it.
-        let length = 4 * count;
+        let length = (4 * count).next_power_of_two();
         let mut random = StdRng::seed_from_u64(seed);
         let mut normal = || -> f64 { StandardNormal.sample(&mut random) };
         // Of either side of the spectrum of the pair, the power of one channel over one side.
@@ -125,7 +129,7 @@ impl Record {
 
 #[cfg(test)]
 mod tests {
-    use super::{Record, by_chance};
+    use super::Record;
 
     /// The mean square between two frequencies is that of the density there: differences of averages over 1024 and 4096 samples see
     /// the octaves between.
@@ -152,12 +156,5 @@ mod tests {
             let (seen, asked) = (of_width(w), 4.0 * 2f64.ln() * 0.01 * 0.01);
             assert!((seen / asked - 1.0).abs() < 0.1, "{w}: {seen} of {asked}");
         }
-    }
-
-    #[test]
-    fn inflated_noise_explains_more_by_chance() {
-        let white = by_chance(20.0, 1.0, 2, 1.0);
-        assert!((white + 20.0).abs() < 1e-9, "{white}");
-        assert!((by_chance(20.0, 4.0, 2, 1.0) + 5.0).abs() < 1e-9);
     }
 }
