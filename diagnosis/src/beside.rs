@@ -27,6 +27,12 @@ impl<'a> Beside<'a> {
         }
     }
 
+    /// Beside shapes of all atoms that are taken in, where the axis may vibrate.
+    pub(crate) fn all_that_moves(system: &'a System, shapes: &[Shape]) -> Self {
+        let all: Vec<usize> = (0..system.total.right.len()).collect();
+        Self::new(&system.total, shapes).where_it_moves(system, shapes, &all)
+    }
+
     /// The same where the axis may vibrate; `atoms` are those of the equations.
     pub(crate) fn where_it_moves(
         mut self,

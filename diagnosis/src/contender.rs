@@ -83,18 +83,17 @@ pub(crate) fn contender(
     for i in 0..scored.len() {
         let best = &scored[i];
         let one = (best.candidate.name, best.candidate.domain);
-        if tried.contains(&one) || best.gain < NEARLY * most {
+        let near = |s: &Scored| s.gain >= NEARLY * most;
+        if tried.contains(&one) || !near(best) {
             continue;
         }
-        let tried_too = |s: &Scored| s.gain >= NEARLY * most;
         let drifts =
-            |s: &Scored| s.candidate.name == DRIFT && s.gain > AS_WELL * best.gain && tried_too(s);
+            |s: &Scored| s.candidate.name == DRIFT && s.gain > AS_WELL * best.gain && near(s);
         if best.candidate.as_drift && scored.iter().any(drifts) {
             continue;
         }
         // How it was when the recording began, at another corner, may be all of a high pass that is seen.
-        let begins =
-            |s: &Scored| s.candidate.as_drift && s.gain > best.gain - ITSELF && tried_too(s);
+        let begins = |s: &Scored| s.candidate.as_drift && s.gain > best.gain - ITSELF && near(s);
         if best.candidate.given() > 0 && scored.iter().any(begins) {
             continue;
         }
@@ -317,8 +316,7 @@ fn nothing_new(
 /// not hold.
 fn only_along_the_circle(system: &System, fit: &Fit, cause: &Candidate, shapes: &[Shape]) -> bool {
     let known = both(&fit.shapes, shapes);
-    let all: Vec<usize> = (0..system.total.right.len()).collect();
-    let beside = Beside::new(&system.total, &known).where_it_moves(system, &known, &all);
+    let beside = Beside::all_that_moves(system, &known);
     let solution = beside.solve(&cause.shapes);
     !beside.in_radius(&cause.shapes, &solution.x, solution.rank, 1.0)
 }

@@ -16,7 +16,7 @@ use crate::channels::Channels;
 use crate::context::Context;
 use crate::finding::{Chip, Finding, Gain, Parameter};
 use crate::one_over_f;
-use crate::statistics::{after_trials, log_tail, price};
+use crate::statistics::{by_chance, price};
 use crate::telegraph;
 use crate::unexplained::{Unnamed, What, like};
 
@@ -300,7 +300,7 @@ fn find_from(seen: Channels, slowest: usize) -> Option<Flicker> {
         return None;
     }
     let gain = in_spectrum.max(in_time.seen);
-    let log_p = after_trials(log_tail(2.0 * gain, 1), TRIALS);
+    let log_p = by_chance(gain, 1.0, 1, TRIALS);
     if log_p > SHOWN.ln() {
         return None;
     }

@@ -10,7 +10,7 @@ use crate::library::Shape;
 use crate::model::{Fit, System, atoms_of};
 use crate::score::{KINDS, SHOWN, Scored};
 use crate::select::both;
-use crate::statistics::by_chance;
+use crate::statistics::{at_most_of_noise, by_chance};
 use crate::unexplained::explains_only;
 
 /// Share that it has to hold of what grows with the size of the speed: there a law has no shapes of its own.
@@ -92,13 +92,15 @@ pub(crate) fn holds(
     // Slow noise is in all that can be slow.
     let slow = doubt::SLOW.contains(&domain);
     let noise = slow.then(|| Records::of(system)).flatten();
-    let allowed = |system: &mut System, known: &[Shape], shapes: &[Shape]| {
-        let noise = noise.as_ref();
-        noise.map_or(0.0, |n| n.allowed(system, known, shapes))
-    };
+    let less_noise =
+        |system: &mut System, known: &[Shape], shapes: &[Shape], beyond: (f64, usize)| {
+            let noise = noise.as_ref();
+            let allowed = noise.map_or(0.0, |n| n.allowed(system, known, shapes));
+            (beyond.0 - allowed, beyond.1)
+        };
     let [known, any] = [&named[..], basis].map(|list| sure(system, list));
-    let (beyond, freedom) = Beside::new(&system.total, &known).gain(&any);
-    let share = share(held, (beyond - allowed(system, &known, &any), freedom));
+    let beyond = Beside::new(&system.total, &known).gain(&any);
+    let share = share(held, less_noise(system, &known, &any, beyond));
     if share < HOLDS {
         return Held::new(&best.candidate, share, 1.0, basis.to_vec());
     }
@@ -121,25 +123,22 @@ pub(crate) fn holds(
         |shapes: &[Shape]| -> Vec<Shape> { shapes.iter().map(|s| s.among(&atoms)).collect() };
     let beside = Beside::new(&whole, &among(&known));
     let more = beside.gain(&among(&free)).0;
-    let (beyond, freedom) = beside.gain(&among(&sizes));
-    let sizes = self::share(held, (beyond - allowed(system, &known, &sizes), freedom));
+    let beyond = beside.gain(&among(&sizes));
+    let sizes = self::share(held, less_noise(system, &known, &sizes, beyond));
     let known = both(&known, &free);
-    let (beyond, freedom) = Beside::new(&whole, &among(&known)).gain(&among(&any));
-    let own = self::share(
-        held + more,
-        (beyond - allowed(system, &known, &any), freedom),
-    );
-    let mut of = Held::new(&best.candidate, own, sizes, around);
+    let beyond = Beside::new(&whole, &among(&known)).gain(&among(&any));
+    let own = self::share(held + more, less_noise(system, &known, &any, beyond));
+    let mut found = Held::new(&best.candidate, own, sizes, around);
     if let Some(noise) = noise {
         let shapes = sure(system, &best.candidate.shapes);
         let inflation = noise.inflation(system, &sure(system, &fit.shapes), &shapes);
         let trials = best.candidate.trials * KINDS;
-        of.is_noise = by_chance(held, inflation, best.freedom, trials) > SHOWN.ln();
-        if of.is_noise {
-            of.refusal = Some("slow noise of the channels explains it as well".to_owned());
+        found.is_noise = by_chance(held, inflation, best.freedom, trials) > SHOWN.ln();
+        if found.is_noise {
+            found.refusal = Some("slow noise of the channels explains it as well".to_owned());
         }
     }
-    of
+    found
 }
 
 /// Adds causes that stand beside the named ones; what they explain.
@@ -171,7 +170,6 @@ pub(crate) fn stand_beside(
 /// What is held of it and of what is beyond.
 pub(crate) fn share(held: f64, (beyond, freedom): (f64, usize)) -> f64 {
     // What as many free numbers explain of noise alone does not count against it.
-    let spread = (2.0 * freedom as f64).sqrt();
-    let beyond = (beyond - freedom as f64 / 2.0 - 2.0 * spread).max(0.0);
+    let beyond = (beyond - at_most_of_noise(freedom)).max(0.0);
     held / (held + beyond)
 }

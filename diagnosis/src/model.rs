@@ -3,6 +3,7 @@
 mod halves;
 mod residual;
 
+use std::ops::Range;
 use std::rc::Rc;
 
 use nalgebra::{DMatrix, DVector};
@@ -329,6 +330,13 @@ impl<'a> System<'a> {
 }
 
 impl Fit {
+    /// Its shapes but those of a range.
+    pub(crate) fn others(&self, range: &Range<usize>) -> Vec<Shape> {
+        let shapes = self.shapes.iter().enumerate();
+        let others = shapes.filter(|(k, _)| !range.contains(k));
+        others.map(|(_, s)| s.clone()).collect()
+    }
+
     /// How much of each atom is in it.
     pub(crate) fn amounts(&self) -> Vec<(usize, f64)> {
         amounts(&self.shapes, &self.solution.x)

@@ -11,7 +11,7 @@ use crate::finding::{Chip, Finding, Gain, Parameter};
 use crate::generic::{HOLDS, hat};
 use crate::lines;
 use crate::model::{Residual, System};
-use crate::statistics::{after_trials, log_tail};
+use crate::statistics::{at_most_of_noise, by_chance};
 use crate::unexplained::{Unnamed, What, explains_only, like};
 use crate::variance::{ENOUGH, Fitted, Pairs, Products};
 
@@ -124,7 +124,7 @@ pub(crate) fn findings(system: &System, residual: &Residual) -> (Vec<Finding>, V
     if power.contains(&0.0) {
         return (vec![], vec![]);
     }
-    let rms: Vec<f64> = power.iter().map(|p| p.max(1e-300).sqrt()).collect();
+    let rms: Vec<f64> = power.iter().map(|p| p.sqrt()).collect();
     // What white noise of unit variance in the channels would be of the mean products.
     let unit = [(0, 0), (1, 1), (0, 1)]
         .map(|(row, other)| whiteners[row].of_white(&whiteners[other]) / (rms[row] * rms[other]));
@@ -168,7 +168,7 @@ pub(crate) fn findings(system: &System, residual: &Residual) -> (Vec<Finding>, V
         }
         let inflation = own.inflation(&with, &both);
         let gain = (with.likelihood - without.likelihood) / inflation;
-        let log_p = after_trials(log_tail(2.0 * gain, 1), TRIALS);
+        let log_p = by_chance(gain, 1.0, 1, TRIALS);
         if log_p > SHOWN.ln() || with.x[BASE + 1] <= 0.0 {
             continue;
         }
@@ -235,9 +235,8 @@ fn refusal(
     };
     let known = pairs.fit(with.x.clone(), shapes);
     let any = pairs.fit([&with.x[..], &[0.0; ANYTHING]].concat(), &anything);
-    let freedom = any.rank.saturating_sub(known.rank) as f64;
     // What as many free numbers explain of noise that is of the kind does not count against it.
-    let chance = freedom / 2.0 + 2.0 * (2.0 * freedom).sqrt();
+    let chance = at_most_of_noise(any.rank.saturating_sub(known.rank));
     let beyond = (any.likelihood - known.likelihood - chance).max(0.0) * pairs.every as f64;
     let share = gain / (gain + beyond / inflation);
     if share < HOLDS {
@@ -252,11 +251,9 @@ fn refusal(
         let time: Vec<f64> = (0..n)
             .map(|k| tangential[k] * depends.context.speed[k] / depends.context.top_speed())
             .collect();
-        let (power, length) = lines::spectrum(&time);
-        let mean = power.iter().sum::<f64>() / power.len() as f64;
-        let highest = power.iter().copied().fold(0.0, f64::max);
-        let line = highest / mean;
-        let at = power.iter().position(|p| *p == highest).unwrap_or(0);
+        let (power, length) = over_mean(&time);
+        let line = power.iter().copied().fold(0.0, f64::max);
+        let at = power.iter().position(|p| *p == line).unwrap_or(0);
         let hertz = at as f64 / length as f64 * depends.context.rate;
         // The axis vibrates at any speed alike.
         let vibrates = line_near(tangential, at) > line + CLEARLY;
@@ -271,15 +268,22 @@ fn refusal(
     None
 }
 
+/// The spectrum of values over its mean, and its length.
+fn over_mean(values: &[f64]) -> (Vec<f64>, usize) {
+    let (mut power, length) = lines::spectrum(values);
+    let mean = power.iter().sum::<f64>() / power.len() as f64;
+    power.iter_mut().for_each(|p| *p /= mean);
+    (power, length)
+}
+
 /// The highest line of a spectrum near a place in it, over the spectrum's mean.
 fn line_near(values: &[f64], at: usize) -> f64 {
     /// Share of the frequency by which what changes with the speed is beside it.
     const NEAR: f64 = 0.2;
-    let (power, _) = lines::spectrum(values);
-    let mean = power.iter().sum::<f64>() / power.len() as f64;
+    let (power, _) = over_mean(values);
     let reach = (NEAR * at as f64) as usize;
     let near = at - reach..(at + reach + 1).min(power.len());
-    power[near].iter().copied().fold(0.0, f64::max) / mean
+    power[near].iter().copied().fold(0.0, f64::max)
 }
 
 /// `gain` and `held_out`: log-likelihood of all data, and of data that was not fitted.

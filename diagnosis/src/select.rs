@@ -14,7 +14,7 @@ use crate::model::{Fit, Residual, System, atoms_of};
 use crate::score::{SHOWN, Scored, likely, score, worth};
 use crate::selection::{Accepted, Selection};
 use crate::simpler::simpler;
-use crate::statistics::{after_trials, log_tail, price};
+use crate::statistics::{by_chance, price};
 use crate::unexplained::{Unnamed, What};
 
 /// Most causes of one recording.
@@ -86,9 +86,7 @@ pub(crate) fn begin(
     // What stands beside a cause has changed since its numbers were fitted.
     for one in &mut accepted {
         let range = one.range();
-        let shapes = fit.shapes.iter().enumerate();
-        let others = shapes.filter(|(k, _)| !range.contains(k));
-        let others: Vec<Shape> = others.map(|(_, s)| s.clone()).collect();
+        let others = fit.others(&range);
         let gain = fit.solution.gain() - system.fit(others.clone()).solution.gain();
         exact::tuned(system, &others, one, gain);
         let mut shapes = fit.shapes.clone();
@@ -194,9 +192,7 @@ fn search(
             let again = twice && c.name == HYSTERESIS;
             !closed.contains(&c.domain) && !refused.contains(&c.name) && !again
         };
-        let all: Vec<usize> = (0..system.total.right.len()).collect();
-        let shapes = &found.fit.shapes;
-        let beside = Beside::new(&system.total, shapes).where_it_moves(system, shapes, &all);
+        let beside = Beside::all_that_moves(system, &found.fit.shapes);
         let known = catalogue.candidates.iter().filter(|c| open(c));
         let mut scored: Vec<Scored> = known.filter_map(|c| score(&beside, c.clone())).collect();
         let most = scored.iter().map(|s| s.gain).fold(0.0, f64::max);
@@ -310,13 +306,8 @@ fn widen(system: &mut System, found: &mut Selection, noise: &Records) {
             continue;
         }
         let range = one.range();
-        let shapes = found.fit.shapes.iter().enumerate();
-        let others: Vec<Shape> = shapes
-            .filter(|(k, _)| !range.contains(k))
-            .map(|(_, s)| s.clone())
-            .collect();
-        let [others, own] =
-            [&others, &found.fit.shapes[range.clone()].to_vec()].map(|list| system.sure(list));
+        let others = system.sure(&found.fit.others(&range));
+        let own = system.sure(&found.fit.shapes[range]);
         one.inflation = noise.inflation(system, &others, &own);
     }
 }
@@ -358,7 +349,7 @@ fn leftover(system: &System, catalogue: &Catalogue, fit: &Fit, closed: &[Domain]
     ];
     let tell = |domain: Domain| {
         let (gain, freedom) = beside.gain(&system.sure(catalogue.basis(domain)));
-        let log_p = after_trials(log_tail(2.0 * gain, freedom), 40.0);
+        let log_p = by_chance(gain, 1.0, freedom, 40.0);
         (log_p < SHOWN.ln()).then(|| Unnamed {
             log_p,
             gain,

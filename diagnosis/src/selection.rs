@@ -64,9 +64,7 @@ impl Accepted {
 
 /// The fit anew without the shapes of a range.
 fn without(fit: &Fit, range: &std::ops::Range<usize>, system: &System) -> Fit {
-    let shapes = fit.shapes.iter().enumerate();
-    let others = shapes.filter(|(k, _)| !range.contains(k));
-    system.fit(others.map(|(_, s)| s.clone()).collect())
+    system.fit(fit.others(range))
 }
 
 /// The end of the selection.

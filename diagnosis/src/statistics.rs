@@ -25,6 +25,12 @@ pub(crate) fn by_chance(gain: f64, inflation: f64, freedom: usize, trials: f64) 
     after_trials(log_tail(2.0 * gain / inflation, freedom), trials)
 }
 
+/// Log-likelihood that so many free numbers explain of noise alone at most: two standard deviations above the mean.
+pub(crate) fn at_most_of_noise(freedom: usize) -> f64 {
+    let freedom = freedom as f64;
+    freedom / 2.0 + 2.0 * (2.0 * freedom).sqrt()
+}
+
 /// Log-likelihood that a free number has to be worth among so many samples (Bayesian information criterion).
 pub(crate) fn price(samples: f64) -> f64 {
     0.5 * samples.ln()
