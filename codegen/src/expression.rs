@@ -41,6 +41,9 @@ pub(crate) fn lines(w: &Writer, id: NodeId) -> Vec<String> {
             one(w.fit(&term, zeros, bits, None))
         }
         Op::Quantise(a, to) => {
+            if let Some(choice) = crate::quantise::choice(w, a, id) {
+                return one(chosen(w, choice, cycle, fraction, bits));
+            }
             let target = Target { id, to, bits };
             if let Some(lines) = crate::quantise::of_sum(w, a, &target) {
                 return lines;
@@ -86,14 +89,7 @@ pub(crate) fn lines(w: &Writer, id: NodeId) -> Vec<String> {
                 lines
             }
         },
-        Op::Select(c, a, b) => {
-            let choose = w.condition_of(c, cycle);
-            one(format!(
-                "{choose} ? {} : {}",
-                w.fit(&at(a), fraction, bits, None),
-                w.fit(&at(b), fraction, bits, None)
-            ))
-        }
+        Op::Select(c, a, b) => one(chosen(w, [c, a, b], cycle, fraction, bits)),
         Op::LessThan(..) | Op::And(..) | Op::Or(..) | Op::Xor(..) | Op::Not(_) => {
             if w.inline(id) {
                 return vec![];
@@ -124,6 +120,19 @@ pub(crate) fn lines(w: &Writer, id: NodeId) -> Vec<String> {
             })
         }
     }
+}
+
+/// A choice between two values, in the format in which it is written.
+fn chosen(
+    w: &Writer,
+    [condition, yes, no]: [NodeId; 3],
+    cycle: usize,
+    fraction: u32,
+    bits: u32,
+) -> String {
+    let condition = w.condition_of(condition, cycle);
+    let [yes, no] = [yes, no].map(|o| w.fit(&w.at(o, cycle), fraction, bits, None));
+    format!("{condition} ? {yes} : {no}")
 }
 
 /// A coefficient that fits into the zeros appended to `a` needs no adder.

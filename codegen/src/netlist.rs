@@ -92,6 +92,7 @@ impl Netlist {
         for id in graph.ids() {
             let node = graph.node(id);
             if matches!(node.op, Op::Input | Op::Constant(_))
+                || w.moved(id).is_some()
                 || crate::quantise::fused(w, graph, id)
             {
                 continue;

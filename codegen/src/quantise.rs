@@ -47,27 +47,43 @@ pub(crate) fn of_sum(w: &Writer, a: NodeId, target: &Target) -> Option<Vec<Strin
     let range = (node.range.0 + offset, node.range.1 + offset);
     let bits = covering(range.0, range.1);
     let name = format!("{}_rounded", w.name(target.id));
+    let rounded = sum(w, &x, &y, symbol, fraction, bits, Some(half));
     w.declare(&name, bits);
-    let mut lines = vec![format!(
-        "wire signed [{}:0] {name} = {};",
-        bits - 1,
-        sum(w, &x, &y, symbol, fraction, bits, Some(half))
-    )];
     let term = Term {
-        source: Source::Signal(name, 0),
+        source: Source::Signal(name.clone(), 0),
         width: bits,
         fraction,
         range,
     };
-    lines.push(declaration(
-        w,
-        target.id,
-        &clamp(w, &drop_bits(&term, &target.to), &target.to, target.bits),
-    ));
-    Some(lines)
+    let clamped = clamp(w, &drop_bits(&term, &target.to), &target.to, target.bits);
+    if clamped == name {
+        return Some(vec![declaration(w, target.id, &rounded)]);
+    }
+    Some(vec![
+        format!("wire signed [{}:0] {name} = {rounded};", bits - 1),
+        declaration(w, target.id, &clamped),
+    ])
 }
 
-/// Whether sum `a` is written inside its only reader, a rounding.
+/// Condition and values of choice `a` where it is written inside its only reader, in whose format all of it has room.
+pub(crate) fn choice(w: &Writer, a: NodeId, reader: NodeId) -> Option<[NodeId; 3]> {
+    let node = w.graph.node(a);
+    let (Op::Select(condition, yes, no), Op::Quantise(_, to)) = (node.op, w.graph.node(reader).op)
+    else {
+        return None;
+    };
+    let whole =
+        node.format.fraction <= to.format.fraction && holds(&to, node.range, node.format.fraction);
+    (whole && node.name.is_none() && w.only_for(a, reader)).then_some([condition, yes, no])
+}
+
+/// Whether everything in `range` is in the target's.
+fn holds(to: &Quantiser, range: (i128, i128), fraction: u32) -> bool {
+    let shift = to.format.fraction - fraction.min(to.format.fraction);
+    range.0 << shift >= to.format.min_raw() && range.1 << shift <= to.format.max_raw()
+}
+
+/// Whether sum or choice `a` is written inside its only reader.
 pub(crate) fn fused(w: &Writer, graph: &Graph, a: NodeId) -> bool {
     let reader = graph
         .ids()
@@ -78,6 +94,9 @@ pub(crate) fn fused(w: &Writer, graph: &Graph, a: NodeId) -> bool {
     };
     if !w.only_for(a, reader) {
         return false;
+    }
+    if choice(w, a, reader).is_some() {
+        return true;
     }
     let node = graph.node(a);
     let Some(half) = half(&to, node.format.fraction) else {
@@ -141,8 +160,6 @@ fn convert(
     target_bits: u32,
     name: &str,
 ) -> (Vec<String>, String) {
-    let mut lines = vec![];
-    let mut term = term.clone();
     if let (Some(half), Source::Signal(source, base)) = (half(to, term.fraction), &term.source) {
         // Half a bit more and cut off is cut off and one more where the bit below is set.
         let drop = half + 1;
@@ -154,7 +171,7 @@ fn convert(
         let bits = covering(range.0, range.1);
         // Above its own bits the sign goes on.
         let top = term.width - 1;
-        let below = w.slice(&term, half.min(top), half.min(top));
+        let below = w.slice(term, half.min(top), half.min(top));
         let whole = Term {
             source: Source::Signal(source.clone(), base + drop.min(top)),
             width: term.width.saturating_sub(drop).max(1),
@@ -167,20 +184,24 @@ fn convert(
             1 => String::new(),
             n => format!("{}'b0, ", n - 1),
         };
-        lines.push(format!(
-            "wire signed [{}:0] {name} = {} + {{{zeros}{below}}};",
-            bits - 1,
+        let rounded = format!(
+            "{} + {{{zeros}{below}}}",
             w.fit(&whole, whole.fraction, bits, None)
-        ));
-        term = Term {
-            source: Source::Signal(name, 0),
+        );
+        let term = Term {
+            source: Source::Signal(name.clone(), 0),
             width: bits,
             fraction: whole.fraction,
             range,
         };
+        let text = clamp(w, &drop_bits(&term, to), to, target_bits);
+        if text == name {
+            return (vec![], rounded);
+        }
+        let line = format!("wire signed [{}:0] {name} = {rounded};", bits - 1);
+        return (vec![line], text);
     }
-    let text = clamp(w, &drop_bits(&term, to), to, target_bits);
-    (lines, text)
+    (vec![], clamp(w, &drop_bits(term, to), to, target_bits))
 }
 
 /// The expression that keeps the value in the target's range; `term` has no bits below the target's last one.
@@ -189,8 +210,7 @@ fn clamp(w: &Writer, term: &Term, to: &Quantiser, bits: u32) -> String {
     let fraction = format.fraction.max(term.fraction);
     let shift = format.fraction - term.fraction.min(format.fraction);
     let (low, high) = (term.range.0 << shift, term.range.1 << shift);
-    let inside = low >= format.min_raw() && high <= format.max_raw();
-    if inside || to.overflow == Overflow::Never {
+    if holds(to, term.range, term.fraction) || to.overflow == Overflow::Never {
         return w.fit(term, fraction, bits, None);
     }
     // Bits of the format itself; the node of an unsigned one has a sign bit more.
@@ -207,8 +227,15 @@ fn clamp(w: &Writer, term: &Term, to: &Quantiser, bits: u32) -> String {
     if format.signed {
         // Bits from the target's sign upwards are all alike where the value fits.
         let upper = w.slice(term, term.width - 1, own - 1 - shift);
+        let alike = match term.width - (own - 1 - shift) {
+            2 => {
+                let below = w.slice(term, term.width - 2, term.width - 2);
+                format!("{sign} == {below}")
+            }
+            n => format!("{upper} == {{{n}{{{sign}}}}}"),
+        };
         let limit = format!("{{{sign}, {{{}{{~{sign}}}}}}}", own - 1);
-        return format!("((&{upper}) | ~(|{upper})) ? {} : {limit}", kept(bits));
+        return format!("({alike}) ? {} : {limit}", kept(bits));
     }
     let mut text = kept(bits);
     if high > format.max_raw() {
@@ -218,10 +245,8 @@ fn clamp(w: &Writer, term: &Term, to: &Quantiser, bits: u32) -> String {
         } else {
             top
         };
-        text = format!(
-            "{any} ? {{1'b0, {{{own}{{1'b1}}}}}} : {{1'b0, {}}}",
-            kept(own)
-        );
+        let limit = literal(format.max_raw(), bits);
+        text = format!("{any} ? {limit} : {{1'b0, {}}}", kept(own));
     }
     if low < 0 {
         text = format!("{sign} ? {} : ({text})", literal(0, bits));

@@ -269,12 +269,13 @@ pub(crate) fn timetable(w: &Writer) -> Vec<String> {
 /// The products that are computed in a step.
 fn products(w: &Writer, step: usize) -> Vec<String> {
     let mut parts = vec![];
+    let name = |id: NodeId| w.name(w.moved(id).unwrap_or(id));
     for id in w.graph.ids() {
         let issued = w.schedule.issue[id.index()];
         if let (Op::Mul(a, b), Some((_, cycle))) = (w.graph.node(id).op, issued)
             && cycle == step
         {
-            parts.push(format!("{} * {}", w.name(a), w.name(b)));
+            parts.push(format!("{} * {}", name(a), name(b)));
         }
     }
     if parts.is_empty() {

@@ -115,6 +115,22 @@ impl<'a> Writer<'a> {
             && (self.uses[id.index()] == 1 || matches!(node.op, Op::Not(_)))
     }
 
+    /// The value that is only read with another point where nameless node `id` stands: it has no wire of its own.
+    pub(crate) fn moved(&self, id: NodeId) -> Option<NodeId> {
+        let node = self.graph.node(id);
+        let Op::Scale(value, _) = node.op else {
+            return None;
+        };
+        let alike = width(self.graph, id) == width(self.graph, value)
+            && node.range == self.graph.node(value).range;
+        let wire = node.name.is_some() || self.kept(id) || self.is_next(id);
+        (alike && !wire).then_some(value)
+    }
+
+    fn is_next(&self, id: NodeId) -> bool {
+        self.graph.next.iter().any(|(_, next)| *next == id)
+    }
+
     pub(crate) fn name(&self, id: NodeId) -> &str {
         &self.names[id.index()]
     }
@@ -130,19 +146,26 @@ impl<'a> Writer<'a> {
 
     /// Whether nothing but node `by` reads `id`, in the cycle in which it is computed.
     pub(crate) fn only_for(&self, id: NodeId, by: NodeId) -> bool {
-        let used_next = self.graph.next.iter().any(|(_, n)| *n == id);
         self.uses[id.index()] == 1
             && !self.kept(id)
-            && !used_next
+            && !self.is_next(id)
             && self.schedule.ready[id.index()] == self.schedule.ready[by.index()]
     }
 
     /// Node `id`, read in `cycle`.
     pub(crate) fn at(&self, id: NodeId, cycle: usize) -> Term {
         let node = self.graph.node(id);
+        if let Some(value) = self.moved(id) {
+            return Term {
+                fraction: node.format.fraction,
+                ..self.at(value, cycle)
+            };
+        }
         let source = match node.op {
             Op::Constant(raw) => {
-                self.note_coefficient(self.name(id));
+                if let Some(name) = &node.name {
+                    self.note_coefficient(name);
+                }
                 Source::Constant(raw.into())
             }
             Op::Input if SAMPLED.contains(&self.name(id)) => {

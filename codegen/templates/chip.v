@@ -11,10 +11,11 @@
 // Design ${ hash }$: ${ summary }$.
 //
 // Formats: sW.F is a two's complement number of W bits, F of them behind the point; uW.F has no sign and is kept here
-// with a zero in front, so that every number is signed. Angles are in turns of a scale period. A signal that saturates
-// reads: the bits above the result all equal its sign ? the result : the end of its range on the side of the sign.
-// x < m looks only at the bits of x that m has, and x < -m reads ~(~x < m): some synthesis tools get short comparisons
-// with negative numbers wrong.
+// with a zero in front, so that every number is signed. Angles are in turns of a scale period. A factor that is a power
+// of two only moves the point: its value stands at other places of a sum than its own format says. A signal that
+// saturates reads: the bits above the result all equal its sign ? the result : the end of its range on the side of the
+// sign. x < m looks only at the bits of x that m has, and x < -m reads ~(~x < m): some synthesis tools get short
+// comparisons with negative numbers wrong.
 //
 // A value x is computed in one step on the wire x, or on x_now where the register x keeps it for later steps and for
 // the testbench. All registers of the chip change together at the end of the last step: a sample is one transaction,

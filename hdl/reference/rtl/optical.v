@@ -9,10 +9,11 @@
 // Design bf4a848f45b1: 17 products on 1 multiplier, 20 clocks per sample.
 //
 // Formats: sW.F is a two's complement number of W bits, F of them behind the point; uW.F has no sign and is kept here
-// with a zero in front, so that every number is signed. Angles are in turns of a scale period. A signal that saturates
-// reads: the bits above the result all equal its sign ? the result : the end of its range on the side of the sign.
-// x < m looks only at the bits of x that m has, and x < -m reads ~(~x < m): some synthesis tools get short comparisons
-// with negative numbers wrong.
+// with a zero in front, so that every number is signed. Angles are in turns of a scale period. A factor that is a power
+// of two only moves the point: its value stands at other places of a sum than its own format says. A signal that
+// saturates reads: the bits above the result all equal its sign ? the result : the end of its range on the side of the
+// sign. x < m looks only at the bits of x that m has, and x < -m reads ~(~x < m): some synthesis tools get short
+// comparisons with negative numbers wrong.
 //
 // A value x is computed in one step on the wire x, or on x_now where the register x keeps it for later steps and for
 // the testbench. All registers of the chip change together at the end of the last step: a sample is one transaction,
@@ -28,13 +29,13 @@
 //      |                          | sector_ahead unseen_behind used_behind_counts may_add_behind sector_behind
 //      |                          | search_begun proven_stand held_and_lost nominal held_some_periods held_unknown
 //      |                          | held_long rises_again restart_cause last_gamma_gear returned_lately
-//      |                          | gear_periods_done quiet gear_done periods_count_ends parameters_follow held_before
-//      |                          | gain_c_inside gain_c_rests gain_s_inside gain_s_rests gains_steady proves
-//      |                          | nothing_proven_yet
+//      |                          | gear_periods_done disturbed_before quiet gear_done periods_count_ends
+//      |                          | parameters_follow held_before gain_c_inside gain_c_rests gain_s_inside gain_s_rests
+//      |                          | gains_steady proves nothing_proven_yet
 //    1 | loop_ab * error_previous | sin_value sin_slope y_c y_s counting whole_period travel_clear sector_added
 //      |                          | new_sector still_used_ahead used_up_ahead still_used_behind used_up_behind y_5
 //      |                          | known_in_lock held_or_known astray_goes_on period_breaks_off lost_before
-//    2 | theta_3 * y_s            | cos_value cos_slope drift
+//    2 | theta_3 * y_s            | cos_value cos_slope drift rate_drifted
 //    3 | sin_slope * sin_inside   |
 //    4 | cos_slope * cos_inside   | sin_magnitude sin_hat
 //    5 | theta_5 * y_c            | cos_magnitude cos_hat
@@ -47,16 +48,16 @@
 //   11 | e * e                    | rho_exact rho rho_in_window radius_present in_window flip level_step half_turn
 //      |                          | loop_follows rho_high rho_large rho_not_small rho_rises proven_better may_recall
 //   12 | loop_a * e_change        | level_moved level_full level_empty narrower loop_gear_up full_in_last_gear
-//      |                          | sample_counts counted rho_too_large residual_large disturbed_lately
+//      |                          | sample_counts counted period_tick rho_too_large residual_large disturbed_lately
 //      |                          | disturbed_or_held disturbed_or_recalled hold_cause hold signal_in_doubt
-//      |                          | held_in_doubt recall residual_rough radius_large fresh rho_limited period_tick
-//      |                          | disturbed_period gamma_restart gear_passed gamma_shift gamma_gear_up
+//      |                          | held_in_doubt recall residual_rough radius_large fresh rho_limited disturbed_period
+//      |                          | gamma_restart gear_passed gamma_shift gamma_gear_up gamma_gear_counted
 //      |                          | gear_periods_up periods_end gear_periods_again held_periods_up free_period
 //      |                          | held_periods_step held_periods_stay within_period gear_ends_calm stays_calm
-//      |                          | still_held holding first_gear_period restart_risen recall_again known_to_be_calm
-//      |                          | last_gear_passed quiet_periods_pass quiet_periods_end proved gain_moved remember
-//      |                          | search_improves remember_better return_ends signal_changed still_known fades
-//      |                          | fade_ends
+//      |                          | still_held holding gamma_gear_searched first_gear_period restart_risen recall_again
+//      |                          | known_to_be_calm last_gear_passed quiet_periods_pass quiet_periods_end proved
+//      |                          | gain_moved remember search_improves remember_better return_ends signal_changed
+//      |                          | still_known fades fade_ends
 //   13 | cos_hat * rho_limited    | kick recall_any remember_recent return_goes_on together_again period_taught
 //      |                          | travel_ends search_ends theta_applies lock_falls
 //   14 | sin_hat * rho_limited    | speed alpha_hat_turned alpha_hat_sum carry backwards not_forwards rho_c gradient_2
@@ -234,7 +235,7 @@ module optical (
     reg locked_next;
     reg signed [2:0] loop_gear_next;
     reg signed [17:0] e_change;
-    reg signed [26:0] speed_sum_2;
+    reg signed [26:0] rate_drifted;
     reg signed [27:0] speed_sum;
     reg signed [1:0] half_turn;
     reg signed [27:0] alpha_hat_next;
@@ -435,7 +436,7 @@ module optical (
     wire signed [14:0] theta_5_rounded =
         {theta_5_deviation[23], theta_5_deviation[23:10]} + {14'b0, theta_5_deviation[9]};
     wire signed [13:0] theta_5_now = // s14.15, step 0
-        ((&theta_5_rounded[14:13]) | ~(|theta_5_rounded[14:13]))
+        (theta_5_rounded[14] == theta_5_rounded[13])
             ? theta_5_rounded[13:0]
             : {theta_5_rounded[14], {13{~theta_5_rounded[14]}}};
 
@@ -450,11 +451,10 @@ module optical (
     wire signed [25:0] theta_5_times_y_c = product_0[25:0]; // s26.26, step 6
     wire signed [28:0] s_exact = // s29.26, step 6
         {s_exact_sum[26], s_exact_sum, 1'b0} + {{3{theta_5_times_y_c[25]}}, theta_5_times_y_c};
-    wire signed [17:0] c_rounded = c_exact[26:9] + {17'b0, c_exact[8]};
-    wire signed [17:0] c_now = c_rounded; // s18.16, step 7
+    wire signed [17:0] c_now = c_exact[26:9] + {17'b0, c_exact[8]}; // s18.16, step 7
     wire signed [18:0] s_rounded = s_exact[28:10] + {18'b0, s_exact[9]};
     wire signed [17:0] s_now = // s18.16, step 6
-        ((&s_rounded[18:17]) | ~(|s_rounded[18:17])) ? s_rounded[17:0] : {s_rounded[18], {17{~s_rounded[18]}}};
+        (s_rounded[18] == s_rounded[17]) ? s_rounded[17:0] : {s_rounded[18], {17{~s_rounded[18]}}};
 
     // Loss of signal
     //   |c| and |s| both below the threshold
@@ -475,7 +475,7 @@ module optical (
     wire signed [35:0] rho_exact = // s36.32, step 11
         {rho_exact_difference[34], rho_exact_difference} + {s_times_sin_hat[34], s_times_sin_hat};
     wire signed [17:0] rho_now = // s18.16, step 11
-        ((&rho_exact[35:33]) | ~(|rho_exact[35:33])) ? rho_exact[33:16] : {rho_exact[35], {17{~rho_exact[35]}}};
+        (rho_exact[35:33] == {3{rho_exact[35]}}) ? rho_exact[33:16] : {rho_exact[35], {17{~rho_exact[35]}}};
 
     // Phase detector
     //   e = s cos(alpha_hat) - c sin(alpha_hat)
@@ -486,7 +486,7 @@ module optical (
         {s_times_cos_hat[34], s_times_cos_hat} - {c_times_sin_hat[34], c_times_sin_hat};
     wire signed [19:0] e_seen_rounded = e_exact[35:16] + {19'b0, e_exact[15]};
     wire signed [17:0] e_seen = // s18.16, step 9
-        ((&e_seen_rounded[19:17]) | ~(|e_seen_rounded[19:17]))
+        (e_seen_rounded[19:17] == {3{e_seen_rounded[19]}})
             ? e_seen_rounded[17:0]
             : {e_seen_rounded[19], {17{~e_seen_rounded[19]}}};
     wire signed [17:0] e_now = signal_lost_next ? 18'sd0 : e_seen; // s18.16, step 9
@@ -509,7 +509,7 @@ module optical (
     wire signed [3:0] level_step_now = in_window_now ? 4'sd1 : 4'sh8; // s4.0, step 11, with lock_down
     wire signed [7:0] level_moved_sum = {lock_level[6], lock_level} + {{4{level_step[3]}}, level_step}; // s8.0, step 12
     wire signed [6:0] level_moved = // u6.0, step 12
-        level_moved_sum[7] ? 7'sd0 : (level_moved_sum[6] ? {1'b0, {6{1'b1}}} : {1'b0, level_moved_sum[5:0]});
+        level_moved_sum[7] ? 7'sd0 : (level_moved_sum[6] ? 7'sh3f : {1'b0, level_moved_sum[5:0]});
     wire level_moved_below_lock_full = level_moved < 7'sh3f; // step 12, with lock_full
     wire level_full = ~level_moved_below_lock_full; // step 12
     wire level_empty_now = level_moved < 7'sd1; // step 12
@@ -520,37 +520,33 @@ module optical (
     wire signed [3:0] loop_gear_next_sum = // s4.0, step 13
         {loop_gear[2], loop_gear} + {{2{loop_gear_up[1]}}, loop_gear_up};
     wire signed [2:0] loop_gear_next_bits = {1'b0, loop_gear_next_sum[1:0]}; // u2.0, step 13
-    wire signed [2:0] loop_gear_next_chosen = level_empty ? 3'sd0 : loop_gear_next_bits; // s3.0, step 13
     wire signed [6:0] lock_level_next_chosen_now = narrower ? 7'sh1f : level_moved; // s7.0, step 12, with lock_restart
     wire full_in_last_gear = level_full & last_gear; // step 12
     wire locked_next_now = (locked | full_in_last_gear) & ~level_empty_now; // step 12
     wire signed [6:0] lock_level_next = lock_level_next_chosen; // u6.0, step 19
-    wire signed [2:0] loop_gear_next_now = loop_gear_next_chosen; // u2.0, step 13
+    wire signed [2:0] loop_gear_next_now = level_empty ? 3'sd0 : loop_gear_next_bits; // u2.0, step 13
 
     // Loop filter
     //   rate' = rate + a (e - e_1) + (a + b) e_1; a times 2^n, a + b times 4^n in acquisition
     //   (paper section 4.3: Method 1's a and b, c = -2, d = 1; the rate is kept, it is the speed)
     wire signed [18:0] e_change_difference = {e[17], e} - {error_previous[17], error_previous}; // s19.16, step 10
     wire signed [17:0] e_change_now = // s18.16, step 10
-        ((&e_change_difference[18:17]) | ~(|e_change_difference[18:17]))
+        (e_change_difference[18] == e_change_difference[17])
             ? e_change_difference[17:0]
             : {e_change_difference[18], {17{~e_change_difference[18]}}};
     wire signed [33:0] loop_a_times_e_change = product_0[33:0]; // s34.38, step 13
-    wire signed [33:0] kick_scaled = loop_a_times_e_change; // s34.35, step 13
-    wire signed [26:0] kick_unshifted = kick_scaled[33:7];
+    wire signed [26:0] kick_unshifted = loop_a_times_e_change[33:7];
     wire signed [26:0] kick_shifted = kick_unshifted >>> loop_gear[1:0];
-    wire signed [25:0] kick_rounded = kick_shifted[26:1] + {25'b0, kick_shifted[0]};
-    wire signed [25:0] kick = kick_rounded; // s26.27, step 13
+    wire signed [25:0] kick = kick_shifted[26:1] + {25'b0, kick_shifted[0]}; // s26.27, step 13
     wire signed [33:0] loop_ab_times_error_previous = product_0[33:0]; // s34.42, step 2
-    wire signed [33:0] drift_scaled = loop_ab_times_error_previous; // s34.36, step 2
-    wire signed [25:0] drift_unshifted = drift_scaled[33:8];
+    wire signed [25:0] drift_unshifted = loop_ab_times_error_previous[33:8];
     wire signed [25:0] drift_shifted = drift_unshifted >>> {loop_gear[1:0], 1'b0};
     wire signed [24:0] drift_rounded = drift_shifted[25:1] + {24'b0, drift_shifted[0]};
     wire signed [25:0] drift = {drift_rounded[24], drift_rounded}; // s26.27, step 2
-    wire signed [26:0] speed_sum_2_now = {rate[25], rate} + {drift[25], drift}; // s27.27, step 2
-    wire signed [27:0] speed_sum_now = {speed_sum_2[26], speed_sum_2} + {{2{kick[25]}}, kick}; // s28.27, step 13
+    wire signed [26:0] rate_drifted_now = {rate[25], rate} + {drift[25], drift}; // s27.27, step 2
+    wire signed [27:0] speed_sum_now = {rate_drifted[26], rate_drifted} + {{2{kick[25]}}, kick}; // s28.27, step 13
     wire signed [25:0] speed_now = // s26.27, step 14
-        ((&speed_sum[27:25]) | ~(|speed_sum[27:25])) ? speed_sum[25:0] : {speed_sum[27], {25{~speed_sum[27]}}};
+        (speed_sum[27:25] == {3{speed_sum[27]}}) ? speed_sum[25:0] : {speed_sum[27], {25{~speed_sum[27]}}};
 
     // Position
     //   alpha_hat' = alpha_hat + rate' (mod 1), count' = count + carry
@@ -630,6 +626,7 @@ module optical (
     wire loop_follows_now = in_window_now & not_catches_up; // step 11
     wire sample_counts = counting & loop_follows; // step 12
     wire counted = sample_counts & new_sector; // step 12
+    wire period_tick = counted & whole_period; // step 12
     wire astray_lately = astray | far_behind; // step 10
     wire astray_goes_on_now = ~whole_period_now & counting_now; // step 1
     wire astray_period_ends = whole_period & astray_lately; // step 10
@@ -661,7 +658,7 @@ module optical (
     wire not_fading_now = ~fading; // step 0
     wire proven_stand_now = known & not_fading_now; // step 0
     wire rho_rises = ~rho_below_hold_residual; // step 11
-    wire held_and_lost_now = ~($signed(held_periods[8:2]) < 7'sd1) & ~locked; // step 0, with held_and_lost_constant
+    wire held_and_lost_now = ~($signed(held_periods[8:2]) < 7'sd1) & ~locked; // step 0
     wire not_apart_now = ~apart; // step 0
     wire proven_better = (not_apart | rho_rises) | held_and_lost; // step 11
     wire may_recall_now = proven_stand & proven_better; // step 11
@@ -677,30 +674,27 @@ module optical (
     //   radius - 1 = rho + e^2/2
     //   (rho is a projection on the estimate, which is e off the pair: cos(e) - 1 is no error of the sensor)
     wire signed [35:0] e_times_e = product_0[35:0]; // s36.32, step 12
-    wire signed [35:0] rho_limited_scaled = e_times_e; // s36.33, step 12
 
     // Gradient along the radius
     //   rho_c = cos(alpha_hat) rho, rho_s = sin(alpha_hat) rho
     //   (paper section 5.5.1: r + (sin, -cos) e = n (n^T r))
-    wire signed [35:0] rho_limited_rounded = {rho[17], rho, 17'h10000} + rho_limited_scaled;
+    wire signed [35:0] rho_limited_rounded = {rho[17], rho, 17'h10000} + e_times_e;
     wire signed [14:0] rho_limited_now = // s15.16, step 12
-        ((&rho_limited_rounded[35:31]) | ~(|rho_limited_rounded[35:31]))
+        (rho_limited_rounded[35:31] == {5{rho_limited_rounded[35]}})
             ? rho_limited_rounded[31:17]
             : {rho_limited_rounded[35], {14{~rho_limited_rounded[35]}}};
     wire signed [31:0] cos_hat_times_rho_limited = product_0[31:0]; // s32.32, step 14
-    wire signed [17:0] rho_c_rounded = cos_hat_times_rho_limited[31:14] + {17'b0, cos_hat_times_rho_limited[13]};
-    wire signed [17:0] rho_c_now = rho_c_rounded; // s18.18, step 14
+    wire signed [17:0] rho_c_now = // s18.18, step 14
+        cos_hat_times_rho_limited[31:14] + {17'b0, cos_hat_times_rho_limited[13]};
     wire signed [31:0] sin_hat_times_rho_limited = product_0[31:0]; // s32.32, step 15
-    wire signed [17:0] rho_s_rounded = sin_hat_times_rho_limited[31:14] + {17'b0, sin_hat_times_rho_limited[13]};
-    wire signed [17:0] rho_s_now = rho_s_rounded; // s18.18, step 15
-    wire period_tick = counted & whole_period; // step 12
+    wire signed [17:0] rho_s_now = // s18.18, step 15
+        sin_hat_times_rho_limited[31:14] + {17'b0, sin_hat_times_rho_limited[13]};
 
     // Parameter update
     //   theta -= gamma gradient, each component times a power of two that lets all parameters converge alike; once
     //   gamma has settled (theta_5: by a quarter of it then), the sum over a period of travel where it ends
     //   (paper section 5.5.1, M of equation (7))
-    wire signed [11:0] y_5_scaled = y_c; // s12.13, step 1
-    wire signed [13:0] y_5_now = gamma_settled ? {{2{y_5_scaled[11]}}, y_5_scaled} : {y_c, 2'b0}; // s14.13, step 1
+    wire signed [13:0] y_5_now = gamma_settled ? {{2{y_c[11]}}, y_c} : {y_c, 2'b0}; // s14.13, step 1
     wire signed [30:0] gradient_5 = product_0[30:0]; // s31.31, step 18
     wire signed [28:0] y_c_times_rho_c = product_0[28:0]; // s29.29, step 16
     wire signed [28:0] y_s_times_rho_s = product_0[28:0]; // s29.29, step 17
@@ -710,7 +704,7 @@ module optical (
     wire signed [25:0] running_5_next_difference = // s26.25, step 19
         {{2{running_5[23]}}, running_5} - {step_5[24], step_5};
     wire signed [23:0] running_5_next_bits = // s24.25, step 19
-        ((&running_5_next_difference[25:23]) | ~(|running_5_next_difference[25:23]))
+        (running_5_next_difference[25:23] == {3{running_5_next_difference[25]}})
             ? running_5_next_difference[23:0]
             : {running_5_next_difference[25], {23{~running_5_next_difference[25]}}};
     wire signed [28:0] gradient_1 = y_c_times_rho_c; // s29.32, step 16
@@ -719,7 +713,7 @@ module optical (
     wire signed [25:0] running_1_next_difference = // s26.25, step 17
         {running_1[24], running_1} - {{4{step_1[21]}}, step_1};
     wire signed [24:0] running_1_next_bits = // s25.25, step 17
-        ((&running_1_next_difference[25:24]) | ~(|running_1_next_difference[25:24]))
+        (running_1_next_difference[25] == running_1_next_difference[24])
             ? running_1_next_difference[24:0]
             : {running_1_next_difference[25], {24{~running_1_next_difference[25]}}};
     wire signed [17:0] gradient_2 = rho_c_now; // s18.22, step 14
@@ -728,7 +722,7 @@ module optical (
     wire signed [24:0] running_2_next_difference = // s25.25, step 15
         {running_2[23], running_2} - {{4{step_2[20]}}, step_2};
     wire signed [23:0] running_2_next_bits = // s24.25, step 15
-        ((&running_2_next_difference[24:23]) | ~(|running_2_next_difference[24:23]))
+        (running_2_next_difference[24] == running_2_next_difference[23])
             ? running_2_next_difference[23:0]
             : {running_2_next_difference[24], {23{~running_2_next_difference[24]}}};
     wire signed [28:0] gradient_3 = y_s_times_rho_s; // s29.32, step 17
@@ -737,7 +731,7 @@ module optical (
     wire signed [25:0] running_3_next_difference = // s26.25, step 18
         {running_3[24], running_3} - {{4{step_3[21]}}, step_3};
     wire signed [24:0] running_3_next_bits = // s25.25, step 18
-        ((&running_3_next_difference[25:24]) | ~(|running_3_next_difference[25:24]))
+        (running_3_next_difference[25] == running_3_next_difference[24])
             ? running_3_next_difference[24:0]
             : {running_3_next_difference[25], {24{~running_3_next_difference[25]}}};
     wire signed [17:0] gradient_4 = rho_s_now; // s18.22, step 15
@@ -746,7 +740,7 @@ module optical (
     wire signed [24:0] running_4_next_difference = // s25.25, step 16
         {running_4[23], running_4} - {{4{step_4[20]}}, step_4};
     wire signed [23:0] running_4_next_bits = // s24.25, step 16
-        ((&running_4_next_difference[24:23]) | ~(|running_4_next_difference[24:23]))
+        (running_4_next_difference[24] == running_4_next_difference[23])
             ? running_4_next_difference[23:0]
             : {running_4_next_difference[24], {23{~running_4_next_difference[24]}}};
 
@@ -763,20 +757,20 @@ module optical (
     wire last_gamma_gear_now = ~gamma_gear_below_gamma_gear_last_now; // step 0
     wire returned_lately = returning & ($signed(gear_periods[6:5]) < 2'sd1); // step 0, with returning_periods
     wire gear_periods_done = ~(gear_periods < 7'sd3) & ~returned_lately; // step 0, with gear_periods_last
-    wire disturbed_or_held_2 = disturbed | held; // step 0
-    wire quiet_now = ~disturbed_or_held_2; // step 0
+    wire disturbed_before = disturbed | held; // step 0
+    wire quiet_now = ~disturbed_before; // step 0
     wire gear_done_now = gear_periods_done & quiet_now; // step 0
     wire gear_passed = period_tick & gear_done; // step 12
     wire gamma_shift = gear_passed & gamma_gear_below_gamma_gear_last; // step 12
     wire signed [1:0] gamma_gear_up = gamma_shift ? 2'sd1 : 2'sd0; // s2.0, step 12
-    wire signed [4:0] gamma_gear_next_sum = // s5.0, step 12
+    wire signed [4:0] gamma_gear_counted_sum = // s5.0, step 12
         {gamma_gear[3], gamma_gear} + {{3{gamma_gear_up[1]}}, gamma_gear_up};
-    wire signed [3:0] gamma_gear_next_bits_2 = {1'b0, gamma_gear_next_sum[2:0]}; // u3.0, step 12
+    wire signed [3:0] gamma_gear_counted = {1'b0, gamma_gear_counted_sum[2:0]}; // u3.0, step 12
     wire signed [1:0] gear_periods_up = period_tick ? 2'sd1 : 2'sd0; // s2.0, step 12
     wire signed [7:0] gear_periods_next_sum = // s8.0, step 12
         {gear_periods[6], gear_periods} + {{6{gear_periods_up[1]}}, gear_periods_up};
     wire signed [6:0] gear_periods_next_bits = {1'b0, gear_periods_next_sum[5:0]}; // u6.0, step 12
-    wire periods_count_ends_now = gear_done_now | disturbed_or_held_2; // step 0
+    wire periods_count_ends_now = gear_done_now | disturbed_before; // step 0
     wire periods_end = period_tick & periods_count_ends; // step 12
     wire gear_periods_again = (periods_end | gamma_restart) | not_counting; // step 12
     wire signed [1:0] held_periods_up = disturbed_period ? 2'sd1 : 2'sd0; // s2.0, step 12
@@ -791,18 +785,15 @@ module optical (
     wire signed [9:0] held_periods_next_sum = // s10.0, step 12
         {held_periods[8], held_periods} + {{8{held_periods_step[1]}}, held_periods_step};
     wire signed [8:0] held_periods_next_bits = {1'b0, held_periods_next_sum[7:0]}; // u8.0, step 12
-    wire signed [8:0] held_periods_next_chosen = held_periods_stay ? held_periods_next_bits : 9'sd0; // s9.0, step 12
-    wire signed [8:0] held_periods_next_now = held_periods_next_chosen; // u8.0, step 12
+    wire signed [8:0] held_periods_next_now = held_periods_stay ? held_periods_next_bits : 9'sd0; // u8.0, step 12
     wire within_period = ~period_tick & counting; // step 12
     wire not_rough_now = ~rough; // step 0
     wire gear_ends_calm = gear_passed & not_rough; // step 12
     wire stays_calm = (gear_ends_calm | calm) & ~gamma_restart; // step 12
     wire still_held = held & ~period_tick; // step 12
     wire holding = (disturbed_period & ~gamma_restart) | still_held; // step 12
-    wire signed [3:0] gamma_gear_next_chosen_2 = gamma_restart ? 4'sd0 : gamma_gear_next_bits_2; // s4.0, step 12
-    wire signed [3:0] gamma_gear_next_bits = gamma_gear_next_chosen_2; // u3.0, step 12
-    wire signed [6:0] gear_periods_next_chosen = gear_periods_again ? 7'sd0 : gear_periods_next_bits; // s7.0, step 12
-    wire signed [6:0] gear_periods_next_now = gear_periods_next_chosen; // u6.0, step 12
+    wire signed [3:0] gamma_gear_searched = gamma_restart ? 4'sd0 : gamma_gear_counted; // u3.0, step 12
+    wire signed [6:0] gear_periods_next_now = gear_periods_again ? 7'sd0 : gear_periods_next_bits; // u6.0, step 12
     wire first_gear_period = (period_tick & quiet) & gamma_gear_below_one; // step 12
     wire disturbed_next_now = residual_large | (disturbed & within_period); // step 12
     wire rough_next_now = residual_rough | (rough & within_period); // step 12
@@ -821,9 +812,8 @@ module optical (
     wire signed [23:0] running_4_next_now = recall_any ? {proven_4, 7'b0} : running_4_next_bits; // s24.25, step 16
     wire signed [23:0] running_5_next = recall_any ? {proven_5, 7'b0} : running_5_next_bits; // s24.25, step 19
     wire known_to_be_calm_now = stays_calm | recall_again_now; // step 12
-    wire signed [3:0] gamma_gear_next_chosen = // s4.0, step 12, with gamma_gear_last
-        recall_again_now ? 4'sd5 : gamma_gear_next_bits;
-    wire signed [3:0] gamma_gear_next_now = gamma_gear_next_chosen; // u3.0, step 12
+    wire signed [3:0] gamma_gear_next_now = // u3.0, step 12, with gamma_gear_last
+        recall_again_now ? 4'sd5 : gamma_gear_searched;
     wire last_gear_passed = gear_passed & last_gamma_gear; // step 12
     wire quiet_periods_pass = last_gear_passed & not_returning; // step 12
     wire quiet_periods_end = quiet_periods_pass & halfway; // step 12
@@ -913,8 +903,7 @@ module optical (
             default: unshifted_2 = gradient_5[30:5];
         endcase
     wire signed [25:0] shift_2 = unshifted_2 >>> gamma_gear[2:0];
-    wire signed [24:0] shifted_2_rounded = shift_2[25:1] + {24'b0, shift_2[0]};
-    wire signed [24:0] shifted_2 = shifted_2_rounded;
+    wire signed [24:0] shifted_2 = shift_2[25:1] + {24'b0, shift_2[0]};
 
     // Multiplier 0
     always @(posedge clk)
@@ -1024,7 +1013,7 @@ module optical (
         if (step == 5'd2) begin
             cos_value <= cos_value_now;
             cos_slope <= cos_slope_now;
-            speed_sum_2 <= speed_sum_2_now;
+            rate_drifted <= rate_drifted_now;
         end
         if (step == 5'd3) begin
             s_exact_sum <= s_exact_sum_now;
@@ -1273,8 +1262,8 @@ module optical (
         e_exact[14:0],
         in_window,
         loop_gear_next_sum[3:2],
-        kick_scaled[6:0],
-        drift_scaled[7:0],
+        loop_a_times_e_change[6:0],
+        loop_ab_times_error_previous[7:0],
         carry[2],
         count_next_sum[32],
         sector_relative_difference[8],
@@ -1289,7 +1278,7 @@ module optical (
         gradient_3[5:0],
         step_3_geared[24:22],
         step_4_geared[24:21],
-        gamma_gear_next_sum[4:3],
+        gamma_gear_counted_sum[4:3],
         gear_periods_next_sum[7:6],
         held_periods_next_sum[9:8],
         gain_c_rests_difference[1:0],

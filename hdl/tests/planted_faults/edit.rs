@@ -72,9 +72,16 @@ pub(crate) fn another_literal(verilog: &str, words: &[&str], change: fn(u64) -> 
     verilog.replacen(line, &line.replacen(&format!("'sh{digits}"), &other, 1), 1)
 }
 
+/// What the line holds in which `name` is rounded: that of a wire before it saturates, or its own.
+pub(crate) fn rounding(verilog: &str, name: &str) -> String {
+    let before = format!(" {name}_rounded =");
+    let own = format!(" {name} =");
+    if verilog.contains(&before) { before } else { own }
+}
+
 /// The bit by which `name` is rounded, and the one below it.
 pub(crate) fn guard(verilog: &str, name: &str) -> (String, String) {
-    let words = ["wire", &format!(" {name}_rounded =")];
+    let words = ["wire", &rounding(verilog, name)];
     let guard = between(verilog, &words, "'b0, ", "};");
     let (signal, bit) = guard.trim_end_matches(']').split_once('[').expect("a bit");
     let below = bit.parse::<u32>().expect("a number") - 1;
@@ -86,7 +93,7 @@ pub(crate) fn guard(verilog: &str, name: &str) -> (String, String) {
 pub(crate) fn half_down(verilog: &str, name: &str) -> String {
     let (guard, below) = guard(verilog, name);
     let down = format!("{guard} & (|{}:0])", below.trim_end_matches(']'));
-    let words = ["wire", &format!(" {name}_rounded =")];
+    let words = ["wire", &rounding(verilog, name)];
     let [from, to] = [guard, down].map(|bit| format!("{bit}}};"));
     replaced(verilog, &words, &from, &to)
 }

@@ -68,7 +68,7 @@ pub(crate) fn faults() -> Vec<Fault> {
         }),
         fault("rounding of c: cut off", |v| {
             let (guard, _) = guard(v, "c");
-            replaced(v, &["wire", " c_rounded ="], &guard, "1'b0")
+            replaced(v, &["wire", " c ="], &guard, "1'b0")
         }),
         // Its nominal value carries half of a last bit, which is its lowest one.
         fault("rounding of theta_1: cut off", |v| {
@@ -175,8 +175,8 @@ pub(crate) fn faults() -> Vec<Fault> {
         swap(
             "what the loop lags is taken off the radius",
             &["wire", " rho_limited_rounded ="],
-            "+ rho_limited_scaled",
-            "- rho_limited_scaled",
+            "+ e_times_e",
+            "- e_times_e",
         ),
         swap(
             "what is not small holds before it was ever small",
@@ -324,7 +324,7 @@ pub(crate) fn skew_faults() -> Vec<Fault> {
         ),
         swap(
             "skew before lock",
-            &["wire", " skew_chosen ="],
+            &["wire", " skew ="],
             "locked ?",
             "1'b1 ?",
         ),

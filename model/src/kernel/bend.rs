@@ -56,27 +56,28 @@ pub fn bend<S: Signal>(
 ) -> (S, S) {
     u_c.begin(&BEND);
     let signal = &structure.formats.signal;
-    let channel = |u: S, second: S, (cubic, constant): (S, S), name: [&'static str; 3]| {
+    let channel = |u: S, second: S, (cubic, constant): (S, S), name: [&'static str; 4]| {
         let square = (u * u).quantise(signal).named(name[0]);
         let slope = (cubic * square - constant.widen())
             .quantise(signal)
             .named(name[1]);
         // T2 = 2 (u² − ½)
         let half_t2 = (square - k.half).named(name[2]);
-        (u.widen() + u * slope + (second * half_t2).scale(1)).quantise(signal)
+        let odd = (u.widen() + u * slope).named(name[3]);
+        (odd + (second * half_t2).scale(1)).quantise(signal)
     };
     (
         channel(
             u_c,
             bends.theta_6,
             bends.cubic_c,
-            ["u_c_square", "bend_c", "half_t2_c"],
+            ["u_c_square", "bend_c", "half_t2_c", "c_bent_odd"],
         ),
         channel(
             u_s,
             bends.theta_7,
             bends.cubic_s,
-            ["u_s_square", "bend_s", "half_t2_s"],
+            ["u_s_square", "bend_s", "half_t2_s", "s_bent_odd"],
         ),
     )
 }

@@ -10,7 +10,7 @@
 
 use super::catch_up::CatchUp;
 use super::detector::within;
-use super::sensitivity::{self, Sensitivity};
+use super::sensitivity::{self, Sensitivity, names};
 use super::travel::Travel;
 use super::{Coefficients, State, Structure};
 use crate::signal::{Formula, Logic, Signal, Wide};
@@ -56,7 +56,7 @@ pub fn complete<S: Signal>(
         rate: state.null_gradient_rate,
         error: state.null_gradient_error,
     };
-    let sensitivity = sensitivity::advance(w, before, "null_error", k, structure);
+    let sensitivity = sensitivity::advance(w, before, names!("null"), k, structure);
     e.begin(&MOVING);
     let late = state
         .travel_samples
@@ -70,14 +70,15 @@ pub fn complete<S: Signal>(
     let learns = state.moving.and(spoilt.not()).named("completion_learns");
     let moving = fast.and(travel.whole_period.or(learns));
     let clear = travel.whole_period.or(counting.not());
-    let samples = (state.travel_samples + S::select(late, k.zero, k.one))
-        .quantise(&structure.formats.travel_samples);
+    let one_more = S::select(late, k.zero, k.one).named("travel_samples_up");
+    let samples = (state.travel_samples + one_more).quantise(&structure.formats.travel_samples);
     e.begin(&COMPLETION);
     let gamma = structure.calibration.completed().unwrap_or(0) as i32;
     let step = (sensitivity.error * e)
         .scale(-gamma)
         .named("gradient_9")
-        .quantise(&structure.formats.step);
+        .quantise(&structure.formats.step)
+        .named("sector_step_9");
     let adds = learns.and(travel.new_sector).named("sector_learned");
     let gathered = (state.gathered_9 + S::select(adds, step, k.zero))
         .quantise(&structure.formats.deviation[8]);

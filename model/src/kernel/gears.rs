@@ -265,12 +265,15 @@ pub fn gears<S: Signal>(
         done
     };
     let done = starting.map_or(done, |starting| done.or(starting));
-    let quiet = state.disturbed.or(state.held).not().named("quiet");
+    let before = state.disturbed.or(state.held).named("disturbed_before");
+    let quiet = before.not().named("quiet");
     let done = done.and(quiet).named("gear_done");
     let passed = tick.and(done).named("gear_passed");
     let shift = passed.and(last.not()).named("gamma_shift");
     let up = S::select(shift, k.one, k.zero).named("gamma_gear_up");
-    let gear = (state.gamma_gear + up).quantise(&structure.formats.gamma_gear);
+    let gear = (state.gamma_gear + up)
+        .quantise(&structure.formats.gamma_gear)
+        .named("gamma_gear_counted");
     let one_more = S::select(tick, k.one, k.zero).named("gear_periods_up");
     let counted = (state.gear_periods + one_more).quantise(&structure.formats.gear_periods);
     let count_ends = done.or(quiet.not()).named("periods_count_ends");

@@ -1,7 +1,7 @@
 //! The gradient of one sample, component by component.
 
 use super::detector;
-use super::sensitivity::{self, Sensitivity};
+use super::sensitivity::{self, Names, Sensitivity, names};
 use super::start::Polar;
 use super::{Coefficients, State, Structure};
 use crate::signal::{Formula, Signal, Wide};
@@ -203,23 +203,23 @@ pub fn sensitivities<S: Signal>(
         rate,
         error,
     });
-    let next = |w: S, i: usize, error: &'static str| {
-        sensitivity::advance(w, before[i], error, k, structure)
+    let next = |w: S, i: usize, names: &'static Names| {
+        sensitivity::advance(w, before[i], names, k, structure)
     };
     let fifth = if structure.calibration.has_phase() {
         let w = (cos_hat * y_c).quantise(signal).named("w_5");
-        next(w, 4, "w_5_error")
+        next(w, 4, names!("w_5"))
     } else {
         before[4]
     };
     let w_1 = (-(sin_hat * y_c).quantise(signal)).named("w_1");
     let w_3 = (cos_hat * y_s).quantise(signal).named("w_3");
     [
-        next(w_1, 0, "w_1_error"),
-        next((-sin_hat).named("w_2"), 1, "w_2_error"),
-        next(w_3, 2, "w_3_error"),
+        next(w_1, 0, names!("w_1")),
+        next((-sin_hat).named("w_2"), 1, names!("w_2")),
+        next(w_3, 2, names!("w_3")),
         // w_4 is cos α̂.
-        next(cos_hat, 3, "w_4_error"),
+        next(cos_hat, 3, names!("w_4")),
         fifth,
     ]
 }

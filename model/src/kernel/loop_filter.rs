@@ -92,7 +92,7 @@ pub fn rate<S: Signal>(e: S, state: &State<S>, k: &Coefficients<S>, structure: &
     let kick = geared(k.loop_a * change, 1, state, structure).named("kick");
     let drift = geared(k.loop_ab * state.error_previous, 2, state, structure).named("drift");
     // The drift is there long before the kick.
-    (kept + drift + kick).quantise(&formats.rate)
+    ((kept + drift).named("rate_drifted") + kick).quantise(&formats.rate)
 }
 
 /// What a coefficient adds to the rate in the present gear of the loop, each gear narrower by 2^`stride`.

@@ -79,8 +79,9 @@ pub fn recall<S: Signal>(
     }
     // And what is larger than small is no error of theirs.
     gears.calm = gears.calm.or(again).named("known_to_be_calm");
+    let searched = gears.gear.named("gamma_gear_searched");
     gears.gear =
-        S::select(again, k.gamma_gear_last, gears.gear).quantise(&structure.formats.gamma_gear);
+        S::select(again, k.gamma_gear_last, searched).quantise(&structure.formats.gamma_gear);
     let quiet = passed.and(last).named("last_gear_passed");
     // What has just been recalled says nothing new.
     let quiet = quiet.and(state.returning.not()).named("quiet_periods_pass");

@@ -111,6 +111,7 @@ fn advance_of<S: Signal, const PLAIN: bool>(
     });
     let counts = counting.and(follows).named("sample_counts");
     let counted = counts.and(travel.new_sector).named("counted");
+    let tick = counted.and(travel.whole_period).named("period_tick");
     let hold = gears::hold(
         rho,
         counts,
@@ -150,7 +151,7 @@ fn advance_of<S: Signal, const PLAIN: bool>(
     };
     let gate = calibration::Gate {
         fresh,
-        tick: counted.and(travel.whole_period).named("period_tick"),
+        tick,
         whole_period: travel.whole_period,
         clear: travel.clear,
     };

@@ -34,12 +34,40 @@ pub struct Sensitivity<S> {
     pub error: S,
 }
 
-/// The scalar after this sample; `before` holds the error of the sample before, the result that of this one. `name` is
-/// that of w − ∇α̂.
+/// What the parts of one sensitivity are called in waves and Verilog.
+#[derive(Clone, Copy, Debug)]
+pub struct Names {
+    /// w − ∇α̂.
+    pub error: &'static str,
+    /// Its change in a sample.
+    pub change: &'static str,
+    /// What the change adds to the rate.
+    pub kick: &'static str,
+    /// What the error of the sample before adds to it.
+    pub drift: &'static str,
+    /// The rate with that.
+    pub drifted: &'static str,
+}
+
+/// Names that begin with the word of `w`.
+macro_rules! names {
+    ($w:literal) => {
+        &crate::kernel::sensitivity::Names {
+            error: concat!($w, "_error"),
+            change: concat!($w, "_error_change"),
+            kick: concat!($w, "_kick"),
+            drift: concat!($w, "_drift"),
+            drifted: concat!($w, "_rate_drifted"),
+        }
+    };
+}
+pub(super) use names;
+
+/// The scalar after this sample; `before` holds the error of the sample before, the result that of this one.
 pub fn advance<S: Signal>(
     w: S,
     before: Sensitivity<S>,
-    name: &'static str,
+    names: &Names,
     k: &Coefficients<S>,
     structure: &Structure,
 ) -> Sensitivity<S> {
@@ -50,7 +78,9 @@ pub fn advance<S: Signal>(
     });
     let formats = &structure.formats;
     let to = &formats.alpha_gradient;
-    let error = (w - before.gradient).quantise(&formats.signal).named(name);
+    let error = (w - before.gradient)
+        .quantise(&formats.signal)
+        .named(names.error);
     let kept = if structure.filter_type == 2 {
         before.rate
     } else {
@@ -60,10 +90,13 @@ pub fn advance<S: Signal>(
     let rate = if structure.method == Method::Two {
         (kept + (k.loop_a_radians * error).quantise(to)).quantise(to)
     } else {
-        let change = (error - before.error).quantise(&formats.signal);
-        let kick = (k.loop_a_radians * change).quantise(to);
+        let change = (error - before.error)
+            .quantise(&formats.signal)
+            .named(names.change);
+        let kick = (k.loop_a_radians * change).quantise(to).named(names.kick);
         let drift = (k.loop_ab_radians * before.error).quantise(to);
-        (kept + drift + kick).quantise(to)
+        let drift = drift.named(names.drift);
+        ((kept + drift).named(names.drifted) + kick).quantise(to)
     };
     Sensitivity {
         gradient: (before.gradient + rate).quantise(to),
