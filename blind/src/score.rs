@@ -62,7 +62,7 @@ impl Score {
     /// Scores a verdict on a case by its opened truth.
     #[must_use]
     pub fn of(truth: Truth, case: &Case, verdict: &Verdict) -> Self {
-        let hidden = |name: &Named| truth.hidden.iter().any(|h| name.holds(&h.name));
+        let hidden = |name: &Named| truth.hidden.iter().any(|h| is(name, h, &truth));
         let strange = |motion: bool| -> Vec<String> {
             let others = verdict.named.iter().filter(|n| n.motion == motion);
             others
@@ -77,7 +77,7 @@ impl Score {
             None => "nothing".into(),
         };
         let outcomes = truth.hidden.iter();
-        let outcomes = outcomes.map(|h| outcome(h, &named, verdict.unexplained));
+        let outcomes = outcomes.map(|h| outcome(h, &named, verdict.unexplained, &truth));
         let electrical = !truth.hidden.is_empty() && truth.hidden.iter().all(|h| h.electrical);
         let position = electrical
             .then(|| of_positions(&case.world, &case.rows, &verdict.positions))
@@ -93,7 +93,7 @@ impl Score {
             parameters: truth
                 .hidden
                 .iter()
-                .flat_map(|h| parameters(h, &verdict.named))
+                .flat_map(|h| parameters(h, &verdict.named, &truth))
                 .collect(),
             position,
             seconds: verdict.seconds,
@@ -111,35 +111,47 @@ impl Score {
 /// A motion that is named where the axis truly vibrates is no rival of a hidden sensor cause, unless it may be that cause.
 fn counts(truth: &Truth, named: &Named) -> bool {
     let true_motion = named.motion && truth.vibration_rad.is_some();
-    let hidden = |h: &HiddenCause| h.motion || named.holds(&h.name);
+    let hidden = |h: &HiddenCause| h.motion || is(named, h, truth);
     !true_motion || truth.hidden.iter().any(hidden)
 }
 
-fn outcome(hidden: &HiddenCause, named: &[&Named], unexplained: bool) -> Outcome {
+/// Whether a name, or one that it cannot be told from, is that of a hidden cause. An order that is not its own, or a frequency farther
+/// from its own than four standard errors and than the recording resolves, is another cause.
+fn is(named: &Named, hidden: &HiddenCause, truth: &Truth) -> bool {
+    if named.cause != hidden.name {
+        return named.holds(&hidden.name);
+    }
+    let resolved = truth.rate / truth.samples as f64;
+    hidden.parameters.iter().all(|own| {
+        let shown = named.parameters.iter().find(|(name, ..)| *name == own.name);
+        let near = |error: f64| shown.is_none_or(|(_, x, _)| (x - own.value).abs() <= error);
+        match own.name.as_str() {
+            "order" => near(0.0),
+            "frequency_hz" => near(shown.map_or(0.0, |p| 4.0 * p.2).max(resolved)),
+            _ => true,
+        }
+    })
+}
+
+fn outcome(hidden: &HiddenCause, named: &[&Named], unexplained: bool, truth: &Truth) -> Outcome {
     match named.first() {
-        Some(first) if first.cause == hidden.name => Outcome::First,
-        Some(first) if first.holds(&hidden.name) && first.confounded_with.len() == 1 => {
+        Some(first) if first.cause == hidden.name && is(first, hidden, truth) => Outcome::First,
+        Some(first) if is(first, hidden, truth) && first.confounded_with.len() == 1 => {
             Outcome::Group
         }
-        _ if named.iter().any(|n| n.holds(&hidden.name)) => Outcome::Later,
+        _ if named.iter().any(|n| is(n, hidden, truth)) => Outcome::Later,
         Some(_) => Outcome::Misnamed,
         None if unexplained => Outcome::Unexplained,
         None => Outcome::Silent,
     }
 }
 
-fn parameters(hidden: &HiddenCause, named: &[Named]) -> Vec<ParameterScore> {
-    let Some(found) = named.iter().find(|n| n.cause == hidden.name) else {
+fn parameters(hidden: &HiddenCause, named: &[Named], truth: &Truth) -> Vec<ParameterScore> {
+    let own = |n: &&Named| n.cause == hidden.name && is(n, hidden, truth);
+    let Some(found) = named.iter().find(own) else {
         return vec![];
     };
-    // Another order is another cause: its amplitude says nothing about this one.
     let value = |name: &str| found.parameters.iter().find(|(n, _, _)| n == name);
-    let order = hidden.parameters.iter().find(|p| p.name == "order");
-    if let (Some(order), Some((_, shown, _))) = (order, value("order"))
-        && order.value != *shown
-    {
-        return vec![];
-    }
     let scores = hidden.parameters.iter().filter_map(|p| {
         let (_, shown, error) = value(&p.name)?;
         (*error > 0.0).then(|| ParameterScore {

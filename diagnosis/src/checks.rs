@@ -135,6 +135,22 @@ fn on_a_grid(codes: &[i64]) -> (i64, Vec<i64>) {
     (steps(&on), on)
 }
 
+/// Whether sorted codes come to so many places that a bit changes: to many spans in which it is the same, or to most of the places
+/// within those. A speed of a few samples a period shows few places again and again, and there a bit may be the same by chance.
+fn sweeps(distinct: &[i64], bit: u32) -> bool {
+    /// Spans in all of which a bit is the same by chance once in a million.
+    const MANY: usize = 20;
+    /// Places in a span, as a power of two.
+    const PLACES: u32 = 4;
+    let count = |size: u32| {
+        let mut all: Vec<i64> = distinct.iter().map(|c| c >> size).collect();
+        all.dedup();
+        all.len()
+    };
+    let (spans, within) = (count(bit), bit.min(PLACES));
+    spans >= MANY || 2 * count(bit - within) >= spans << within
+}
+
 /// Bits that never change while the codes sweep; steps of several codes.
 fn bits_and_steps(channel: &str, codes: &[i64], bits: u32) -> Vec<Finding> {
     let (step, distinct) = on_a_grid(codes);
@@ -148,7 +164,7 @@ fn bits_and_steps(channel: &str, codes: &[i64], bits: u32) -> Vec<Finding> {
     let mut found = vec![];
     let offset = 1i64 << (bits - 1);
     let constant: Vec<u32> = (0..bits)
-        .filter(|bit| (2i64 << bit) <= span / 2)
+        .filter(|bit| (2i64 << bit) <= span / 2 && sweeps(&distinct, *bit))
         .filter(|bit| {
             let mut ones = distinct.iter().map(|c| (c + offset) >> bit & 1);
             let first = ones.next();

@@ -4,6 +4,7 @@
 //! really is, so the angle is followed through all of that; but what is taken off as motion, and with it whatever looks
 //! like it, ends where the spectrum falls no more.
 
+use std::f64::consts::TAU;
 use std::ops::Range;
 
 use crate::lines::{median, spectrum, strongest, window};
@@ -30,6 +31,9 @@ const SHAKES: f64 = 2.0;
 const SMALL: f64 = 0.02;
 /// So many times farther apart than where the angle is followed, knots are worth to be.
 const FARTHER: f64 = 1.5;
+
+/// Scale periods of travel from which on what repeats with the period can be told from motion.
+const REPEATS: f64 = 4.0;
 
 /// Knot spacings, in samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -173,6 +177,18 @@ fn closer(n: f64, spacing: f64) -> f64 {
     (MARGIN * (n * n.ln() / 8.0 / spacing).powf(0.125)).max(CLOSER)
 }
 
+/// Scale periods of an angle's way there and back, without its noise.
+fn travelled(angle: &[f64]) -> f64 {
+    /// Places that it is looked at.
+    const PLACES: usize = 64;
+    let places: Vec<f64> = angle
+        .chunks(angle.len().div_ceil(PLACES).max(1))
+        .map(|part| part.iter().sum::<f64>() / part.len() as f64)
+        .collect();
+    let steps = places.windows(2).map(|pair| (pair[1] - pair[0]).abs());
+    steps.sum::<f64>() / TAU
+}
+
 fn stretches(n: usize) -> Vec<Range<usize>> {
     if n <= WHOLE {
         return std::iter::once(0..n).collect();
@@ -200,7 +216,7 @@ impl<'a> Stretch<'a> {
         Self {
             angle,
             weight,
-            cyclic: (1..=4)
+            cyclic: (1..=if travelled(angle) < REPEATS { 0 } else { 4 })
                 .flat_map(|order| [wave(order, f64::cos), wave(order, f64::sin)])
                 .collect(),
             revolution: per.map(|n| (n, angle.iter().map(|a| a / f64::from(n)).collect())),

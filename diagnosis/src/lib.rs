@@ -44,6 +44,7 @@ mod rail;
 mod reference;
 mod repair;
 mod report;
+mod rivals;
 mod score;
 mod select;
 mod selection;

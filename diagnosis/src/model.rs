@@ -1,5 +1,6 @@
 //! The linear model of a recording: sums of products of every function with every other, and fits made of them alone.
 
+mod broad;
 mod halves;
 mod residual;
 
@@ -103,11 +104,15 @@ impl<'a> System<'a> {
         let shapes: Vec<Shape> = broad.iter().map(|i| Shape(vec![(*i, 1.0)])).collect();
         let x = this.total.of(&shapes).solve().x;
         let amounts: Vec<(usize, f64)> = broad.iter().copied().zip(x).collect();
-        let mut left = this.samples.left(&amounts);
-        this.flicker = flicker::find(context, &left[0]);
+        let [radial, ..] = this.samples.left(&amounts);
+        this.flicker = flicker::find(context, &radial);
         if every > 1 && this.flicker.is_some() {
             this.flicker = flicker::find(context, &this.left_of_radius(&broad));
         }
+        let known: Vec<usize> = known.iter().map(|k| k.0).collect();
+        let taken = ROWS.map(|row| broad::taken(&this, catalogue, &known, row));
+        let amounts = taken.iter().flat_map(|t| t.amounts.iter().copied());
+        let mut left = this.samples.left(&amounts.collect::<Vec<_>>());
         let fast = if left[2].is_empty() {
             Row::Tangential
         } else {
@@ -117,9 +122,10 @@ impl<'a> System<'a> {
         left[fast as usize] = causes::without_cogging(context, own);
         // What does not count is nothing there, and makes the rest no quieter.
         let counts: f64 = context.weight.iter().sum();
-        let louder = (context.samples() as f64 / counts.max(1.0)).sqrt();
-        for left in left.iter_mut().flatten().filter(|_| louder > 1.0) {
-            *left *= louder;
+        for (left, taken) in left.iter_mut().zip(&taken) {
+            let free = (counts - taken.freedom as f64).max(1.0);
+            let louder = (context.samples() as f64 / free).sqrt();
+            left.iter_mut().for_each(|l| *l *= louder);
         }
         for (row, left) in ROWS.iter().zip(&left).filter(|(_, l)| !l.is_empty()) {
             let gone = match (&context.spline, row) {

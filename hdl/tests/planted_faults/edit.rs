@@ -76,7 +76,11 @@ pub(crate) fn another_literal(verilog: &str, words: &[&str], change: fn(u64) -> 
 pub(crate) fn rounding(verilog: &str, name: &str) -> String {
     let before = format!(" {name}_rounded =");
     let own = format!(" {name} =");
-    if verilog.contains(&before) { before } else { own }
+    if verilog.contains(&before) {
+        before
+    } else {
+        own
+    }
 }
 
 /// The bit by which `name` is rounded, and the one below it.
