@@ -96,9 +96,19 @@ impl Axis {
             let first = first as i32;
             let powers = (first..=high.log10().floor() as i32).step_by(every);
             let values = powers.flat_map(|p| factors.iter().map(move |f| f * 10f64.powi(p)));
+            let values: Vec<f64> = values.filter(|v| (low..=high).contains(v)).collect();
+            // All in one way of writing.
+            let plain = values.iter().all(|v| (SMALL..LARGE).contains(v));
+            let written = |value: f64| {
+                if plain {
+                    number(value, value)
+                } else {
+                    format!("{value:.0e}")
+                }
+            };
             return values
-                .filter(|v| (low..=high).contains(v))
-                .filter_map(|value| Some((self.place(value)?, number(value, value))))
+                .into_iter()
+                .filter_map(|value| Some((self.place(value)?, written(value))))
                 .collect();
         }
         let step = step(high - low);
@@ -176,7 +186,11 @@ mod tests {
     #[test]
     fn decades_of_a_logarithmic_axis() {
         let axis = Axis::logarithmic("", [1e-6, 0.0, 1e-2, -3.0]);
-        assert_eq!(words(&axis), ["1e-6", "1e-5", "0.0001", "0.001", "0.01"]);
+        assert_eq!(words(&axis), ["1e-6", "1e-5", "1e-4", "1e-3", "1e-2"]);
+        assert_eq!(
+            words(&Axis::logarithmic("", [800.0, 150_000.0])),
+            ["1e3", "1e4", "1e5"]
+        );
         assert_eq!(
             words(&Axis::logarithmic("", [3.0, 60.0])),
             ["5", "10", "20", "50"]

@@ -38,10 +38,13 @@
       const first = Math.log10(low), begin = few ? Math.floor(first) : Math.ceil(first);
       for (let p = begin; p <= Math.log10(high); p += every) {
         for (const value of (few ? [1, 2, 5] : [1]).map((f) => f * 10 ** p)) {
-          if (value >= low && value <= high) list.push([at(value), number(value, value)]);
+          if (value >= low && value <= high) list.push(value);
         }
       }
-      return list;
+      // All in one way of writing.
+      const plain = list.every((value) => value >= SMALL && value < LARGE);
+      const written = (value) => (plain ? number(value, value) : value.toExponential(0).replace("+", ""));
+      return list.map((value) => [at(value), written(value)]);
     }
     const rough = (high - low) / INTERVALS, power = 10 ** Math.floor(Math.log10(rough));
     const step = [1, 2, 5, 10].find((f) => f * power >= rough * (1 - 1e-9)) * power;
