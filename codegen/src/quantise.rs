@@ -56,9 +56,6 @@ pub(crate) fn of_sum(w: &Writer, a: NodeId, target: &Target) -> Option<Vec<Strin
         range,
     };
     let clamped = clamp(w, &drop_bits(&term, &target.to), &target.to, target.bits);
-    if clamped == name {
-        return Some(vec![declaration(w, target.id, &rounded)]);
-    }
     Some(vec![
         format!("wire signed [{}:0] {name} = {rounded};", bits - 1),
         declaration(w, target.id, &clamped),
@@ -77,10 +74,16 @@ pub(crate) fn choice(w: &Writer, a: NodeId, reader: NodeId) -> Option<[NodeId; 3
     (whole && node.name.is_none() && w.only_for(a, reader)).then_some([condition, yes, no])
 }
 
+/// A range in units of the target's last bit.
+fn in_target(to: &Quantiser, range: (i128, i128), fraction: u32) -> (i128, i128) {
+    let shift = to.format.fraction - fraction.min(to.format.fraction);
+    (range.0 << shift, range.1 << shift)
+}
+
 /// Whether everything in `range` is in the target's.
 fn holds(to: &Quantiser, range: (i128, i128), fraction: u32) -> bool {
-    let shift = to.format.fraction - fraction.min(to.format.fraction);
-    range.0 << shift >= to.format.min_raw() && range.1 << shift <= to.format.max_raw()
+    let (low, high) = in_target(to, range, fraction);
+    low >= to.format.min_raw() && high <= to.format.max_raw()
 }
 
 /// Whether sum or choice `a` is written inside its only reader.
@@ -209,7 +212,7 @@ fn clamp(w: &Writer, term: &Term, to: &Quantiser, bits: u32) -> String {
     let format = to.format;
     let fraction = format.fraction.max(term.fraction);
     let shift = format.fraction - term.fraction.min(format.fraction);
-    let (low, high) = (term.range.0 << shift, term.range.1 << shift);
+    let (low, high) = in_target(to, term.range, term.fraction);
     if holds(to, term.range, term.fraction) || to.overflow == Overflow::Never {
         return w.fit(term, fraction, bits, None);
     }

@@ -141,7 +141,7 @@ fn port(w: &Writer, products: &[Product], letter: char, side: usize) -> Port {
         let load = Load {
             source: w.fit(term, term.fraction, bits, None),
             comment: match term.source {
-                Source::Constant(_) => format!(" // {}", w.name(*id)),
+                Source::Constant(_) => format!(" // {}", w.name(w.moved(*id).unwrap_or(*id))),
                 _ => String::new(),
             },
         };

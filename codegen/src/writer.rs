@@ -124,7 +124,7 @@ impl<'a> Writer<'a> {
         let alike = width(self.graph, id) == width(self.graph, value)
             && node.range == self.graph.node(value).range;
         let wire = node.name.is_some() || self.kept(id) || self.is_next(id);
-        (alike && !wire).then_some(value)
+        (alike && !wire).then(|| self.moved(value).unwrap_or(value))
     }
 
     fn is_next(&self, id: NodeId) -> bool {

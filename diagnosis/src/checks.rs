@@ -90,6 +90,8 @@ pub(crate) fn check(recording: &Recording, weight: Vec<f64>, time_base: TimeBase
 
 /// Fewest codes that tell a step between all of them.
 const FEWEST: usize = 8;
+/// And so rare, as a power of two, that they all are by chance a whole number of steps apart.
+const RARE: f64 = 18.0;
 
 /// The greatest common divisor.
 fn divisor(mut a: i64, mut b: i64) -> i64 {
@@ -135,9 +137,10 @@ fn on_a_grid(codes: &[i64]) -> (i64, Vec<i64>) {
     (steps(&on), on)
 }
 
-/// Whether sorted codes come to so many places that a bit changes: to many spans in which it is the same, or to most of the places
-/// within those. A speed of a few samples a period shows few places again and again, and there a bit may be the same by chance.
-fn sweeps(distinct: &[i64], bit: u32) -> bool {
+/// Whether sorted codes, some steps apart, come to so many places that a bit changes: to many spans in which it is the same, or to most
+/// of the places within those. A speed of a few samples a period shows few places again and again, and there a bit may be the same by
+/// chance.
+fn sweeps(distinct: &[i64], step: i64, bit: u32) -> bool {
     /// Spans in all of which a bit is the same by chance once in a million.
     const MANY: usize = 20;
     /// Places in a span, as a power of two.
@@ -147,8 +150,10 @@ fn sweeps(distinct: &[i64], bit: u32) -> bool {
         all.dedup();
         all.len()
     };
-    let (spans, within) = (count(bit), bit.min(PLACES));
-    spans >= MANY || 2 * count(bit - within) >= spans << within
+    let spans = count(bit);
+    // Between two steps there is no place.
+    let finest = bit.saturating_sub(PLACES).max(step.max(1).ilog2()).min(bit);
+    spans >= MANY || 4 * count(finest) >= 3 * (spans << (bit - finest))
 }
 
 /// Bits that never change while the codes sweep; steps of several codes.
@@ -164,7 +169,7 @@ fn bits_and_steps(channel: &str, codes: &[i64], bits: u32) -> Vec<Finding> {
     let mut found = vec![];
     let offset = 1i64 << (bits - 1);
     let constant: Vec<u32> = (0..bits)
-        .filter(|bit| (2i64 << bit) <= span / 2 && sweeps(&distinct, *bit))
+        .filter(|bit| (2i64 << bit) <= span / 2 && sweeps(&distinct, step, *bit))
         .filter(|bit| {
             let mut ones = distinct.iter().map(|c| (c + offset) >> bit & 1);
             let first = ones.next();
@@ -173,7 +178,8 @@ fn bits_and_steps(channel: &str, codes: &[i64], bits: u32) -> Vec<Finding> {
         .collect();
     let lowest: Vec<u32> = (0..bits).take_while(|b| constant.contains(b)).collect();
     // All codes lie a whole number of steps apart: the steps are coarse, or one last bit is stuck.
-    if distinct.len() >= FEWEST && step > 1 {
+    let by_chance = (distinct.len() as f64 - 1.0) * (step as f64).log2();
+    if distinct.len() >= FEWEST && step > 1 && by_chance > RARE {
         let bit = step == 2 && lowest.len() == 1;
         found.push(Finding::digital(
             if bit {

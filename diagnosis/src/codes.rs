@@ -176,9 +176,6 @@ pub(crate) fn beside(
     found.unnamed.retain(|u| size(u.gain) > error.whole);
     found.left.retain(|u| size(u.gain) > error.whole);
     found.coded = error.whole > IN_NOISE * system.noise();
-    if found.coded && !speed_varies(context) {
-        found.pattern = 0.5 * samples * (error.whole / system.noise()).powi(2);
-    }
     let dropped = before - found.unnamed.len() - found.left.len();
     (dropped + taken.len() > 0).then(|| {
         let rms = Quantity::rounded(error.whole, 2, Unit::Percent).brief();

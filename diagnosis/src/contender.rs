@@ -115,7 +115,7 @@ pub(crate) fn contender(
             rivals.extend(ahead.rival.map(str::to_owned));
         }
         if rivals.is_empty() {
-            rivals.extend(rivals::unseen(system, &beside, &own, catalogue));
+            rivals.extend(rivals::hidden(system, &beside, &own, catalogue));
         }
         let wider = rivals::wider(&beside, &own, &rest);
         if own.candidate.as_drift {

@@ -188,7 +188,9 @@ impl Context {
         (self.c, self.s) = (c, s);
         if self.spline.is_none() {
             let per = self.periods_per_revolution;
-            let spacing = crate::knots::spacing(&self.measured, &self.weight, per);
+            // A reference tells motion from what repeats with the period, however little the scale moves.
+            let told = reference.is_some();
+            let spacing = crate::knots::spacing(&self.measured, &self.weight, per, told);
             let make = |spacing: f64| Spline::new(n, spacing, &self.weight);
             self.spline = Some(make(spacing.motion));
             let finer = spacing.followed < spacing.motion;

@@ -273,7 +273,7 @@ fn conclude(
         .chain(rest)
         .map(|u| u.gain)
         .fold(0.0, f64::max);
-    let flicker = flicker.filter(|f| !f.is_part_of(unknown) && f.gain > selection.pattern);
+    let flicker = flicker.filter(|f| !f.is_part_of(unknown));
     let silent = selection.unnamed.is_empty() && rest.is_empty() && noisy.is_empty();
     if silent && !selection.coded && strange.is_empty() && flicker.is_none() {
         strange = left::no_noise(context, &system.residual(&extended.fit).radial);

@@ -46,13 +46,16 @@ pub(crate) struct Spacing {
 
 /// The knot spacing whose spline explains an angle (radians) best for its number of coefficients, with what repeats with
 /// the period taken off first, and the strongest line in time and in the revolution: real vibration and cogging are no
-/// reason for more knots. And the spacing where the spectrum of what is left falls no more.
+/// reason for more knots. And the spacing where the spectrum of what is left falls no more. What repeats with the period is `told` from
+/// motion by a reference, or where the scale moves over some periods.
 pub(crate) fn spacing(
     angle: &[f64],
     weight: &[f64],
     periods_per_revolution: Option<u32>,
+    told: bool,
 ) -> Spacing {
     let n = angle.len();
+    let told = told || travelled(angle) >= REPEATS;
     let stretches: Vec<Stretch> = stretches(n)
         .into_iter()
         .map(|range| {
@@ -60,6 +63,7 @@ pub(crate) fn spacing(
                 &angle[range.clone()],
                 &weight[range],
                 periods_per_revolution,
+                told,
             )
         })
         .collect();
@@ -177,16 +181,17 @@ fn closer(n: f64, spacing: f64) -> f64 {
     (MARGIN * (n * n.ln() / 8.0 / spacing).powf(0.125)).max(CLOSER)
 }
 
-/// Scale periods of an angle's way there and back, without its noise.
+/// Scale periods of an angle's way there and back, but for what moves it by less than an eighth of one.
 fn travelled(angle: &[f64]) -> f64 {
-    /// Places that it is looked at.
-    const PLACES: usize = 64;
-    let places: Vec<f64> = angle
-        .chunks(angle.len().div_ceil(PLACES).max(1))
-        .map(|part| part.iter().sum::<f64>() / part.len() as f64)
-        .collect();
-    let steps = places.windows(2).map(|pair| (pair[1] - pair[0]).abs());
-    steps.sum::<f64>() / TAU
+    let mut mark = angle.first().copied().unwrap_or_default();
+    let mut way = 0.0;
+    for a in angle {
+        let step = (a - mark).abs();
+        if step > TAU / 8.0 {
+            (way, mark) = (way + step, *a);
+        }
+    }
+    way / TAU
 }
 
 fn stretches(n: usize) -> Vec<Range<usize>> {
@@ -209,14 +214,18 @@ struct Stretch<'a> {
 }
 
 impl<'a> Stretch<'a> {
-    fn new(angle: &'a [f64], weight: &'a [f64], per: Option<u32>) -> Self {
+    fn new(angle: &'a [f64], weight: &'a [f64], per: Option<u32>, told: bool) -> Self {
         let wave = |order: u32, f: fn(f64) -> f64| -> Vec<f64> {
             angle.iter().map(|a| f(f64::from(order) * a)).collect()
         };
         Self {
             angle,
             weight,
-            cyclic: (1..=if travelled(angle) < REPEATS { 0 } else { 4 })
+            cyclic: (1..=if told || travelled(angle) >= REPEATS {
+                4
+            } else {
+                0
+            })
                 .flat_map(|order| [wave(order, f64::cos), wave(order, f64::sin)])
                 .collect(),
             revolution: per.map(|n| (n, angle.iter().map(|a| a / f64::from(n)).collect())),

@@ -28,6 +28,18 @@ const NOTHING: f64 = 1e-18;
 /// Sums of products of one pass, row by row: atoms in the order asked for, then the data.
 struct Moments([DMatrix<f64>; 3]);
 
+impl Moments {
+    /// Square of the data of a row.
+    fn power(&self, row: Row) -> f64 {
+        self.0[row as usize]
+            .diagonal()
+            .iter()
+            .last()
+            .copied()
+            .unwrap_or(0.0)
+    }
+}
+
 /// Data, functions and sums of a recording.
 pub(crate) struct System<'a> {
     pub(crate) context: &'a Context,
@@ -101,33 +113,36 @@ impl<'a> System<'a> {
                 .map(|k| k.0)
                 .filter(|i| !catalogue.broad.contains(i)),
         );
-        let shapes: Vec<Shape> = broad.iter().map(|i| Shape(vec![(*i, 1.0)])).collect();
-        let x = this.total.of(&shapes).solve().x;
-        let amounts: Vec<(usize, f64)> = broad.iter().copied().zip(x).collect();
-        let [radial, ..] = this.samples.left(&amounts);
-        this.flicker = flicker::find(context, &radial);
+        let whole = broad::all(&this, &broad);
+        let mut left = this.samples.left(&whole.amounts());
+        this.flicker = flicker::find(context, &left[0]);
         if every > 1 && this.flicker.is_some() {
             this.flicker = flicker::find(context, &this.left_of_radius(&broad));
         }
         let known: Vec<usize> = known.iter().map(|k| k.0).collect();
-        let taken = ROWS.map(|row| broad::taken(&this, catalogue, &known, row));
-        let amounts = taken.iter().flat_map(|t| t.amounts.iter().copied());
-        let mut left = this.samples.left(&amounts.collect::<Vec<_>>());
+        let seen = broad::seen(&this, catalogue, &known, &plain);
+        let mut more = this.samples.left(&seen.amounts());
         let fast = if left[2].is_empty() {
             Row::Tangential
         } else {
             Row::Motion
         };
-        let own = std::mem::take(&mut left[fast as usize]);
-        left[fast as usize] = causes::without_cogging(context, own);
-        // What does not count is nothing there, and makes the rest no quieter.
         let counts: f64 = context.weight.iter().sum();
-        for (left, taken) in left.iter_mut().zip(&taken) {
-            let free = (counts - taken.freedom as f64).max(1.0);
-            let louder = (context.samples() as f64 / free).sqrt();
-            left.iter_mut().for_each(|l| *l *= louder);
+        for (left, taken) in [(&mut left, &whole), (&mut more, &seen)] {
+            let own = std::mem::take(&mut left[fast as usize]);
+            left[fast as usize] = causes::without_cogging(context, own);
+            // What does not count is nothing there, and what is fitted goes with it: neither makes the rest quieter.
+            for (left, row) in left.iter_mut().zip(ROWS) {
+                let free = (counts - taken.freedom(row) as f64).max(1.0);
+                let louder = (context.samples() as f64 / free).sqrt();
+                left.iter_mut().for_each(|l| *l *= louder);
+            }
         }
-        for (row, left) in ROWS.iter().zip(&left).filter(|(_, l)| !l.is_empty()) {
+        for row in ROWS {
+            let [left, more] = [&left, &more].map(|l| &l[row as usize]);
+            if left.is_empty() {
+                continue;
+            }
             let gone = match (&context.spline, row) {
                 (_, Row::Radial) => 0.0,
                 (_, Row::Tangential) if context.against_reference.is_some() => 0.0,
@@ -137,12 +152,14 @@ impl<'a> System<'a> {
             // A reference without noise says nothing about how well a spline follows real motion: that is worth as much
             // as the channels could show, at every frequency.
             let noise = this.samples.whiteners[Row::Radial as usize].sigma;
-            let least = if *row == Row::Motion { noise } else { 0.0 };
-            let mut whitener = Whitener::of(left, gone, least);
-            if *row == Row::Tangential {
+            let least = if row == Row::Motion { noise } else { 0.0 };
+            // What all shapes leave has a colour of its own making.
+            let white = Some(Whitener::of(more, gone, least)).filter(Whitener::is_white);
+            let mut whitener = white.unwrap_or_else(|| Whitener::of(left, gone, least));
+            if row == Row::Tangential {
                 whitener.sigma = whitener.sigma.max(0.05 * noise);
             }
-            this.samples.whiteners[*row as usize] = whitener;
+            this.samples.whiteners[row as usize] = whitener;
         }
         // White noise changes the scale of a row only.
         let white = this.samples.whiteners.iter().all(Whitener::is_white);

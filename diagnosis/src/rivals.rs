@@ -77,7 +77,7 @@ fn only_along_the_circle(system: &System, fit: &Fit, cause: &Candidate, shapes: 
 }
 
 /// A cause that would be seen along the circle alone, and so is not looked for or hides there.
-pub(crate) fn unseen(
+pub(crate) fn hidden(
     system: &System,
     beside: &Beside,
     best: &Scored,
@@ -113,9 +113,9 @@ fn of_the_place(
 ) -> Option<String> {
     let own = &best.candidate;
     let context = system.context;
-    let turns = context.phi.is_some() && context.against_reference.is_some();
+    let place = context.phi.is_some() && context.against_reference.is_some();
     let looked_for = |c: &Candidate| c.name == causes::GRADUATION_ERROR;
-    if own.domain != Domain::Angle || !turns || catalogue.candidates.iter().any(looked_for) {
+    if own.domain != Domain::Angle || !place || catalogue.candidates.iter().any(looked_for) {
         return None;
     }
     let all: Vec<usize> = (0..system.samples.library.atoms.len()).collect();

@@ -101,7 +101,6 @@ pub(crate) fn begin(
         left: vec![],
         again: vec![],
         coded: false,
-        pattern: 0.0,
     };
     // Functions that were made for the known causes and that no shape uses.
     keep_used(system, catalogue.atoms, &mut found);

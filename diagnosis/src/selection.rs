@@ -79,8 +79,6 @@ pub(crate) struct Selection {
     pub(crate) again: Vec<Start>,
     /// The errors of the codes are seen in the noise.
     pub(crate) coded: bool,
-    /// Log-likelihood below which that is the codes' doing, for at an even speed their error has a spectrum of its own.
-    pub(crate) pattern: f64,
 }
 
 impl Selection {
@@ -114,7 +112,6 @@ impl Selection {
             left: vec![],
             again: vec![],
             coded: false,
-            pattern: 0.0,
         }
     }
 

@@ -159,7 +159,7 @@ fn less(value: f64, coefficients: &[f64; 8], past: &[f64]) -> f64 {
 fn averaged(values: &[f64]) -> (Vec<f64>, f64) {
     let n = values.len();
     let segment = SEGMENT
-        .min((n / 8).next_power_of_two())
+        .min((n / 4).next_power_of_two())
         .clamp(16, n.max(16));
     let window: Vec<f64> = (0..segment)
         .map(|k| (std::f64::consts::PI * (k as f64 + 0.5) / segment as f64).sin())
