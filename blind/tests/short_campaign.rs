@@ -221,3 +221,48 @@ fn silence_a_wrong_name_and_a_group_are_scored_as_such() {
     assert_eq!(score.outcomes, [nonius_blind::Outcome::Group]);
     assert!(score.wrong.is_empty());
 }
+
+/// Another order is another cause, and so is another line: with the right number the same name is right.
+#[test]
+fn a_name_of_another_order_or_frequency_is_wrong() {
+    for (name, number) in [("runout", "order"), ("interference", "frequency_hz")] {
+        let hides = |seed: &u64| {
+            let truth = Case::draw(*seed, 3000).expect("a case can be drawn").truth;
+            let own = |h: &nonius_blind::HiddenCause| {
+                h.name == name && h.parameters.iter().any(|p| p.name == number)
+            };
+            truth.hidden.len() == 1 && own(&truth.hidden[0])
+        };
+        let seed = (0..).find(hides).expect("such a cause in some seed");
+        let case = Case::draw(seed, 3000).expect("a case can be drawn");
+        let own = case.truth.hidden[0].parameters.iter();
+        let own = own
+            .clone()
+            .find(|p| p.name == number)
+            .expect("its number")
+            .value;
+        let resolved = case.truth.rate / 3000.0;
+        for (shown, right) in [(own, true), (own + 2.0 * resolved.max(1.0), false)] {
+            let verdict = nonius_blind::Verdict {
+                named: vec![nonius_blind::Named {
+                    cause: name.into(),
+                    confounded_with: vec![],
+                    parameters: vec![(number.into(), shown, 0.0)],
+                    motion: false,
+                }],
+                unexplained: false,
+                signature: String::new(),
+                positions: vec![0.0; 3000],
+                seconds: 0.0,
+            };
+            let score = Score::of(case.truth.clone(), &case, &verdict);
+            let outcome = if right {
+                Outcome::First
+            } else {
+                Outcome::Misnamed
+            };
+            assert_eq!(score.outcomes, [outcome], "{name} {shown}");
+            assert_eq!(score.wrong.is_empty(), right, "{name} {shown}");
+        }
+    }
+}

@@ -1,4 +1,4 @@
-//! One operation, one statement.
+//! One operation, one statement; a rounding or choice with one reader stands in that, and what only moves the point in each.
 
 use nonius_model::graph::{NodeId, Op};
 

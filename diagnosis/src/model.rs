@@ -31,12 +31,9 @@ struct Moments([DMatrix<f64>; 3]);
 impl Moments {
     /// Square of the data of a row.
     fn power(&self, row: Row) -> f64 {
-        self.0[row as usize]
-            .diagonal()
-            .iter()
-            .last()
-            .copied()
-            .unwrap_or(0.0)
+        let sums = &self.0[row as usize];
+        let data = sums.nrows() - 1;
+        sums[(data, data)]
     }
 }
 
