@@ -125,12 +125,13 @@ impl<'a> System<'a> {
             Row::Motion
         };
         let counts: f64 = context.weight.iter().sum();
-        for (left, taken) in [(&mut left, &whole), (&mut more, &seen)] {
+        for (left, of_noise) in [(&mut left, false), (&mut more, true)] {
             let own = std::mem::take(&mut left[fast as usize]);
             left[fast as usize] = causes::without_cogging(context, own);
-            // What does not count is nothing there, and what is fitted goes with it: neither makes the rest quieter.
+            // What does not count is nothing there, and of noise alone what is fitted goes with it: neither makes the rest quieter.
             for (left, row) in left.iter_mut().zip(ROWS) {
-                let free = (counts - taken.freedom(row) as f64).max(1.0);
+                let fitted = if of_noise { seen.freedom(row) } else { 0 };
+                let free = (counts - fitted as f64).max(1.0);
                 let louder = (context.samples() as f64 / free).sqrt();
                 left.iter_mut().for_each(|l| *l *= louder);
             }
@@ -150,9 +151,9 @@ impl<'a> System<'a> {
             // as the channels could show, at every frequency.
             let noise = this.samples.whiteners[Row::Radial as usize].sigma;
             let least = if row == Row::Motion { noise } else { 0.0 };
-            // What all shapes leave has a colour of its own making.
-            let white = Some(Whitener::of(more, gone, least)).filter(Whitener::is_white);
-            let mut whitener = white.unwrap_or_else(|| Whitener::of(left, gone, least));
+            // What all shapes leave of noise alone has a colour of their making.
+            let noise_alone = if seen.is_noise(row) { more } else { left };
+            let mut whitener = Whitener::of(noise_alone, gone, least);
             if row == Row::Tangential {
                 whitener.sigma = whitener.sigma.max(0.05 * noise);
             }

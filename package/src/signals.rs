@@ -107,7 +107,7 @@ const REASONS: &[(&[&str], &str, &[&str])] = &[
         &[],
     ),
     (
-        &["solved"],
+        &["solved", "sector_step"],
         "step of a parameter: one bit more than the widest of them",
         &["formats.accumulator_fraction"],
     ),
@@ -127,6 +127,10 @@ const REASONS: &[(&[&str], &str, &[&str])] = &[
             "alpha_gradient_rate",
             "null_gradient",
             "null_gradient_rate",
+            "null_kick",
+            "null_drift",
+            "w_kick",
+            "w_drift",
         ],
         "gradient of the phase: two turns at most; resolution by the budget",
         &["formats.sensitivity_fraction"],
@@ -148,7 +152,7 @@ const REASONS: &[(&[&str], &str, &[&str])] = &[
     ),
     (&["loop_gear"], "numbers the gears of acquisition", &[]),
     (
-        &["gamma_gear"],
+        &["gamma_gear", "gamma_gear_counted", "gamma_gear_searched"],
         "numbers the gears of gamma",
         &["calibration.gamma_first", "calibration.gamma_last"],
     ),
@@ -280,7 +284,7 @@ fn by_parameter(name: &str) -> &'static [&'static str] {
         ("cubic_c" | "cubic_s", _) => {
             return &["formats.bend_range_log2", "formats.cubic_bits"];
         }
-        ("solved", _) => {
+        ("solved" | "sector_step", _) => {
             return &[
                 "formats.gain_range_log2",
                 "formats.offset_range_log2",

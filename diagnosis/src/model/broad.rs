@@ -1,8 +1,8 @@
 //! What any cause could explain is taken off before the noise is measured.
 //!
 //! Of a short recording, shapes of every domain together explain a good part of the noise itself, and what they leave has holes in its
-//! spectrum: whitened by that, noise looks like a cause. What is fitted makes the rest no quieter (`freedom`), and noise has a colour
-//! only where it has one, too, when those domains alone are taken off that explain more than as many free numbers do of noise.
+//! spectrum: whitened by that, noise looks like a cause. So where no domain explains more than as many free numbers do of noise, the
+//! noise of a row is measured before they are taken off, and what the five parameters fit makes it no quieter.
 
 use super::{Moments, System};
 use crate::causes::Catalogue;
@@ -17,6 +17,8 @@ struct Own {
     freedom: usize,
     /// What they explain of the sum of squares.
     explained: f64,
+    /// Domains in them.
+    domains: usize,
 }
 
 /// What is taken off, row by row.
@@ -26,6 +28,11 @@ impl Taken {
     pub(super) fn amounts(&self) -> Vec<(usize, f64)> {
         let rows = self.0.iter();
         rows.flat_map(|own| own.amounts.iter().copied()).collect()
+    }
+
+    /// No domain explains more than noise.
+    pub(super) fn is_noise(&self, row: Row) -> bool {
+        self.0[row as usize].domains == 0
     }
 
     pub(super) fn freedom(&self, row: Row) -> usize {
@@ -44,6 +51,7 @@ fn fitted(system: &System, atoms: &[usize], row: Row) -> Own {
     Own {
         freedom: solution.rank,
         explained: solution.explained,
+        domains: 0,
         amounts: atoms.into_iter().zip(solution.x).collect(),
     }
 }
@@ -103,6 +111,9 @@ fn seen_in_row(
             return now;
         };
         atoms.extend(domains.remove(i));
-        now = with;
+        now = Own {
+            domains: now.domains + 1,
+            ..with
+        };
     }
 }
