@@ -141,7 +141,7 @@ fn port(w: &Writer, products: &[Product], letter: char, side: usize) -> Port {
         let load = Load {
             source: w.fit(term, term.fraction, bits, None),
             comment: match term.source {
-                Source::Constant(_) => format!(" // {}", w.name(w.moved(*id).unwrap_or(*id))),
+                Source::Constant(_) => format!(" // {}", w.shown(*id)),
                 _ => String::new(),
             },
         };
@@ -269,13 +269,12 @@ pub(crate) fn timetable(w: &Writer) -> Vec<String> {
 /// The products that are computed in a step.
 fn products(w: &Writer, step: usize) -> Vec<String> {
     let mut parts = vec![];
-    let name = |id: NodeId| w.name(w.moved(id).unwrap_or(id));
     for id in w.graph.ids() {
         let issued = w.schedule.issue[id.index()];
         if let (Op::Mul(a, b), Some((_, cycle))) = (w.graph.node(id).op, issued)
             && cycle == step
         {
-            parts.push(format!("{} * {}", name(a), name(b)));
+            parts.push(format!("{} * {}", w.shown(a), w.shown(b)));
         }
     }
     if parts.is_empty() {

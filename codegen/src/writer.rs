@@ -135,6 +135,11 @@ impl<'a> Writer<'a> {
         &self.names[id.index()]
     }
 
+    /// The name that stands where the node is read.
+    pub(crate) fn shown(&self, id: NodeId) -> &str {
+        self.name(self.moved(id).unwrap_or(id))
+    }
+
     /// The wire on which the value is computed.
     pub(crate) fn wire(&self, id: NodeId) -> String {
         if self.kept(id) {

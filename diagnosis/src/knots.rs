@@ -221,11 +221,7 @@ impl<'a> Stretch<'a> {
         Self {
             angle,
             weight,
-            cyclic: (1..=if told || travelled(angle) >= REPEATS {
-                4
-            } else {
-                0
-            })
+            cyclic: (1..=if told { 4 } else { 0 })
                 .flat_map(|order| [wave(order, f64::cos), wave(order, f64::sin)])
                 .collect(),
             revolution: per.map(|n| (n, angle.iter().map(|a| a / f64::from(n)).collect())),

@@ -103,22 +103,21 @@ impl<'a> System<'a> {
         }
         let plain = this.moments(&atoms, every);
         this.total = this.without_nothing(this.normal(&plain, &atoms, true), &atoms);
-        let mut broad = catalogue.broad.clone();
-        broad.extend(
+        let mut any = catalogue.broad.clone();
+        any.extend(
             known
                 .iter()
                 .map(|k| k.0)
                 .filter(|i| !catalogue.broad.contains(i)),
         );
-        let whole = broad::all(&this, &broad);
-        let mut left = this.samples.left(&whole.amounts());
+        let mut left = this.samples.left(&broad::all(&this, &any));
         this.flicker = flicker::find(context, &left[0]);
         if every > 1 && this.flicker.is_some() {
-            this.flicker = flicker::find(context, &this.left_of_radius(&broad));
+            this.flicker = flicker::find(context, &this.left_of_radius(&any));
         }
         let known: Vec<usize> = known.iter().map(|k| k.0).collect();
-        let seen = broad::seen(&this, catalogue, &known, &plain);
-        let mut more = this.samples.left(&seen.amounts());
+        let known = broad::Known::new(&this, catalogue, &known, &plain);
+        let mut more = this.samples.left(&known.amounts());
         let fast = if left[2].is_empty() {
             Row::Tangential
         } else {
@@ -130,7 +129,7 @@ impl<'a> System<'a> {
             left[fast as usize] = causes::without_cogging(context, own);
             // What does not count is nothing there, and of noise alone what is fitted goes with it: neither makes the rest quieter.
             for (left, row) in left.iter_mut().zip(ROWS) {
-                let fitted = if of_noise { seen.freedom(row) } else { 0 };
+                let fitted = if of_noise { known.freedom(row) } else { 0 };
                 let free = (counts - fitted as f64).max(1.0);
                 let louder = (context.samples() as f64 / free).sqrt();
                 left.iter_mut().for_each(|l| *l *= louder);
@@ -152,7 +151,11 @@ impl<'a> System<'a> {
             let noise = this.samples.whiteners[Row::Radial as usize].sigma;
             let least = if row == Row::Motion { noise } else { 0.0 };
             // What all shapes leave of noise alone has a colour of their making.
-            let noise_alone = if seen.is_noise(row) { more } else { left };
+            let noise_alone = if known.is_noise_beside(row) {
+                more
+            } else {
+                left
+            };
             let mut whitener = Whitener::of(noise_alone, gone, least);
             if row == Row::Tangential {
                 whitener.sigma = whitener.sigma.max(0.05 * noise);

@@ -17,27 +17,12 @@ struct Own {
     freedom: usize,
     /// What they explain of the sum of squares.
     explained: f64,
-    /// Domains in them.
-    domains: usize,
 }
 
-/// What is taken off, row by row.
-pub(super) struct Taken([Own; 3]);
-
-impl Taken {
-    pub(super) fn amounts(&self) -> Vec<(usize, f64)> {
-        let rows = self.0.iter();
-        rows.flat_map(|own| own.amounts.iter().copied()).collect()
-    }
-
-    /// No domain explains more than noise.
-    pub(super) fn is_noise(&self, row: Row) -> bool {
-        self.0[row as usize].domains == 0
-    }
-
-    pub(super) fn freedom(&self, row: Row) -> usize {
-        self.0[row as usize].freedom
-    }
+/// Amounts of what is taken off, row by row.
+fn amounts(rows: &[Own; 3]) -> Vec<(usize, f64)> {
+    let all = rows.iter().flat_map(|own| own.amounts.iter());
+    all.copied().collect()
 }
 
 /// The best amounts of those of some atoms that stand in a row.
@@ -51,69 +36,63 @@ fn fitted(system: &System, atoms: &[usize], row: Row) -> Own {
     Own {
         freedom: solution.rank,
         explained: solution.explained,
-        domains: 0,
         amounts: atoms.into_iter().zip(solution.x).collect(),
     }
 }
 
-/// All of these atoms.
-pub(super) fn all(system: &System, atoms: &[usize]) -> Taken {
-    Taken(ROWS.map(|row| fitted(system, atoms, row)))
+/// The best amounts of all of these atoms.
+pub(super) fn all(system: &System, atoms: &[usize]) -> Vec<(usize, f64)> {
+    amounts(&ROWS.map(|row| fitted(system, atoms, row)))
 }
 
-/// The five parameters, what is `known`, and of the domains those that explain more than noise; `plain` are the sums of products that
-/// the system was made of.
-pub(super) fn seen(
-    system: &System,
-    catalogue: &Catalogue,
-    known: &[usize],
-    plain: &Moments,
-) -> Taken {
-    let counts: f64 = system.context.weight.iter().sum();
-    Taken(ROWS.map(|row| {
-        let power = plain.power(row) / system.samples.whiteners[row as usize].sigma.powi(2);
-        seen_in_row(
-            system,
-            catalogue,
-            known,
-            row,
-            (power, counts / system.every as f64),
-        )
-    }))
+/// The five parameters and what is known, as they are taken off.
+pub(super) struct Known {
+    rows: [Own; 3],
+    noise: [bool; 3],
 }
 
-/// The same of one row, of such a sum of squares over so many samples.
-fn seen_in_row(
-    system: &System,
-    catalogue: &Catalogue,
-    known: &[usize],
-    row: Row,
-    (power, samples): (f64, f64),
-) -> Own {
-    let atoms_of = |shapes: &[Shape]| -> Vec<usize> {
-        let all = shapes.iter().flat_map(|s| s.0.iter().map(|part| part.0));
-        all.collect()
-    };
-    let left = |own: &Own| (1.0 - own.explained / power).max(1e-12);
-    let mut domains: Vec<Vec<usize>> = catalogue.generic.values().map(|d| atoms_of(d)).collect();
-    let mut atoms = [&atoms_of(&catalogue.parameters), known].concat();
-    let mut now = fitted(system, &atoms, row);
-    loop {
-        let beyond = |domain: &Vec<usize>| {
-            let with = fitted(system, &[atoms.as_slice(), domain].concat(), row);
-            let gain = 0.5 * samples * (left(&now) / left(&with)).ln();
-            let numbers = with.freedom.saturating_sub(now.freedom);
-            (gain - at_most_of_noise(numbers), with)
+impl Known {
+    /// With causes that are `known`; `plain` are the sums of products that the system was made of.
+    pub(super) fn new(
+        system: &System,
+        catalogue: &Catalogue,
+        known: &[usize],
+        plain: &Moments,
+    ) -> Self {
+        let atoms_of = |shapes: &[Shape]| -> Vec<usize> {
+            let all = shapes.iter().flat_map(|s| s.0.iter().map(|part| part.0));
+            all.collect()
         };
-        let tried = domains.iter().map(beyond).enumerate();
-        let best = tried.max_by(|a, b| a.1.0.total_cmp(&b.1.0));
-        let Some((i, (_, with))) = best.filter(|(_, (more, _))| *more > 0.0) else {
-            return now;
-        };
-        atoms.extend(domains.remove(i));
-        now = Own {
-            domains: now.domains + 1,
-            ..with
-        };
+        let atoms = [&atoms_of(&catalogue.parameters), known].concat();
+        let rows = ROWS.map(|row| fitted(system, &atoms, row));
+        let counts: f64 = system.context.weight.iter().sum();
+        let samples = counts / system.every as f64;
+        let noise = ROWS.map(|row| {
+            let power = plain.power(row) / system.samples.whiteners[row as usize].sigma.powi(2);
+            let left = |own: &Own| (1.0 - own.explained / power).max(1e-12);
+            let without = &rows[row as usize];
+            let explains = |domain: &Vec<Shape>| {
+                let with = fitted(system, &[&atoms[..], &atoms_of(domain)].concat(), row);
+                let gain = 0.5 * samples * (left(without) / left(&with)).ln();
+                let numbers = with.freedom.saturating_sub(without.freedom);
+                gain > at_most_of_noise(numbers)
+            };
+            !catalogue.generic.values().any(explains)
+        });
+        Self { rows, noise }
+    }
+
+    pub(super) fn amounts(&self) -> Vec<(usize, f64)> {
+        amounts(&self.rows)
+    }
+
+    /// No domain explains more of a row than as many free numbers do of noise.
+    pub(super) fn is_noise_beside(&self, row: Row) -> bool {
+        self.noise[row as usize]
+    }
+
+    /// Free numbers in a row.
+    pub(super) fn freedom(&self, row: Row) -> usize {
+        self.rows[row as usize].freedom
     }
 }
