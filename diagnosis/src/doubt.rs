@@ -84,8 +84,13 @@ fn traces(system: &System, found: &mut Selection) -> Vec<Unnamed> {
     if found.accepted.len() < 2 {
         return vec![];
     }
-    // What has no name stands aside: it spans names, too.
+    // What has no name stands aside: it spans names, too. So does a name that was taken back, as a harmonic spans a bend.
     let everything = found.of(found.accepted.clone(), system);
+    let kept: Vec<usize> = (0..found.accepted.len())
+        .filter(|i| !found.accepted[*i].doubted)
+        .collect();
+    let named = kept.iter().map(|i| found.accepted[*i].clone()).collect();
+    let named = found.of(named, system);
     // All that has one name is one error.
     let mut names: Vec<(&'static str, Vec<usize>)> = vec![];
     for (i, one) in found.accepted.iter().enumerate() {
@@ -96,10 +101,15 @@ fn traces(system: &System, found: &mut Selection) -> Vec<Unnamed> {
             None => names.push((name, vec![i])),
         }
     }
-    let gains: Vec<f64> = names
-        .iter()
-        .map(|(_, own)| gain_of(system, &everything, own))
-        .collect();
+    let gain = |own: &[usize]| {
+        let places = own.iter().filter_map(|i| kept.iter().position(|k| k == i));
+        let places: Vec<usize> = places.collect();
+        match places.is_empty() {
+            true => gain_of(system, &everything, own),
+            false => gain_of(system, &named, &places),
+        }
+    };
+    let gains: Vec<f64> = names.iter().map(|(_, own)| gain(own)).collect();
     let most = gains.iter().copied().fold(0.0, f64::max);
     let Some(strongest) = gains.iter().position(|gain| *gain >= most) else {
         return vec![];
