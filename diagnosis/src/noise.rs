@@ -247,25 +247,55 @@ fn refusal(
         ));
     }
     if kind == Kind::Jitter {
-        // The sampling time's error, as far as the speed shows it.
-        let time: Vec<f64> = (0..n)
-            .map(|k| tangential[k] * depends.context.speed[k] / depends.context.top_speed())
-            .collect();
-        let (power, length) = over_mean(&time);
-        let line = power.iter().copied().fold(0.0, f64::max);
-        let at = power.iter().position(|p| *p == line).unwrap_or(0);
-        let hertz = at as f64 / length as f64 * depends.context.rate;
-        // The axis vibrates at any speed alike.
-        let vibrates = line_near(tangential, at) > line + CLEARLY;
-        if n as f64 * (-line).exp() < A_LINE && line > MUCH * gain && !vibrates {
-            return Some(format!(
-                "the sampling time wanders periodically, at {}; {}",
-                Quantity::rounded(hertz, 3, Unit::Prefixed("Hz")).brief(),
+        return wandering(depends.context, tangential, gain).map(|how| {
+            format!(
+                "the sampling time wanders {how}; {}",
                 like(name, "that is random")
-            ));
-        }
+            )
+        });
     }
     None
+}
+
+/// How the sampling time wanders where it is not at random: in a line, or with the angle, that explains much of what jitter
+/// does.
+fn wandering(context: &Context, tangential: &[f64], gain: f64) -> Option<String> {
+    /// Highest order of the scale period.
+    const TOP: usize = 12;
+    let n = tangential.len();
+    // The sampling time's error, as far as the speed shows it.
+    let speeds = context.speed.iter().zip(tangential);
+    let time: Vec<f64> = speeds.map(|(v, t)| t * v / context.top_speed()).collect();
+    let by_chance = |power: f64, places: usize| places as f64 * (-power).exp();
+    let (power, length) = over_mean(&time);
+    let line = power.iter().copied().fold(0.0, f64::max);
+    let at = power.iter().position(|p| *p == line).unwrap_or(0);
+    // What a shaking axis leaves is coloured: a line of the clock stands out of what is near it. Half of noise is below
+    // ln 2 of its mean.
+    let near = lines::flattened(&power)[at] * std::f64::consts::LN_2;
+    let stands_out = by_chance(near.min(line), n) < A_LINE;
+    // The axis vibrates at any speed alike.
+    let vibrates = line_near(tangential, at) > line + CLEARLY;
+    if stands_out && line > MUCH * gain && !vibrates {
+        let hertz = Quantity::rounded(
+            at as f64 / length as f64 * context.rate,
+            3,
+            Unit::Prefixed("Hz"),
+        );
+        return Some(format!("periodically, at {}", hertz.brief()));
+    }
+    let total: f64 = time.iter().map(|t| t * t).sum();
+    let order = |m: usize| {
+        let pairs = time.iter().zip(&context.alpha);
+        let (c, s) = pairs.fold((0.0, 0.0), |(c, s), (t, alpha)| {
+            let (sin, cos) = (m as f64 * alpha).sin_cos();
+            (c + t * cos, s + t * sin)
+        });
+        (m, (c * c + s * s) / total)
+    };
+    let (m, most) = (1..=TOP).map(order).max_by(|a, b| a.1.total_cmp(&b.1))?;
+    (by_chance(most, TOP) < A_LINE && most > MUCH * gain)
+        .then(|| format!("with the angle, at order {m} of the scale period"))
 }
 
 /// The spectrum of values over its mean, and its length.
