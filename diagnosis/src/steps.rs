@@ -9,7 +9,7 @@ use nalgebra::{DMatrix, DVector};
 use crate::channels::{Channels, Row};
 use crate::generic::hat;
 use crate::pair::PairSums;
-use crate::polygon::{PIECES, Polygon};
+use crate::polygon::{PIECES, Polygon, polynomials};
 use crate::solve::Normal;
 use crate::statistics::price;
 
@@ -19,6 +19,8 @@ const STRETCHES: usize = 200;
 const MOST: usize = 24;
 /// Knots of the lines: as few as follow it are the best.
 const KNOTS: [usize; 8] = [2, 3, 4, 6, 8, 12, 20, 40];
+/// Degrees of curves that a slow change may follow.
+const DEGREES: [usize; 4] = [1, 2, 3, 6];
 /// Most numbers of a step, beside its place, and of a knot.
 const CHANNELS: usize = 2;
 
@@ -79,6 +81,10 @@ pub(crate) fn instead(seen: Channels, noise: f64, changes: &[Change]) -> Option<
         let (gram, right) = changing.products(PIECES + 1);
         let bent = Polygon::new(&gram, &right).explained(price, change.numbers());
         lines = lines.max(bent);
+        // What bends evenly needs fewer numbers than lines do.
+        let curved =
+            DEGREES.map(|degree| polynomials(&gram, &right, degree, price, change.numbers()));
+        lines = curved.into_iter().fold(lines, f64::max);
         let numbers = change.numbers() as f64;
         steps = steps.max(self::steps(
             &stretches,

@@ -13,9 +13,9 @@ use crate::trig::{Trig, channel, normalised};
 const DEGREE: usize = 6;
 
 /// Legendre polynomial of a time from −1 to 1.
-fn legendre(degree: usize, x: f64) -> f64 {
-    let (mut before, mut now) = (1.0, x);
-    for n in 1..degree {
+pub(crate) fn legendre(degree: usize, x: f64) -> f64 {
+    let (mut before, mut now) = (0.0, 1.0);
+    for n in 0..degree {
         let m = n as f64;
         (before, now) = (now, ((2.0 * m + 1.0) * x * now - m * before) / (m + 1.0));
     }
