@@ -257,11 +257,11 @@ impl<'a> Stretch<'a> {
         same(&power) < STEEP * same(&closer)
     }
 
-    /// Power spectrum of what a spline with such knots leaves, without what repeats with the period; its length, and the
-    /// rms of what is left.
+    /// Power spectrum of what a spline with such knots leaves, without what repeats with the period or cogs; its length, and
+    /// the rms of what is left.
     fn spectrum(&self, spacing: f64) -> (Vec<f64>, usize, f64) {
         let spline = Spline::new(self.angle.len(), spacing, self.weight);
-        let mut left = self.without_cycles(&spline);
+        let mut left = self.without_order(self.without_cycles(&spline), &spline);
         let n = left.len();
         let rms = (left.iter().map(|l| l * l).sum::<f64>() / n as f64).sqrt();
         for (k, value) in left.iter_mut().enumerate() {
@@ -290,8 +290,13 @@ impl<'a> Stretch<'a> {
         crate::solve::without(&residuals[0], &shapes)
     }
 
+    /// Without the strongest line, and the strongest order of the revolution.
     fn without_lines(&self, values: &[f64], spline: &Spline) -> Vec<f64> {
-        let left = strongest(values).1;
+        self.without_order(strongest(values).1, spline)
+    }
+
+    /// Without the strongest order of the revolution.
+    fn without_order(&self, left: Vec<f64>, spline: &Spline) -> Vec<f64> {
         let Some((per, phi)) = &self.revolution else {
             return left;
         };

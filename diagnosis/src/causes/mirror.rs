@@ -1,7 +1,9 @@
-//! Which of two frequencies a line of the axis has. A spline follows a wave slower than half its knots in part, and its
-//! knots make the rest look like a wave of their frequency less that of the line; so does a faster one the other way
-//! round. After such a spline the two are one shape. Knots farther apart tell them, for they have another mirror.
+//! Which of two frequencies a line of the axis has, and of two orders its cogging. A spline follows a wave slower than half its
+//! knots in part, and its knots make the rest look like a wave of their frequency less that of the line; so does a faster
+//! one the other way round. After such a spline the two are one shape. Knots farther apart tell them, for they have another
+//! mirror.
 
+use super::place::{order_waves, strongest_order};
 use crate::context::Context;
 use crate::lines::{wave, window};
 use crate::solve::dot;
@@ -38,15 +40,49 @@ pub(super) fn unmirrored(context: &Context, seen: f64) -> f64 {
             .enumerate()
             .for_each(|(k, v)| *v *= window(k, n));
     }
-    let gain = |of: &[Vec<f64>]| {
-        let power = |wave: &Vec<f64>| dot(&left[0], wave).powi(2) / dot(wave, wave).max(1e-300);
-        of.iter().map(power).sum::<f64>()
-    };
-    if gain(&left[3..5]) > CLEARLY * gain(&left[1..3]) {
+    if explained(&left[0], &left[3..5]) > CLEARLY * explained(&left[0], &left[1..3]) {
         mirror
     } else {
         seen
     }
+}
+
+/// The order of the revolution, of `per` scale periods, in which the axis cogs where what the knots leave of it, `fast`, seems to have
+/// the order `seen`: knots follow a low order where the speed is low, and leave of it what looks like others where it is high.
+pub(super) fn unmirrored_order(
+    context: &Context,
+    (per, phi): (u32, &[f64]),
+    fast: &[f64],
+    seen: usize,
+) -> usize {
+    let Some(spline) = &context.spline else {
+        return seen;
+    };
+    let weight = &context.weight;
+    let wider = Spline::new(context.samples(), WIDER * spline.spacing(), weight);
+    let other = strongest_order(per, phi, &wider.residual(&context.measured, weight));
+    let Some(other) = other.filter(|other| *other != seen) else {
+        return seen;
+    };
+    // Of a wave that knots follow in part its order is not the strongest one; what they leave of it explains the most.
+    let [of_seen, of_other] = [seen, other].map(|order| {
+        let waves = order_waves(order, phi);
+        explained(
+            fast,
+            &spline.residuals(&waves.each_ref().map(Vec::as_slice), weight),
+        )
+    });
+    if of_other > CLEARLY * of_seen {
+        other
+    } else {
+        seen
+    }
+}
+
+/// Square of what waves at right angles to each other explain.
+fn explained(values: &[f64], waves: &[Vec<f64>]) -> f64 {
+    let power = |wave: &Vec<f64>| dot(values, wave).powi(2) / dot(wave, wave).max(1e-300);
+    waves.iter().map(power).sum()
 }
 
 /// Numbers of the samples.

@@ -7,6 +7,7 @@ use nonius_fourier::Complex;
 use nonius_quantity::times;
 
 use super::COGGING;
+use super::mirror::unmirrored_order;
 use super::revolution::{harmonic, turns};
 use crate::block::Block;
 use crate::cause::{Candidate, Domain, Exact, Make, Sign, each};
@@ -152,7 +153,7 @@ fn cogging(
     library: &mut Library,
 ) -> Option<Candidate> {
     let per = context.periods_per_revolution.unwrap_or(1);
-    let order = strongest_order(per, phi, fast)?;
+    let order = unmirrored_order(context, (per, phi), fast, strongest_order(per, phi, fast)?);
     Some(of_order(order, top_order(per) as f64, library))
 }
 
