@@ -8,9 +8,14 @@ use crate::sensor::Sensor;
 /// A moment of the recording.
 pub(crate) struct Moment {
     pub(crate) alpha: f64,
+    /// Seconds from the beginning.
     pub(crate) time: f64,
+    /// Seconds from the beginning to the end.
     pub(crate) whole: f64,
+    /// Radians per second.
     pub(crate) speed: f64,
+    /// Direction in which it came, 1 or −1.
+    pub(crate) side: f64,
 }
 
 /// Part of the amplitude of both channels.
@@ -78,7 +83,7 @@ pub(crate) fn of_one(cause: &Cause, which: usize, y: f64, at: &Moment) -> f64 {
         Cause::Hysteresis {
             offset_cos,
             offset_sin,
-        } => of(offset_cos, offset_sin) * at.speed.signum(),
+        } => of(offset_cos, offset_sin) * at.side,
         Cause::Interference(ref line) => line.at(which, at.time),
         Cause::OffsetDrift(ref drift) => drift.at(which, at.time / at.whole),
         Cause::GainDrift(ref drift) => y * drift.at(which, at.time / at.whole),

@@ -3,6 +3,7 @@
 //!
 //! It is written apart from the diagnosis: that one knows shapes, this one signals. A test brings them together.
 
+mod along;
 mod cause;
 mod channel;
 mod converter;
@@ -15,11 +16,13 @@ mod lag;
 mod motion;
 mod rows;
 mod sensor;
+mod side;
 mod signals;
 
+pub use along::MotionError;
 pub use cause::{Cause, Channel};
 pub use drift::Drift;
 pub use interference::Interference;
 pub use motion::Motion;
-pub use sensor::{Adc, Sensor, SensorError, Signals};
+pub use sensor::{Adc, Moved, Sensor, SensorError, Signals};
 pub use signals::Samples;

@@ -7,7 +7,7 @@ use crate::sensor::Sensor;
 /// Samples that a simulated motion has at least and at most.
 const SAMPLES: (f64, f64) = (2_000.0, 2_000_000.0);
 
-/// True angle at each sample.
+/// True angle at each sample, one every 1/`adc.sample_rate_hz` seconds.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Motion {
     /// Seconds.

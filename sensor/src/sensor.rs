@@ -1,5 +1,7 @@
 //! `sensor.toml` as it is read.
 
+use std::path::PathBuf;
+
 use serde::Deserialize;
 use thiserror::Error;
 
@@ -78,10 +80,13 @@ pub struct Adc {
     pub sample_rate_hz: f64,
 }
 
-/// How far and how fast it was moved.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+/// How it was moved: along a file; where none is named, to and fro, as far and as fast.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Moved {
+    /// The motion, for [`crate::Motion::along`]: a path from the folder of `sensor.toml`.
+    #[serde(default)]
+    pub file: Option<PathBuf>,
     /// Way there and back, scale periods.
     pub periods_travelled: f64,
     /// Highest speed, scale periods per second.

@@ -12,6 +12,10 @@ use crate::flicker;
 use crate::lag::low_passed;
 use crate::motion::Motion;
 use crate::sensor::Sensor;
+use crate::side::sides;
+
+/// Times that the place of the axis is made of its cogging, and that of the place.
+const COGGED: usize = 4;
 
 /// What the ADC says, in the unit of the signals.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,6 +37,10 @@ impl Sensor {
         let rate = self.adc.sample_rate_hz;
         let speed = derivative(&motion.alpha, rate);
         let acceleration = derivative(&speed, rate);
+        let side = sides(&speed);
+        // Causes know the time since the beginning.
+        let start = motion.time_s.first().copied().unwrap_or_default();
+        let whole = motion.time_s.last().map_or(0.0, |last| last - start);
         let lags = self.lags();
         let density = self.sum(|c| match *c {
             Cause::FlickerNoise {
@@ -52,9 +60,10 @@ impl Sensor {
                 Cause::ClockJitter { rms_s } => rms_s * random.sample::<f64, _>(StandardNormal),
                 _ => 0.0,
             });
-            let alpha = motion.alpha[k] + self.really(motion, k) + speed[k] * jitter;
+            let time = motion.time_s[k] - start;
+            let alpha = self.seen(motion.alpha[k], time) + speed[k] * jitter;
             let phi = self.revolution(alpha);
-            let amplitude = 1.0 + self.sum(|c| of_both(c, motion.time_s[k], phi));
+            let amplitude = 1.0 + self.sum(|c| of_both(c, time, phi));
             let pair: [f64; 2] = std::array::from_fn(|which| {
                 let lag = lags[which];
                 let late = alpha - speed[k] * lag.delay + 0.5 * acceleration[k] * lag.delay.powi(2);
@@ -69,9 +78,10 @@ impl Sensor {
                     );
                 let x = Moment {
                     alpha,
-                    time: motion.time_s[k],
-                    whole: motion.time_s[n - 1].max(f64::MIN_POSITIVE),
+                    time,
+                    whole: whole.max(f64::MIN_POSITIVE),
                     speed: speed[k],
+                    side: side[k],
                 };
                 y + self.sum(|c| of_one(c, which, y, &x))
                     + self.sum(|c| self.of_other(c, which, &x))
@@ -109,26 +119,37 @@ impl Sensor {
         self.causes.iter().map(of).sum()
     }
 
-    /// What the scale shows beside the smooth motion, radians: other motion, or places that are off.
-    fn really(&self, motion: &Motion, k: usize) -> f64 {
-        self.sum(|c| match *c {
-            Cause::Vibration {
-                frequency_hz,
-                amplitude,
-                phase,
-            } => amplitude * (TAU * frequency_hz * motion.time_s[k] + phase).cos(),
-            Cause::Cogging {
-                order,
-                amplitude,
-                phase,
-            }
-            | Cause::GraduationError {
-                order,
-                amplitude,
-                phase,
-            } => amplitude * (order * self.revolution(motion.alpha[k]) + phase).cos(),
-            _ => 0.0,
-        })
+    /// The angle that the scale shows where the smooth motion is at `alpha`, radians: there is other motion, and places are off.
+    fn seen(&self, alpha: f64, time: f64) -> f64 {
+        let vibrating = alpha
+            + self.sum(|c| match *c {
+                Cause::Vibration {
+                    frequency_hz,
+                    amplitude,
+                    phase,
+                } => amplitude * (TAU * frequency_hz * time + phase).cos(),
+                _ => 0.0,
+            });
+        let of_revolution = |which: fn(&Cause) -> bool, at: f64| {
+            self.sum(|c| match *c {
+                Cause::Cogging {
+                    order,
+                    amplitude,
+                    phase,
+                }
+                | Cause::GraduationError {
+                    order,
+                    amplitude,
+                    phase,
+                } if which(c) => amplitude * (order * self.revolution(at) + phase).cos(),
+                _ => 0.0,
+            })
+        };
+        // Cogging is of the place where the axis is with it.
+        let cogging =
+            |at: f64| vibrating + of_revolution(|c| matches!(c, Cause::Cogging { .. }), at);
+        let place = (0..COGGED).fold(vibrating, |at, _| cogging(at));
+        place + of_revolution(|c| matches!(c, Cause::GraduationError { .. }), place)
     }
 
     fn revolution(&self, alpha: f64) -> f64 {
