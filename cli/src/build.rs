@@ -25,7 +25,7 @@ pub(crate) struct Build {
     /// A recording (CSV) to play into the Verilog too, besides the named stimuli; its waves are written.
     #[arg(long, value_name = "RECORDING")]
     play: Option<PathBuf>,
-    /// A simulated sensor (sensor.toml of `nonius diagnose`) to play into the Verilog, likewise.
+    /// A simulated sensor (sensor.toml of `nonius diagnose`) to play into the Verilog, likewise; it is moved as there.
     #[arg(long, value_name = "SENSOR", conflicts_with = "play")]
     sensor: Option<PathBuf>,
     /// Plays a recording of whole turns so many times.

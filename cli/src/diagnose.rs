@@ -17,7 +17,7 @@ use crate::recording_args::RecordingArgs;
 pub(crate) struct Diagnose {
     /// The recording (CSV).
     recording: PathBuf,
-    /// Folder to write: findings.json, positions.csv, sensor.toml, design.toml, report.html.
+    /// Folder to write: findings.json, positions.csv, sensor.toml, motion.csv, design.toml, report.html.
     #[arg(short)]
     output: PathBuf,
     /// The design that runs on this sensor; one is fitted if none is given.
@@ -84,6 +84,10 @@ pub(crate) fn run(args: &Diagnose) -> Result<bool> {
         (
             "sensor.toml".into(),
             nonius_diagnosis::sensor_toml(&found, &recording).into_bytes(),
+        ),
+        (
+            nonius_diagnosis::MOTION.into(),
+            nonius_diagnosis::motion_csv(&found, &recording).into_bytes(),
         ),
         (
             "report.html".into(),

@@ -26,6 +26,7 @@ pub mod new;
 mod paper;
 pub mod play;
 mod recording_args;
+mod samples;
 mod simulate;
 mod target;
 mod verify;

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, bail};
 use nonius_model::physical::Converter;
 use nonius_model::spec::Spec;
-use nonius_recording::{Overrides, Recording, Survey};
+use nonius_recording::{Adc, AdcPair, AdcSource, Overrides, Recording, Survey};
 use nonius_sensor::{Motion, Sensor};
 use nonius_testvectors::stimulus::{Sample, Stimulus};
 
@@ -15,8 +15,7 @@ const JOINT: f64 = 0.1;
 /// Noise of a simulated sensor: always the same, so that a build is.
 const SEED: u64 = 1;
 
-/// The recording in a file, or what the sensor in another shows when it is moved as far and as fast as it was; and the
-/// name of the file.
+/// The recording in a file, or what the sensor in another shows when it is moved as that one says; and the name of the file.
 ///
 /// # Errors
 /// Neither is given, or the file is not what it should be.
@@ -32,19 +31,56 @@ pub(crate) fn source(
     }
 }
 
-fn simulated(path: &Path) -> Result<Recording> {
+/// The sensor in a file, and the file that it is moved along, if it names one.
+///
+/// # Errors
+/// The file is not what it should be.
+pub(crate) fn sensor(path: &Path) -> Result<(Sensor, Option<PathBuf>)> {
     let file = path.display().to_string();
     let text = std::fs::read_to_string(path).with_context(|| format!("cannot read {file}"))?;
     let sensor = Sensor::from_toml(&text, &file)?;
-    let samples = sensor.simulate(&Motion::to_and_fro(&sensor), SEED);
-    let adc = &sensor.adc;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let along = sensor.motion.file.as_ref().map(|named| folder.join(named));
+    Ok((sensor, along))
+}
+
+fn simulated(path: &Path) -> Result<Recording> {
+    let (sensor, along) = sensor(path)?;
+    let motion = match along {
+        None => Motion::to_and_fro(&sensor),
+        Some(along) => moved(&sensor, &along).with_context(|| {
+            format!(
+                "{}: motion.file: without that line the sensor is moved to and fro",
+                path.display()
+            )
+        })?,
+    };
+    let samples = sensor.simulate(&motion, SEED);
     let overrides = Overrides {
-        adc_bits: Some(adc.bits),
+        adc_bits: Some(sensor.adc.bits),
         periods_per_revolution: sensor.motion.periods_per_revolution,
         ..Overrides::default()
     };
-    Recording::from_samples(samples.time_s, samples.cos, samples.sin, &overrides)
-        .with_context(|| format!("{file} makes no recording"))
+    let mut recording =
+        Recording::from_samples(samples.time_s, samples.cos, samples.sin, &overrides)
+            .with_context(|| format!("{} makes no recording", path.display()))?;
+    // The ADC is known: what the reader sees of it in the samples, and notes, is less.
+    let adc = Adc {
+        bits: sensor.adc.bits,
+        lsb: sensor.adc.lsb,
+        centre: sensor.adc.centre,
+        source: AdcSource::Described,
+    };
+    recording.metadata.adc = AdcPair { cos: adc, sin: adc };
+    recording.notes.clear();
+    Ok(recording)
+}
+
+/// The motion in a file.
+fn moved(sensor: &Sensor, along: &Path) -> Result<Motion> {
+    let file = along.display().to_string();
+    let text = std::fs::read_to_string(along).with_context(|| format!("cannot read {file}"))?;
+    Ok(Motion::along(sensor, &text, &file)?)
 }
 
 /// Says what the reader noticed and where recording and design do not fit each other.

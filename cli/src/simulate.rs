@@ -14,6 +14,7 @@ use nonius_recording::Recording;
 use crate::interpolator::{BitTrue, InFloatingPoint, Interpolator};
 use crate::play;
 use crate::recording_args::RecordingArgs;
+use crate::samples;
 use crate::target::Target;
 
 /// What to simulate.
@@ -24,12 +25,21 @@ pub(crate) struct Simulate {
     /// The recording (CSV).
     #[arg(required_unless_present = "sensor", conflicts_with = "sensor")]
     recording: Option<PathBuf>,
-    /// A simulated sensor (sensor.toml of `nonius diagnose`) in place of a recording.
+    /// A simulated sensor (sensor.toml of `nonius diagnose`) in place of a recording: along the motion that its motion.file holds,
+    /// that of the recording; to and fro where it names none.
     #[arg(long, value_name = "SENSOR")]
     sensor: Option<PathBuf>,
     /// File to write (CSV): time_s, position_periods, speed_periods_per_s, locked, theta_1, …
     #[arg(short)]
     output: PathBuf,
+    /// Also writes what the simulated sensor's ADC says, as a recording (CSV): time_s, cos, sin.
+    #[arg(
+        long,
+        value_name = "FILE",
+        requires = "sensor",
+        conflicts_with = "recording"
+    )]
+    samples: Option<PathBuf>,
     /// Also writes the waves of the bit-true chip (VCD), with the signal names of its Verilog.
     #[arg(long, value_name = "FILE", conflicts_with = "reference")]
     vcd: Option<PathBuf>,
@@ -78,6 +88,10 @@ pub(crate) fn run(args: &Simulate) -> Result<()> {
     } else {
         vec![]
     };
+    let samples = args.samples.as_deref();
+    let samples = samples
+        .map(|path| samples::write(path, &recording))
+        .transpose()?;
     let target = Target::new(&args.output)?;
     let lost = write(
         &target,
@@ -90,6 +104,9 @@ pub(crate) fn run(args: &Simulate) -> Result<()> {
     .with_context(|| format!("cannot write {}", args.output.display()))?;
     interpolator.finish()?;
     target.keep()?;
+    if let Some(samples) = samples {
+        samples.keep()?;
+    }
     if let Some(first) = lost.first() {
         eprintln!(
             "note: lock is lost {}, first at {first} s: the position may have lost periods there",
@@ -110,12 +127,15 @@ fn apart(args: &Simulate) -> Result<()> {
             folder.map_or_else(|_| path.to_owned(), |folder| folder.join(name))
         })
     };
+    let sensor = args.sensor.as_deref().map(play::sensor).transpose()?;
+    let motion = sensor.and_then(|(_, motion)| motion);
     let read = [
         Some(&args.design),
         args.recording.as_ref(),
         args.sensor.as_ref(),
+        motion.as_ref(),
     ];
-    let written = [Some(&args.output), args.vcd.as_ref()];
+    let written = [Some(&args.output), args.vcd.as_ref(), args.samples.as_ref()];
     for (i, out) in written.iter().enumerate() {
         let Some(out) = out else { continue };
         let others = read.iter().chain(&written[..i]).flatten();

@@ -11,6 +11,7 @@ mod followed_recordings;
 mod new;
 mod paper_and_chip_over_recordings;
 mod readme;
+mod replayed;
 mod report_in_chromium;
 mod simulate;
 mod support;

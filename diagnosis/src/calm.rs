@@ -122,8 +122,7 @@ impl Calm {
         let marked = weights.filter(|(_, corner)| *corner);
         marked.for_each(|(weight, _)| *weight *= CORNERS);
         let make = |spacing: f64| Spline::new(context.samples(), spacing, &context.weight);
-        let followed = context.finer.as_ref().or(context.spline.as_ref());
-        let finer = followed.map(|spline| make(spline.spacing()));
+        let finer = context.followed().map(|spline| make(spline.spacing()));
         (context.spline, context.finer) = (Some(make(self.spacing)), finer);
         context.calm = true;
         let (c, s) = (context.c.clone(), context.s.clone());

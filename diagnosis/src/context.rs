@@ -170,6 +170,11 @@ impl Context {
         self.top_speed
     }
 
+    /// The spline that the angle is followed by.
+    pub(crate) fn followed(&self) -> Option<&Spline> {
+        self.finer.as_ref().or(self.spline.as_ref())
+    }
+
     /// Takes another corrected pair, and follows its angle.
     pub fn set_pair(&mut self, c: Vec<f64>, s: Vec<f64>, reference: Option<&[f64]>) {
         let n = c.len();

@@ -15,6 +15,7 @@ use crate::flicker::{self, Flicker};
 use crate::left;
 use crate::library::Row;
 use crate::model::System;
+use crate::motion::Motion;
 use crate::noise;
 use crate::reference;
 use crate::repair::Repaired;
@@ -56,6 +57,8 @@ pub struct Diagnosis {
     pub extended: Extended,
     /// Positions in periods by the extended model, one per sample, continuous.
     pub positions: Vec<f64>,
+    /// The same as a spline.
+    pub(crate) motion: Motion,
     /// Scale periods travelled, to and fro.
     pub periods_travelled: f64,
     /// The context, for plots.
@@ -338,10 +341,11 @@ fn conclude(
     let change = system
         .samples
         .sum(&extended.sensor_amounts(), Row::Tangential);
+    let pairs = context.measured.iter().zip(&change);
+    let angle: Vec<f64> = pairs.map(|(measured, change)| measured - change).collect();
     let own = repaired.place.iter();
-    let positions = own
-        .map(|&k| (context.measured[k] - change[k]) / std::f64::consts::TAU)
-        .collect();
+    let positions = own.map(|&k| angle[k] / std::f64::consts::TAU).collect();
+    let motion = Motion::of(context, &angle);
     let ellipse = exact::ellipse(&context.ellipse, &extended.fit.solution.x);
     move |mut context| {
         context.ellipse = ellipse;
@@ -351,6 +355,7 @@ fn conclude(
             unexplained,
             extended: model,
             positions,
+            motion,
             periods_travelled: context.periods_travelled(),
             context,
             residuals,

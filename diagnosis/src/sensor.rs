@@ -7,6 +7,9 @@ use nonius_recording::Recording;
 use crate::diagnose::Diagnosis;
 use crate::finding::{Finding, Parameter, Place};
 
+/// Name of the file beside it that the sensor is moved along: what [`crate::motion_csv`] says.
+pub const MOTION: &str = "motion.csv";
+
 /// The sensor that the recording shows.
 #[must_use]
 pub fn sensor_toml(found: &Diagnosis, recording: &Recording) -> String {
@@ -48,9 +51,10 @@ pub fn sensor_toml(found: &Diagnosis, recording: &Recording) -> String {
         "\n[adc]\nbits = {}\nlsb = {:?}\ncentre = {:?}\nsample_rate_hz = {:?}",
         adc.bits, adc.lsb, adc.centre, recording.metadata.sample_rate_hz
     );
+    let file = format!("file = {MOTION:?}");
     let _ = writeln!(
         out,
-        "\n[motion]\nperiods_travelled = {:?}\nspeed_max_periods_per_s = {:?}",
+        "\n[motion]\n{file:<34} # that of the recording; without this line to and fro, as far and as fast\nperiods_travelled = {:?}\nspeed_max_periods_per_s = {:?}",
         found.periods_travelled,
         found.context.top_speed() / std::f64::consts::TAU
     );

@@ -91,8 +91,29 @@ impl Spline {
         self.factor.len()
     }
 
+    /// Its knots, as numbers of samples: some lie before the first and behind the last one.
+    pub(crate) fn knots(&self) -> impl Iterator<Item = f64> {
+        let pieces = self.count() - 3;
+        (0..=pieces).map(|i| i as f64 * self.spacing - 0.5)
+    }
+
+    /// The spline and its derivative per sample at any place between samples.
+    pub(crate) fn between(&self, coefficients: &[f64], sample: f64) -> (f64, f64) {
+        let (first, x) = Self::piece(self.spacing, self.count() - 3, sample);
+        let sum = |by: [f64; 4]| -> f64 {
+            let own = coefficients[first..].iter().zip(by);
+            own.map(|(c, b)| c * b).sum()
+        };
+        (sum(weights(x)), sum(slopes(x)) / self.spacing)
+    }
+
     fn at(spacing: f64, pieces: usize, k: usize) -> (usize, f64) {
-        let x = (k as f64 + 0.5) / spacing;
+        Self::piece(spacing, pieces, k as f64)
+    }
+
+    /// The piece that a place lies in, and how far in it.
+    fn piece(spacing: f64, pieces: usize, sample: f64) -> (usize, f64) {
+        let x = (sample + 0.5) / spacing;
         let first = (x as usize).min(pieces - 1);
         (first, x - first as f64)
     }

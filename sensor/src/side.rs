@@ -12,7 +12,7 @@ pub(crate) fn sides(speed: &[f64]) -> Vec<f64> {
     let mut turned = 0;
     let mut sides = vec![side; speed.len()];
     for (k, v) in speed.iter().enumerate() {
-        if v.signum() == side {
+        if *v == 0.0 || v.signum() == side {
             turned = k + 1;
         } else if moves(&v) {
             side = -side;

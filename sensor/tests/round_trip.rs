@@ -5,7 +5,7 @@ mod support;
 
 use nonius_diagnosis::{diagnose, sensor_toml};
 use nonius_sensor::{Motion, Sensor};
-use support::{PLAIN, recorded};
+use support::{PLAIN, recording};
 
 /// Causes of the catalogue beyond the five parameters.
 const CATALOGUE: [&str; 29] = [
@@ -45,7 +45,8 @@ fn round_trip(cause: &str) {
     let mut text = format!("{PLAIN}[[cause]]\n{cause}");
     for round in 0..2 {
         let sensor = Sensor::from_toml(&text, "sensor.toml").expect("a sensor");
-        let recording = recorded(&sensor, 5 + round);
+        let samples = sensor.simulate(&Motion::to_and_fro(&sensor), 5 + round);
+        let recording = recording(&sensor, samples);
         let found = diagnose(&recording).expect("an ellipse");
         let names: Vec<&str> = found.findings.iter().map(|f| f.cause.as_str()).collect();
         let expected: toml::Table = cause.parse().expect("TOML");
@@ -180,64 +181,4 @@ fn bad_files_are_refused_with_their_place() {
         &format!("{PLAIN}[[cause]]\nname = \"stuck_bits\"\nbit = 3\n"),
         &["stuck_bits", "did you mean `stuck_bit`?"],
     );
-}
-
-/// The extended simulation, along the motion that the diagnosis followed and without noise, is the recording but for the
-/// noise that it was made with.
-fn reproduced(causes: &[&str]) {
-    let text = causes.iter().fold(PLAIN.to_owned(), |all, one| {
-        format!("{all}[[cause]]\n{one}\n")
-    });
-    let sensor = Sensor::from_toml(&text, "sensor.toml").expect("a sensor");
-    let recording = recorded(&sensor, 11);
-    let found = diagnose(&recording).expect("an ellipse");
-    let names: Vec<&str> = found.findings.iter().map(|f| f.cause.as_str()).collect();
-    assert_eq!(names.len(), causes.len(), "{names:?}");
-    let emitted = sensor_toml(&found, &recording);
-    let mut extended = Sensor::from_toml(&emitted, "extended.toml").expect("what was emitted");
-    assert!(
-        (extended.signals.noise_rms / sensor.signals.noise_rms - 1.0).abs() < 0.05,
-        "noise {}",
-        extended.signals.noise_rms
-    );
-    extended.signals.noise_rms = 0.0;
-    let context = &found.context;
-    let slow = context.alpha.iter().zip(&context.fast).map(|(a, f)| a - f);
-    let motion = Motion {
-        time_s: context.time.clone(),
-        alpha: slow.collect(),
-    };
-    let simulated = extended.simulate(&motion, 12);
-    let channels = [
-        (&recording.cos, &simulated.cos, sensor.signals.a_c),
-        (&recording.sin, &simulated.sin, sensor.signals.a_s),
-    ];
-    for (measured, simulated, amplitude) in channels {
-        let square = |k: usize| (measured[k] - simulated[k]).powi(2);
-        let n = measured.len();
-        let rms = ((0..n).map(square).sum::<f64>() / n as f64).sqrt();
-        // Two ADCs round, one to either side.
-        let noise = sensor.signals.noise_rms * amplitude;
-        let expected = noise.hypot(sensor.adc.lsb / 6f64.sqrt());
-        assert!(
-            (rms / expected - 1.0).abs() < 0.04,
-            "{causes:?}: off by {rms:.3e} rms, noise {expected:.3e}"
-        );
-    }
-}
-
-#[test]
-fn the_extended_simulation_is_the_recording_but_for_its_noise() {
-    let harmonic = "name = \"spatial_harmonic\"\norder = 3.0\namplitude_cos = 0.02\nphase_cos = 0.7\namplitude_sin = 0.015\nphase_sin = -2.0";
-    let skew = "name = \"channel_skew\"\ndelay_s = 3e-6";
-    let hum = "name = \"interference\"\nfrequency_hz = 311.3\namplitude_cos = 0.01\nphase_cos = 0.4\namplitude_sin = 0.008\nphase_sin = 1.9";
-    let rail = "name = \"saturation\"\nthreshold = 0.8\ncompression = 0.1\ncompression_upper = 0.0";
-    let crosstalk =
-        "name = \"delayed_crosstalk\"\nproduct_into_cos_s = 3e-6\nproduct_into_sin_s = -2e-6";
-    let vibration = "name = \"vibration\"\nfrequency_hz = 1210.0\namplitude = 0.01\nphase = 0.3";
-    let stuck = "name = \"stuck_bit\"\nbit = 0.0\nchannel = \"cos\"\nlevel = 1.0";
-    for one in [harmonic, skew, hum, rail, crosstalk, vibration, stuck] {
-        reproduced(&[one]);
-    }
-    reproduced(&[harmonic, hum]);
 }

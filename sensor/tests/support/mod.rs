@@ -1,13 +1,12 @@
 //! A plain sensor and its recordings.
 
 use nonius_recording::{Overrides, Recording};
-use nonius_sensor::{Motion, Sensor};
+use nonius_sensor::{Samples, Sensor};
 
 pub(crate) const PLAIN: &str = include_str!("plain.toml");
 
-/// What it records when it is moved to and fro.
-pub(crate) fn recorded(sensor: &Sensor, seed: u64) -> Recording {
-    let samples = sensor.simulate(&Motion::to_and_fro(sensor), seed);
+/// Samples of a sensor as a recording of a known ADC.
+pub(crate) fn recording(sensor: &Sensor, samples: Samples) -> Recording {
     let overrides = Overrides {
         adc_bits: Some(sensor.adc.bits),
         full_scale: Some(sensor.adc.lsb * 2f64.powi(sensor.adc.bits as i32 - 1)),

@@ -1,0 +1,188 @@
+//! The extended simulation, moved as the recording was, is the recording but for the noise of both.
+
+mod support;
+
+use std::f64::consts::TAU;
+
+use nonius_diagnosis::{diagnose, motion_csv, sensor_toml};
+use nonius_recording::Recording;
+use nonius_sensor::{Motion, Samples, Sensor};
+use support::{PLAIN, recording};
+
+const RATE: f64 = 10_000.0;
+const SAMPLES: usize = 20_000;
+/// Of a sample of the plain sensor, radians.
+const NOISE: f64 = 1e-3;
+
+/// How an axis is moved: from rest to one speed, back at another, and left alone; three times, a bit slower each.
+fn driven() -> Motion {
+    const SPEEDS: [(f64, f64); 7] = [
+        (0.0, 0.0),
+        (0.08, 0.0),
+        (0.2, 1.0),
+        (0.3, 1.0),
+        (0.45, -0.7),
+        (0.58, 0.0),
+        (2.0 / 3.0, 0.0),
+    ];
+    /// Periods per second.
+    const TOP: f64 = 700.0;
+    let speed = |t: f64| {
+        let (round, t) = ((t * 1.5).floor(), t % (2.0 / 3.0));
+        let pair = SPEEDS.windows(2).find(|w| t < w[1].0);
+        let pair = pair.unwrap_or(&SPEEDS[5..]);
+        let x = (t - pair[0].0) / (pair[1].0 - pair[0].0);
+        // Without jerks: a drive that is controlled.
+        let x = x * x * x * (10.0 - 15.0 * x + 6.0 * x * x);
+        (TOP - 120.0 * round) * (pair[0].1 + (pair[1].1 - pair[0].1) * x)
+    };
+    let mut angle = 0.3;
+    let (time_s, alpha) = (0..SAMPLES)
+        .map(|k| {
+            let t = k as f64 / RATE;
+            let now = angle;
+            angle += TAU * speed(t + 0.5 / RATE) / RATE;
+            (t, now)
+        })
+        .unzip();
+    Motion { time_s, alpha }
+}
+
+fn with(causes: &[&str]) -> Sensor {
+    let text = causes.iter().fold(PLAIN.to_owned(), |all, one| {
+        format!("{all}[[cause]]\n{one}\n")
+    });
+    Sensor::from_toml(&text, "sensor.toml").expect("a sensor")
+}
+
+/// What a diagnosis says of a recording, simulated along the motion that it found, with other noise; and to and fro.
+fn replayed(recording: &Recording, causes: &[&str]) -> [Samples; 2] {
+    let found = diagnose(recording).expect("an ellipse");
+    let names: Vec<&str> = found.findings.iter().map(|f| f.cause.as_str()).collect();
+    assert_eq!(names.len(), causes.len(), "{names:?}");
+    for name in names {
+        assert!(causes.iter().any(|c| c.contains(name)), "{name}");
+    }
+    let emitted = sensor_toml(&found, recording);
+    let sensor = Sensor::from_toml(&emitted, "sensor.toml").expect("what was emitted");
+    let noise = sensor.signals.noise_rms;
+    assert!((noise / NOISE - 1.0).abs() < 0.05, "noise {noise}");
+    let text = motion_csv(&found, recording);
+    let motion = Motion::along(&sensor, &text, "motion.csv").expect("what was emitted");
+    [motion, Motion::to_and_fro(&sensor)].map(|motion| sensor.simulate(&motion, 12))
+}
+
+/// Rms of the difference of two recordings over that of the noise of both, cos and sin.
+fn apart(sensor: &Sensor, recording: &Recording, simulated: &Samples) -> [f64; 2] {
+    let channels = [
+        (&recording.cos, &simulated.cos, sensor.signals.a_c),
+        (&recording.sin, &simulated.sin, sensor.signals.a_s),
+    ];
+    channels.map(|(measured, simulated, amplitude)| {
+        let pairs = measured.iter().zip(simulated);
+        let power: f64 = pairs.map(|(m, s)| (m - s).powi(2)).sum();
+        let rms = (power / measured.len() as f64).sqrt();
+        // Two noises, and two ADCs round.
+        let noise = sensor.signals.noise_rms * amplitude;
+        rms / (noise * 2f64.sqrt()).hypot(sensor.adc.lsb / 6f64.sqrt())
+    })
+}
+
+fn reproduced(causes: &[&str]) {
+    let sensor = with(causes);
+    for (motion, is_driven) in [(driven(), true), (Motion::to_and_fro(&sensor), false)] {
+        let recording = recording(&sensor, sensor.simulate(&motion, 11));
+        let [along, to_and_fro] = replayed(&recording, causes);
+        assert_eq!(along.time_s, recording.time_s);
+        let own = apart(&sensor, &recording, &along);
+        let other = apart(&sensor, &recording, &to_and_fro);
+        println!("{causes:?}: {own:.4?} {other:.1?}");
+        // When a scale that stood goes back is known to a few samples, and the offsets jump there.
+        let jumps = is_driven && causes.contains(&HYSTERESIS);
+        let least = if jumps { 0.2 } else { 0.04 };
+        let same = own.iter().all(|a| (a - 1.0).abs() < least);
+        assert!(same, "{causes:?}: {own:?} times the noise");
+        assert!(!is_driven || other.iter().all(|a| *a > 100.0), "{other:?}");
+    }
+}
+
+const HARMONIC: &str = "name = \"spatial_harmonic\"\norder = 3.0\namplitude_cos = 0.02\nphase_cos = 0.7\namplitude_sin = 0.015\nphase_sin = -2.0";
+const SKEW: &str = "name = \"channel_skew\"\ndelay_s = 3e-6";
+const HUM: &str = "name = \"interference\"\nfrequency_hz = 311.3\namplitude_cos = 0.01\nphase_cos = 0.4\namplitude_sin = 0.008\nphase_sin = 1.9";
+const RAIL: &str =
+    "name = \"saturation\"\nthreshold = 0.8\ncompression = 0.1\ncompression_upper = 0.0";
+const CROSSTALK: &str =
+    "name = \"delayed_crosstalk\"\nproduct_into_cos_s = 3e-6\nproduct_into_sin_s = -2e-6";
+const VIBRATION: &str =
+    "name = \"vibration\"\nfrequency_hz = 1210.0\namplitude = 0.01\nphase = 0.3";
+const COGGING: &str = "name = \"cogging\"\norder = 48.0\namplitude = 0.03\nphase = 0.3";
+const STUCK: &str = "name = \"stuck_bit\"\nbit = 0.0\nchannel = \"cos\"\nlevel = 1.0";
+const HYSTERESIS: &str = "name = \"hysteresis\"\noffset_cos = 0.008\noffset_sin = -0.006";
+const RUNOUT: &str = "name = \"runout\"\norder = 2.0\ndepth = 0.01\nphase = -0.9";
+const DRIFT: &str = "name = \"offset_drift\"\nchange_cos = 0.02\nchange_sin = -0.012";
+
+#[test]
+fn one_cause() {
+    for one in [
+        HARMONIC, SKEW, HUM, RAIL, CROSSTALK, VIBRATION, COGGING, STUCK, HYSTERESIS, RUNOUT, DRIFT,
+    ] {
+        reproduced(&[one]);
+    }
+}
+
+#[test]
+fn two_causes() {
+    reproduced(&[HARMONIC, HUM]);
+    reproduced(&[HYSTERESIS, RUNOUT]);
+}
+
+/// Largest difference of the motion that a diagnosis finds in some rows of a recording from the true one, radians; rows are
+/// numbers of samples and the times that they are said to have. And how many samples there are along it.
+fn off(rows: &[(usize, f64)]) -> (f64, usize) {
+    let sensor = with(&[]);
+    let true_motion = driven();
+    let all = sensor.simulate(&true_motion, 11);
+    let of = |values: &[f64]| rows.iter().map(|row| values[row.0]).collect();
+    let samples = Samples {
+        time_s: rows.iter().map(|row| row.1).collect(),
+        cos: of(&all.cos),
+        sin: of(&all.sin),
+    };
+    let start = rows[0];
+    let recording = recording(&sensor, samples);
+    let found = diagnose(&recording).expect("an ellipse");
+    let motion = Motion::along(&sensor, &motion_csv(&found, &recording), "motion.csv");
+    let motion = motion.expect("what was written");
+    let pairs = motion.time_s.iter().zip(&motion.alpha);
+    let largest = pairs.fold(0.0, |most, (t, alpha)| {
+        let k = start.0 + ((t - start.1) * RATE).round() as usize;
+        let off = alpha - true_motion.alpha[k];
+        f64::max(most, (off - TAU * (off / TAU).round()).abs())
+    });
+    (largest, motion.alpha.len())
+}
+
+#[test]
+fn a_motion_is_over_the_true_time() {
+    let time = |k: usize| k as f64 / RATE;
+    let lost = |k: &usize| ![1500, 2500, 2501, 9000].contains(k);
+    let all = || 0..SAMPLES;
+    let later: Vec<_> = all().map(|k| (k, 1_700_000_000.0 + time(k))).collect();
+    let gaps: Vec<_> = all().filter(lost).map(|k| (k, time(k))).collect();
+    // The clock counts what arrives.
+    let hidden = all().filter(lost).enumerate();
+    let hidden: Vec<_> = hidden.map(|(i, k)| (k, time(i))).collect();
+    // Too long to be bridged, while the axis stands.
+    let pause = (0..12_000).filter(|k| !(5830..7430).contains(k));
+    let pause: Vec<_> = pause.map(|k| (k, time(k))).collect();
+    for (rows, count) in [
+        (later, SAMPLES),
+        (gaps, SAMPLES),
+        (hidden, SAMPLES),
+        (pause, 12_000),
+    ] {
+        let (off, samples) = off(&rows);
+        assert_eq!(samples, count);
+        assert!(off < 3.0 * NOISE, "{off} rad");
+    }
+}
