@@ -14,8 +14,9 @@ const SAMPLES: usize = 20_000;
 /// Of a sample of the plain sensor, radians.
 const NOISE: f64 = 1e-3;
 
-/// How an axis is moved: from rest to one speed, back at another, and left alone; three times, a bit slower each.
-fn driven() -> Motion {
+/// How an axis is moved: from rest to one speed, back at another, and left alone; three times, a bit slower each. The speed goes
+/// from one to the next by a law of 0 … 1.
+fn driven_by(law: fn(f64) -> f64) -> Motion {
     const SPEEDS: [(f64, f64); 7] = [
         (0.0, 0.0),
         (0.08, 0.0),
@@ -32,9 +33,7 @@ fn driven() -> Motion {
         let pair = SPEEDS.windows(2).find(|w| t < w[1].0);
         let pair = pair.unwrap_or(&SPEEDS[5..]);
         let x = (t - pair[0].0) / (pair[1].0 - pair[0].0);
-        // Without jerks: a drive that is controlled.
-        let x = x * x * x * (10.0 - 15.0 * x + 6.0 * x * x);
-        (TOP - 120.0 * round) * (pair[0].1 + (pair[1].1 - pair[0].1) * x)
+        (TOP - 120.0 * round) * (pair[0].1 + (pair[1].1 - pair[0].1) * law(x))
     };
     let mut angle = 0.3;
     let (time_s, alpha) = (0..SAMPLES)
@@ -46,6 +45,11 @@ fn driven() -> Motion {
         })
         .unzip();
     Motion { time_s, alpha }
+}
+
+/// By a drive that is controlled, without jerks.
+fn driven() -> Motion {
+    driven_by(|x| x * x * x * (10.0 - 15.0 * x + 6.0 * x * x))
 }
 
 fn with(causes: &[&str]) -> Sensor {
@@ -134,6 +138,18 @@ fn one_cause() {
 fn two_causes() {
     reproduced(&[HARMONIC, HUM]);
     reproduced(&[HYSTERESIS, RUNOUT]);
+}
+
+/// Knots that corners need follow a vibration, too: it is named from the stretches between them, and is in the motion once.
+#[test]
+fn a_vibration_between_corners() {
+    let vibration = "name = \"vibration\"\nfrequency_hz = 300.3\namplitude = 0.01\nphase = 0.7";
+    let sensor = with(&[vibration]);
+    let recording = recording(&sensor, sensor.simulate(&driven_by(|x| x), 11));
+    let [along, _] = replayed(&recording, &[vibration]);
+    let own = apart(&sensor, &recording, &along);
+    println!("{own:.4?}");
+    assert!(own.iter().all(|a| (a - 1.0).abs() < 0.04), "{own:?}");
 }
 
 /// Largest difference of the motion that a diagnosis finds in some rows of a recording from the true one, radians; rows are
