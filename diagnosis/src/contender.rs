@@ -139,8 +139,10 @@ pub(crate) fn contender(
         let listed = |name: &str| name != ACCELERATION_GAIN;
         let locked = goes_with_angle(system.context, &own.candidate);
         let crawling = causes::crawls(system.context, &own.candidate);
-        let nameable =
-            listed(own.candidate.name) && rivals.iter().all(|r| listed(r)) && !locked && !crawling;
+        let wandering = one_of_many(system, fit, &own.candidate);
+        let nameable = listed(own.candidate.name)
+            && rivals.iter().all(|r| listed(r))
+            && !(locked || crawling || wandering);
         if nameable && slow && !ahead.outdone && rivals.len() <= 1 && held.refusal.is_none() {
             if rivals.is_empty() {
                 rivals.extend(wider);
@@ -163,6 +165,8 @@ pub(crate) fn contender(
                 .to_owned()
         } else if crawling {
             "it goes to and fro less than four times".to_owned()
+        } else if wandering {
+            "what stands beside it is as high: its frequency wanders".to_owned()
         } else if !slow {
             "steps explain it as well".to_owned()
         } else if let Some(refusal) = held.refusal {
@@ -254,6 +258,12 @@ fn fewer_first(scored: &mut [Scored]) {
     if let Some(at) = others.min_by_key(|i| scored[*i].freedom) {
         scored[..=at].rotate_right(1);
     }
+}
+
+/// Whether a line in the channels is one of many beside each other.
+fn one_of_many(system: &System, fit: &Fit, candidate: &Candidate) -> bool {
+    candidate.domain == Domain::Line
+        && causes::is_one_of_many(system.context, &system.residual(fit), candidate)
 }
 
 /// Whether, at a speed that hardly changes, a line stands where something that goes with the angle would: at half orders of

@@ -12,6 +12,7 @@ mod mirror;
 mod place;
 mod revolution;
 mod speed;
+mod steady;
 mod time;
 
 use std::rc::Rc;
@@ -27,6 +28,7 @@ use crate::trig::{Trig, rotated};
 pub(crate) use line::{crawls, wave as line_wave};
 pub(crate) use place::{highest_order, order_waves, strongest_order, without_cogging};
 pub(crate) use speed::{varies as speed_varies, varies_much as speed_varies_much};
+pub(crate) use steady::is_one_of_many;
 pub(crate) use time::legendre;
 
 /// Highest order of the scale period.
