@@ -10,7 +10,7 @@ use crate::solve::{dot, weights_of};
 
 /// Samples on either side of a jump that are compared, and the order of the curve through them; on slow axes more of them
 /// show it, and on axes that shake a curve that bends more, or fewer of them.
-const SIDES: [(usize, i32); 8] = [
+pub(crate) const SIDES: [(usize, i32); 8] = [
     (4, 3),
     (8, 3),
     (8, 5),
@@ -27,7 +27,7 @@ const WHOLE: f64 = 0.15;
 /// Most samples lost at one place that are believed without a clock.
 const MOST: f64 = 32.0;
 /// So many times the samples on a side, to either side, tell how large the noise is just there.
-const AROUND: usize = 8;
+pub(crate) const AROUND: usize = 8;
 /// Standard deviations by which the sensor has to be seen to jump with its reference.
 const TOGETHER: f64 = 3.0;
 /// Standard deviations by which fewer samples may show another jump than more of them do.
@@ -41,7 +41,7 @@ struct Jump {
 }
 
 /// A function of the place among `side` samples on either side, which are the places from −1 to 1.
-fn column(side: usize, f: impl Fn(f64) -> f64) -> Vec<f64> {
+pub(crate) fn column(side: usize, f: impl Fn(f64) -> f64) -> Vec<f64> {
     let middle = side as f64 - 0.5;
     (0..2 * side)
         .map(|i| f((i as f64 - middle) / middle))
@@ -62,11 +62,11 @@ fn step_weights(side: usize, order: i32, but: Option<usize>) -> Vec<f64> {
 
 /// Corners of a drive: places where the speed, the acceleration or its change is another at once. A curve does not follow
 /// them, and what it leaves looks like a step.
-struct Corners(Vec<Vec<f64>>);
+pub(crate) struct Corners(Vec<Vec<f64>>);
 
 impl Corners {
     /// What they add to a curve of that order through `side` samples on either side: of unit square, free of that curve.
-    fn new(side: usize, order: i32) -> Self {
+    pub(crate) fn new(side: usize, order: i32) -> Self {
         /// Steps of a sixteenth of a side by which they may stand beside the middle.
         const BESIDE: i32 = 4;
         let curve: Vec<Vec<f64>> = (0..=order)
@@ -84,10 +84,21 @@ impl Corners {
         Self(all.map(corner).collect())
     }
 
+    /// Square of the angle near a place that the best of them explains.
+    pub(crate) fn explained(&self, near: &[f64]) -> f64 {
+        let squares = self.0.iter().map(|corner| dot(near, corner).powi(2));
+        squares.fold(0.0, f64::max)
+    }
+
+    /// How many they are.
+    pub(crate) fn count(&self) -> usize {
+        self.0.len()
+    }
+
     /// Whether one of them explains as much of the angle near a jump as the jump does, whose size the weights give.
     fn explain(&self, near: &[f64], weights: &[f64]) -> bool {
         let most = dot(near, weights).powi(2) / dot(weights, weights);
-        self.0.iter().any(|corner| dot(near, corner).powi(2) > most)
+        self.explained(near) > most
     }
 }
 
@@ -279,57 +290,6 @@ pub(crate) fn jumps(recording: &Recording, checked: &Checked) -> Vec<(usize, usi
     }
     found.sort_unstable();
     found
-}
-
-/// Those of some samples behind which the angle is late by what it moves in a sample: they were put in. One of them is looked
-/// for, not the farthest of all, so a smaller jump tells; curves are as long as leaves the least noise there.
-pub(crate) fn late(recording: &Recording, checked: &Checked, of: &[usize]) -> Vec<usize> {
-    /// Longer curves, for slow axes.
-    const LONGER: [(usize, i32); 1] = [(1200, 5)];
-    /// Standard deviations from which on a jump counts.
-    const SURE: f64 = 5.0;
-    /// Parts of a side at which the noise is looked at.
-    const PARTS: usize = 4;
-    /// Samples on either side that tell how fast the axis is.
-    const SPEED: usize = 32;
-    let Some(angle) = angle(recording, &checked.weight) else {
-        return vec![];
-    };
-    let n = angle.len();
-    let sides: Vec<(usize, Vec<f64>, Corners)> = SIDES
-        .into_iter()
-        .chain(LONGER)
-        .map(|(side, order)| {
-            let weights = step_weights(side, order, None);
-            (side, weights, Corners::new(side, order))
-        })
-        .collect();
-    // Size and noise of a jump before a sample.
-    let jump = |k: usize, side: usize, weights: &[f64]| -> Option<(f64, f64)> {
-        let size = |k: usize| -> Option<f64> {
-            let near = angle.get(k.checked_sub(side)?..k + side)?;
-            Some(dot(near, weights))
-        };
-        let around = (k.saturating_sub(AROUND * side)..k + AROUND * side).step_by(side / PARTS);
-        let apart = around.filter(|j| j.abs_diff(k) >= side).filter_map(size);
-        let sizes: Vec<f64> = apart.map(f64::abs).collect();
-        (sizes.len() > AROUND * PARTS).then_some((size(k)?, ninth(&sizes) / 1.645))
-    };
-    let is_late = |k: &usize| {
-        let looks = sides.iter().filter_map(|look| {
-            let (size, sigma) = jump(*k, look.0, &look.1)?;
-            Some((size, sigma, look))
-        });
-        let best = looks.min_by(|a, b| a.1.total_cmp(&b.1));
-        let (from, to) = (k.saturating_sub(SPEED), (k + SPEED).min(n - 1));
-        let moves = (angle[to] - angle[from]) / (to - from - 1) as f64;
-        best.is_some_and(|(size, sigma, (side, weights, corners))| {
-            let near = &angle[k - side..k + side];
-            let whole = (size + moves).abs() < WHOLE * moves.abs() + 3.0 * sigma;
-            size.abs() > SURE * sigma && whole && !corners.explain(near, weights)
-        })
-    };
-    of.iter().copied().filter(is_late).collect()
 }
 
 /// Whether the sensor jumps with its reference: what is between them does not jump, and would if the reference alone did.

@@ -29,6 +29,7 @@ mod glitches;
 mod held;
 mod jumps;
 mod knots;
+mod late;
 mod left;
 mod library;
 mod lines;

@@ -7,7 +7,8 @@ use nonius_recording::Recording;
 
 use crate::checks::{Checked, TimeBase, ninth, repeats};
 use crate::finding::{Finding, Parameter, Place};
-use crate::jumps::{jumps, late};
+use crate::jumps::jumps;
+use crate::late::late;
 
 /// Samples on either side whose slope tells how far the scale moves.
 const LINE: usize = 8;

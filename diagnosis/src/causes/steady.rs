@@ -2,13 +2,17 @@
 //! frequencies. To a filter that tells what is next from what was, that is the colour of the noise, and the highest of its
 //! crests a steady line.
 
+use std::f64::consts::TAU;
+
 use crate::cause::{Candidate, Domain};
 use crate::context::Context;
-use crate::lines::{flattened, pair_spectrum, window};
+use crate::lines::{pair_spectrum, window};
 use crate::model::Residual;
 
 /// Cycles per recording up to which something is beside a line.
 const BESIDE: f64 = 90.0;
+/// Shares of its frequency between which: noise of the channels may be higher below.
+const NEAR: [f64; 2] = [0.75, 1.5];
 /// Cycles per recording that a line itself is wide, with the window of the spectrum.
 const WIDE: f64 = 4.0;
 /// So many times a line is what stands beside it as high: noise beside a line that is seen is half as high, hardly more.
@@ -42,26 +46,27 @@ fn beaten(context: &Context, hertz: f64, radial: &[f64], tangential: &[f64]) -> 
     };
     let (in_c, in_s): (Vec<f64>, Vec<f64>) = (0..n).map(frame).unzip();
     let (power, length) = pair_spectrum(&in_c, &in_s);
-    let level = flattened(&power);
     // Places of the spectrum in a cycle per recording.
     let per = length as f64 / n as f64;
     let own = hertz / context.rate * length as f64;
     let near = |from: f64, to: f64| {
-        let from = from.max(1.0).min(level.len() as f64) as usize;
-        let to = (to.max(0.0).ceil() as usize + 1).min(level.len());
+        let from = from.max(1.0).min(power.len() as f64) as usize;
+        let to = (to.max(0.0).ceil() as usize + 1).min(power.len());
         from..to.max(from)
     };
-    let highest = level[near(own - WIDE * per, own + WIDE * per)]
+    let highest = power[near(own - WIDE * per, own + WIDE * per)]
         .iter()
         .copied()
         .fold(0.0, f64::max);
+    // Along the radius a line has an image about twice the angle, which is a line, too, at a constant speed.
+    let turning = context.speed.iter().sum::<f64>() / n as f64 / TAU;
+    let image = (2.0 * turning.abs() / context.rate * length as f64 - own).abs();
     let is_own = |k: usize| {
-        let harmonics = (1..=HARMONICS).map(|m| m as f64 * own);
-        harmonics
-            .into_iter()
-            .any(|at| (k as f64 - at).abs() <= WIDE * per)
+        let mut places = (1..=HARMONICS).map(|m| m as f64 * own).chain([image]);
+        places.any(|at| (k as f64 - at).abs() <= WIDE * per)
     };
-    near(own - BESIDE * per, own + BESIDE * per)
+    let [low, high] = NEAR.map(|share| share * own);
+    near(low.max(own - BESIDE * per), high.min(own + BESIDE * per))
         .filter(|k| !is_own(*k))
-        .any(|k| level[k] > AS_HIGH * highest)
+        .any(|k| power[k] > AS_HIGH * highest)
 }
