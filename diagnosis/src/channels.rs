@@ -3,6 +3,7 @@
 
 use crate::context::Context;
 use crate::model::{Residual, System};
+use crate::pair::PairSums;
 
 /// Residuals that show the offsets of both channels, in units in which their white noise is that of the radius.
 #[derive(Clone, Copy)]
@@ -71,6 +72,23 @@ impl<'a> Channels<'a> {
             left: left[k] * ratio,
         });
         std::iter::once(radial).chain(tangential)
+    }
+
+    /// Log-likelihood that steady offsets explain of the first samples of a recording: of all of it they are fitted, and slow
+    /// noise is a steady offset to a part.
+    pub(crate) fn steady(&self, all: usize) -> f64 {
+        if self.samples() >= all {
+            return 0.0;
+        }
+        let (mut sums, mut count) = (PairSums::default(), 0.0);
+        for k in 0..self.samples() {
+            for Row { of: [c, s], left } in self.rows(k) {
+                sums.add(c, s, left, self.context.weight[k]);
+                count += self.context.weight[k];
+            }
+        }
+        let power = self.power();
+        0.5 * count * (power / (power - sums.explained()).max(f64::MIN_POSITIVE)).ln()
     }
 
     /// Sum of squares.

@@ -151,7 +151,7 @@ pub(crate) fn whole(
     if numbers == 0 || drifts && noise.is_instead_of_a_change() {
         return Ok(found);
     }
-    let left = flicker::find(&other.context, &other.residuals[1].0);
+    let left = flicker::find_beside(&other.context, &other.residuals[1].0);
     if left.is_none() && !other.unexplained.significant {
         return Ok(other);
     }

@@ -9,6 +9,7 @@
 
 mod held_out;
 pub(crate) mod records;
+mod slow;
 
 use nonius_fourier::Complex;
 
@@ -266,6 +267,11 @@ pub(crate) fn find(context: &Context, radial: &[f64]) -> Option<Flicker> {
     find_from(Channels::in_radius(context, radial), SLOWEST)
 }
 
+/// The same in what names leave, that is, with what is slower.
+pub(crate) fn find_beside(context: &Context, radial: &[f64]) -> Option<Flicker> {
+    find(context, &slow::without(context, radial))
+}
+
 /// Flicker noise where it explains clearly more than a slow change or steps do, whose log-likelihood, their numbers paid for,
 /// is given: of weak noise hardly more than its slowest parts are seen.
 pub(crate) fn instead(seen: Channels, change: f64) -> Option<Flicker> {
@@ -327,19 +333,18 @@ fn find_from(seen: Channels, slowest: usize) -> Option<Flicker> {
         log_p,
         paid,
         slowest,
-        jumps: jumps(seen, paid),
+        jumps: jumps(seen, paid - in_time.steady),
     })
 }
 
 impl Flicker {
     /// The same noise in what is left when more is known.
     pub(crate) fn again(&self, left: Channels) -> Option<Self> {
-        let seen = if self.is_instead_of_a_change() {
-            left
+        if self.is_instead_of_a_change() {
+            find_from(left, self.slowest)
         } else {
-            Channels::in_radius(left.context, left.radial)
-        };
-        find_from(seen, self.slowest)
+            find_beside(left.context, left.radial)
+        }
     }
 
     /// It was weighed against a slow change, and found to explain more.

@@ -33,6 +33,8 @@ pub(crate) struct Explained {
     pub(crate) seen: f64,
     /// Of all samples, if those that were not looked at are like the others: this compares.
     pub(crate) all: f64,
+    /// What steady offsets explain of that: they are no noise.
+    pub(crate) steady: f64,
 }
 
 /// What flicker noise explains of what is seen, near a corner frequency in hertz.
@@ -70,9 +72,11 @@ impl Processes {
         let group = all.div_ceil(ENOUGH).clamp(1, longest);
         let part = seen.first(all.min(ENOUGH * group));
         let gain = Self::new(&part, corner, group).gain(&part, group);
+        let whole = all as f64 / part.samples() as f64;
         Explained {
             seen: gain,
-            all: gain / part.samples() as f64 * all as f64,
+            all: gain * whole,
+            steady: part.steady(all) * whole,
         }
     }
 

@@ -27,8 +27,8 @@ struct Chain {
     variance: f64,
 }
 
-/// Log-likelihood that the best two levels explain of what is seen beyond white noise, their numbers paid for; none where they
-/// explain nothing.
+/// Log-likelihood that the best two levels explain of what is seen beyond white noise and steady offsets, their numbers paid for;
+/// none where they explain nothing.
 pub(crate) fn gain(seen: Channels) -> Option<f64> {
     let n = seen.samples().min(ENOUGH);
     let part = seen.first(n);
@@ -44,7 +44,8 @@ pub(crate) fn gain(seen: Channels) -> Option<f64> {
         .filter_map(|length| Chain::start(&part, length, white))
         .filter_map(|chain| chain.fitted(&part))
         .max_by(f64::total_cmp)?;
-    let gain = (likelihood - of_white - price) / n as f64 * seen.samples() as f64;
+    let steady = part.steady(seen.samples());
+    let gain = (likelihood - of_white - steady - price) / n as f64 * seen.samples() as f64;
     (gain > 0.0).then_some(gain)
 }
 

@@ -29,7 +29,7 @@ pub(crate) use line::{crawls, wave as line_wave};
 pub(crate) use place::{highest_order, order_waves, strongest_order, without_cogging};
 pub(crate) use speed::{varies as speed_varies, varies_much as speed_varies_much};
 pub(crate) use steady::is_one_of_many;
-pub(crate) use time::legendre;
+pub(crate) use time::{DEGREE as SLOWEST_CHANGES, legendre};
 
 /// Highest order of the scale period.
 pub(crate) const ORDERS: usize = 8;

@@ -10,7 +10,7 @@ use crate::library::Shape;
 use crate::trig::{Trig, channel, normalised};
 
 /// Highest degree of a polynomial of the time.
-const DEGREE: usize = 6;
+pub(crate) const DEGREE: usize = 6;
 
 /// Legendre polynomial of a time from −1 to 1.
 pub(crate) fn legendre(degree: usize, x: f64) -> f64 {
