@@ -51,10 +51,17 @@ fn short_campaign() {
 /// a lost sample, one sample of a jittering clock was a glitch, a drift was a line, and what the model of a large hysteresis leaves
 /// was hum. A low pass in one channel was a delay for sure, by what a shaking axis does along the circle alone, a drift was a high pass
 /// by how that was when the recording began, and flicker noise that is hardly seen was a drift.
-/// A code at which the ADC jumps was a lost or a repeated sample. Every sixth; in the long form all.
+/// A code at which the ADC jumps was a lost or a repeated sample. A harmonic that grows with the speed was a jittering clock, a crest of
+/// a lamp whose frequency wanders was hum, and what two names left slow was flicker noise. Every sixth; in the long form all.
 #[test]
 fn wrong_names_do_not_come_back() {
     let seeds = [
+        124_001_459,
+        117_000_599,
+        122_003_499,
+        118_001_425,
+        122_001_156,
+        123_000_299,
         108_002_242,
         114_000_421,
         114_002_741,
@@ -114,10 +121,21 @@ fn wrong_names_do_not_come_back() {
 /// errors of the speed explained too. Hum while the axis mostly stands still, and hum beside a shaking axis; one sample off by eight
 /// times the noise on a slow axis. Noise with the signal, or of the clock, beside flicker noise, and what grows with the speed or the revolution beside it.
 /// Noise with the signal that what the residuals have in common shows, or beside a phase error of the channels. A
-/// sample lost on an axis that shakes. Every sixth; in the long form all.
+/// sample lost on an axis that shakes. Jitter beside a shaking axis whose noise is higher about its mode, a strong bend beside a harmonic that
+/// its model left, cogging that knots follow in part, and samples put in where the axis turns back. Every sixth; in the long form all.
 #[test]
 fn what_was_missed_is_found() {
     let seeds = [
+        127_001_252,
+        124_002_655,
+        124_002_342,
+        124_000_573,
+        124_001_512,
+        122_004_061,
+        124_001_327,
+        124_003_815,
+        122_001_013,
+        118_001_036,
         108_001_745,
         103_001_556,
         114_003_035,

@@ -246,6 +246,19 @@ fn a_lost_sample_is_no_glitch() {
     });
 }
 
+/// A single one that was put in where the axis turns back: its speed is late there, and a corner of just that size is none of the
+/// drive's.
+#[test]
+fn a_sample_put_in_where_the_axis_turns_back() {
+    shows_in(&PLAIN, "repeated_samples", |rows| {
+        let inside = 2000..rows.len() - 2000;
+        let turns = inside.min_by(|a, b| moves(rows, *a).total_cmp(&moves(rows, *b)));
+        let turns = turns.expect("samples");
+        rows.insert(turns, rows[turns - 1]);
+        at_even_times(rows);
+    });
+}
+
 /// A single one, where the scale hardly moves from sample to sample: only long curves on either side show that all is late.
 #[test]
 fn a_sample_lost_on_a_slow_axis() {

@@ -30,7 +30,7 @@ fn vibration_and_cogging() {
 }
 
 /// An axis that shakes: its structure's mode, driven at many frequencies from far below it to above, radians.
-fn rumble(t: f64) -> f64 {
+pub(crate) fn rumble(t: f64) -> f64 {
     /// Closer to each other than what a recording tells apart.
     const LINES: u32 = 1000;
     const MODE: f64 = 900.0;

@@ -1,6 +1,7 @@
 //! Causes that grow with the speed or turn over with its sign.
 
 use crate::harness::{Case, NOISE, PLAIN, alone, diagnosed, finds, names, near, within_errors};
+use crate::motion::rumble;
 
 /// The offsets turn over with the direction, by so many per mille of the amplitude.
 fn turning<const COS: i32, const SIN: i32>() -> Case {
@@ -76,15 +77,19 @@ fn crosstalk_and_hysteresis() {
     near(&found, "offset_cos", 0.002);
 }
 
+/// On an axis that shakes, too, whose noise is higher about its mode: that is no line of the clock.
 #[test]
 fn clock_jitter() {
-    finds(
-        "clock_jitter",
-        &Case {
-            noise: |_, slope, v, n| NOISE * n[0] + slope * v * 6e-7 * n[1],
-            ..PLAIN
-        },
-    );
+    let jitter = Case {
+        noise: |_, slope, v, n| NOISE * n[0] + slope * v * 6e-7 * n[1],
+        ..PLAIN
+    };
+    finds("clock_jitter", &jitter);
+    let shaking = Case {
+        motion: |t, _| rumble(t),
+        ..jitter
+    };
+    finds("clock_jitter", &shaking);
 }
 
 #[test]

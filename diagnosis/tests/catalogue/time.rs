@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use crate::harness::{Case, PLAIN, alone, diagnosed, finds, near, within_errors};
+use crate::harness::{Case, PLAIN, alone, diagnosed, finds, names, near, within_errors};
 
 #[test]
 fn lines() {
@@ -69,6 +69,22 @@ fn warming_up_is_a_drift() {
         assert_eq!(first.cause, "offset_drift");
         assert_eq!(first.confounded_with, ["ac_coupling"]);
     }
+}
+
+/// A lamp on a dimmer whose frequency wanders: the highest of its crests is no line.
+#[test]
+fn a_line_that_wanders_has_no_name() {
+    let lamp = Case {
+        channels: |c, s, t, _, _| {
+            let turns = 400.0 * (t + 0.15 * (10.0 * t).sin() / 10.0);
+            let lit = f64::from((TAU * turns).sin() > 0.3);
+            (c + 0.0006 * lit, s - 0.0005 * lit)
+        },
+        ..PLAIN
+    };
+    let found = diagnosed(&lamp, 7);
+    assert_eq!(names(&found), [""; 0]);
+    assert!(found.unexplained.significant);
 }
 
 /// What goes to and fro less than four times is no line, whatever it is, and does not hide one.
