@@ -37,7 +37,7 @@ fn rows(recording: &Recording, mut out: impl Write) -> io::Result<()> {
         .zip(&recording.cos)
         .zip(&recording.sin)
     {
-        writeln!(out, "{time:.9},{cos},{sin}")?;
+        writeln!(out, "{time},{cos},{sin}")?;
     }
     out.flush()
 }

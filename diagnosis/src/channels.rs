@@ -88,6 +88,9 @@ impl<'a> Channels<'a> {
             }
         }
         let power = self.power();
+        if power <= 0.0 {
+            return 0.0;
+        }
         0.5 * count * (power / (power - sums.explained()).max(f64::MIN_POSITIVE)).ln()
     }
 

@@ -166,7 +166,7 @@ pub(crate) fn contender(
         } else if crawling {
             "it goes to and fro less than four times".to_owned()
         } else if wandering {
-            "what stands beside it is as high: its frequency wanders".to_owned()
+            "many crests beside it are as high: its frequency wanders".to_owned()
         } else if !slow {
             "steps explain it as well".to_owned()
         } else if let Some(refusal) = held.refusal {

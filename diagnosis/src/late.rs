@@ -111,6 +111,9 @@ impl Curves {
 /// Those of some samples behind which the angle is late by what it moves in a sample: they were put in. One of them is looked
 /// for, not the farthest of all, so a smaller delay tells; curves are as long as tells the most there.
 pub(crate) fn late(recording: &Recording, checked: &Checked, of: &[usize]) -> Vec<usize> {
+    if of.is_empty() {
+        return vec![];
+    }
     let Some(angle) = angle(recording, &checked.weight) else {
         return vec![];
     };

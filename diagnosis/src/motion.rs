@@ -5,7 +5,7 @@ use std::fmt::Write;
 
 use nonius_recording::Recording;
 
-use crate::causes::{COGGING, VIBRATION};
+use crate::causes::{COGGING, COMMON_BANDWIDTH, VIBRATION};
 use crate::context::Context;
 use crate::diagnose::Diagnosis;
 use crate::finding::Finding;
@@ -28,8 +28,9 @@ impl Motion {
     pub(crate) fn of(context: &Context, angle: &[f64]) -> Self {
         let n = context.samples();
         let spacing = context.followed().map_or(n as f64, Spline::spacing);
-        let spline = Spline::new(n, spacing, &weights(context));
-        let coefficients = spline.fit(angle, &weights(context));
+        let weights = weights(context);
+        let spline = Spline::new(n, spacing, &weights);
+        let coefficients = spline.fit(angle, &weights);
         Self {
             spline,
             coefficients,
@@ -39,8 +40,7 @@ impl Motion {
     /// The same less what findings add to it, which the simulation adds itself.
     fn smooth(&self, context: &Context, findings: &[Finding]) -> Self {
         let mut added = vec![0.0; context.samples()];
-        let motion = |f: &&Finding| [VIBRATION, COGGING].contains(&f.cause.as_str());
-        for finding in findings.iter().filter(motion) {
+        for finding in findings {
             let at = of_motion(finding, context);
             for (k, added) in added.iter_mut().enumerate() {
                 *added += at(k);
@@ -60,7 +60,8 @@ fn weights(context: &Context) -> Vec<f64> {
     weights.map(|w| w.max(LEFT_OUT)).collect()
 }
 
-/// What a finding moves the axis by at each sample, radians.
+/// What the simulation of a finding adds to the angle at each sample, radians, and the positions hold yet: real motion, and the lag of a
+/// low pass that was seen in the radius.
 fn of_motion<'a>(finding: &'a Finding, context: &'a Context) -> impl Fn(usize) -> f64 + 'a {
     let number = |name: &str| finding.parameter(name).unwrap_or(0.0);
     let (amplitude, phase) = (number("amplitude"), number("phase"));
@@ -70,6 +71,7 @@ fn of_motion<'a>(finding: &'a Finding, context: &'a Context) -> impl Fn(usize) -
         let angle = match (cause, &context.phi) {
             (VIBRATION, _) => TAU * frequency * context.time[k],
             (COGGING, Some(phi)) => order * phi[k],
+            (COMMON_BANDWIDTH, _) => return -(number("tau_s") * context.speed[k]).atan(),
             _ => return 0.0,
         };
         amplitude * (angle + phase).cos()
@@ -119,12 +121,18 @@ pub fn motion_csv(found: &Diagnosis, recording: &Recording) -> String {
     let (spline, rate) = (&motion.spline, context.rate);
     let start = recording.time_s.first().copied().unwrap_or_default();
     let mut out = String::from("time_s,position_periods,speed_periods_per_s\n");
+    let mut written = f64::NEG_INFINITY;
     for run in runs(context) {
         let [first, last] = [run.first, run.last].map(|k| k as f64);
         let inside = spline.knots().filter(|knot| *knot > first && *knot < last);
         let end = (run.last > run.first).then_some(last);
         for knot in std::iter::once(first).chain(inside).chain(end) {
             let time = start + (run.time + (knot - first) / rate);
+            // A knot beside the end may be no later, as such a number says it.
+            if time <= written {
+                continue;
+            }
+            written = time;
             // Of a clock that counts from long ago, this time may be rounded: the position is that of the time that is written.
             let at = first + (time - start - run.time) * rate;
             let (angle, speed) = spline.between(&motion.coefficients, at);

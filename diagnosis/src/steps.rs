@@ -20,7 +20,7 @@ const MOST: usize = 24;
 /// Knots of the lines: as few as follow it are the best.
 const KNOTS: [usize; 8] = [2, 3, 4, 6, 8, 12, 20, 40];
 /// Degrees of curves that a slow change may follow.
-const DEGREES: [usize; 4] = [1, 2, 3, 6];
+const DEGREES: [usize; 3] = [2, 3, 6];
 /// Most numbers of a step, beside its place, and of a knot.
 const CHANNELS: usize = 2;
 

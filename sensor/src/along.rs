@@ -75,7 +75,7 @@ pub enum MotionError {
     },
     /// More samples than memory is for.
     #[error(
-        "{file}: {seconds} s at adc.sample_rate_hz = {rate} are {samples:.3e} samples; at most {MOST:.0e} are simulated: leave rows out at its start or end"
+        "{file}: {seconds} s at adc.sample_rate_hz = {rate} are {samples:.3e} samples; at most {MOST:.0e} are simulated: leave rows out at its start or end, or leave out motion.file in sensor.toml"
     )]
     Long {
         /// Name of the file.
@@ -168,7 +168,13 @@ fn rows(text: &str, file: &str) -> Result<Vec<Row>, MotionError> {
     if header != COLUMNS.as_slice() {
         return Err(MotionError::Header {
             file: file.into(),
-            found: header.iter().collect::<Vec<_>>().join(","),
+            found: header
+                .iter()
+                .collect::<Vec<_>>()
+                .join(",")
+                .chars()
+                .take(60)
+                .collect(),
         });
     }
     let mut rows: Vec<Row> = vec![];

@@ -37,7 +37,7 @@ impl Sensor {
         let rate = self.adc.sample_rate_hz;
         let speed = derivative(&motion.alpha, rate);
         let acceleration = derivative(&speed, rate);
-        let side = sides(&speed);
+        let side = sides(&motion.alpha);
         // Causes know the time since the beginning.
         let start = motion.time_s.first().copied().unwrap_or_default();
         let whole = motion.time_s.last().map_or(0.0, |last| last - start);

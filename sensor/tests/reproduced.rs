@@ -122,6 +122,7 @@ const VIBRATION: &str =
     "name = \"vibration\"\nfrequency_hz = 1210.0\namplitude = 0.01\nphase = 0.3";
 const COGGING: &str = "name = \"cogging\"\norder = 48.0\namplitude = 0.03\nphase = 0.3";
 const STUCK: &str = "name = \"stuck_bit\"\nbit = 0.0\nchannel = \"cos\"\nlevel = 1.0";
+const LOW_PASS: &str = "name = \"common_bandwidth\"\ntau_s = 2e-5";
 const HYSTERESIS: &str = "name = \"hysteresis\"\noffset_cos = 0.008\noffset_sin = -0.006";
 const RUNOUT: &str = "name = \"runout\"\norder = 2.0\ndepth = 0.01\nphase = -0.9";
 const DRIFT: &str = "name = \"offset_drift\"\nchange_cos = 0.02\nchange_sin = -0.012";
@@ -130,6 +131,7 @@ const DRIFT: &str = "name = \"offset_drift\"\nchange_cos = 0.02\nchange_sin = -0
 fn one_cause() {
     for one in [
         HARMONIC, SKEW, HUM, RAIL, CROSSTALK, VIBRATION, COGGING, STUCK, HYSTERESIS, RUNOUT, DRIFT,
+        LOW_PASS,
     ] {
         reproduced(&[one]);
     }

@@ -13,6 +13,8 @@ use crate::spline::Spline;
 const WIDER: f64 = 1.3;
 /// Frequency over that of the knots beyond which hardly anything is mirrored.
 const FASTEST: f64 = 0.85;
+/// Mean square of a wave of which knots leave nothing.
+const SOMETHING: f64 = 1e-3;
 /// The mirror has to explain so many times as much as the line where it seems to be.
 const CLEARLY: f64 = 1.5;
 
@@ -65,14 +67,13 @@ pub(super) fn unmirrored_order(
         return seen;
     };
     // Of a wave that knots follow in part its order is not the strongest one; what they leave of it explains the most.
-    let [of_seen, of_other] = [seen, other].map(|order| {
+    let [(of_seen, _), (of_other, left)] = [seen, other].map(|order| {
         let waves = order_waves(order, phi);
-        explained(
-            fast,
-            &spline.residuals(&waves.each_ref().map(Vec::as_slice), weight),
-        )
+        let left = spline.residuals(&waves.each_ref().map(Vec::as_slice), weight);
+        let square = dot(&left[0], &left[0]) / fast.len() as f64;
+        (explained(fast, &left), square)
     });
-    if of_other > CLEARLY * of_seen {
+    if of_other > CLEARLY * of_seen && left > SOMETHING {
         other
     } else {
         seen

@@ -38,6 +38,8 @@ pub(crate) const ORDERS: usize = 8;
 pub(crate) const HYSTERESIS: &str = "hysteresis";
 /// Real motion that goes with the revolution.
 pub(crate) const COGGING: &str = "cogging";
+/// A low pass in both channels.
+pub(crate) const COMMON_BANDWIDTH: &str = "common_bandwidth";
 /// Real motion at a fixed frequency.
 pub(crate) const VIBRATION: &str = "vibration";
 

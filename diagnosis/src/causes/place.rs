@@ -39,7 +39,10 @@ pub(crate) fn candidates(
     } else {
         vec![]
     };
-    list.extend(cogging(context, phi, residual.fast(), library));
+    let fast = residual.fast();
+    let order = cogging_order(context, phi, fast);
+    let order = order.map(|(per, order)| (per, unmirrored_order(context, (per, phi), fast, order)));
+    list.extend(order.map(|(per, order)| of_order(order, top_order(per) as f64, library)));
     list
 }
 
@@ -54,8 +57,11 @@ pub(crate) fn weighed(
         return vec![];
     };
     let both = [&weighed.fast, &weighed.matched[1]];
-    let found = both.map(|values| cogging(context, phi, values, library));
-    found.into_iter().flatten().collect()
+    let orders = both.map(|values| cogging_order(context, phi, values));
+    let found = orders.into_iter().flatten();
+    found
+        .map(|(per, order)| of_order(order, top_order(per) as f64, library))
+        .collect()
 }
 
 /// Highest order of the revolution that is looked at.
@@ -145,16 +151,10 @@ pub(crate) fn without_cogging(context: &Context, mut values: Vec<f64>) -> Vec<f6
     values
 }
 
-/// Real motion.
-fn cogging(
-    context: &Context,
-    phi: &[f64],
-    fast: &[f64],
-    library: &mut Library,
-) -> Option<Candidate> {
+/// Periods per revolution, and the order in which the axis seems to cog.
+fn cogging_order(context: &Context, phi: &[f64], fast: &[f64]) -> Option<(u32, usize)> {
     let per = context.periods_per_revolution.unwrap_or(1);
-    let order = unmirrored_order(context, (per, phi), fast, strongest_order(per, phi, fast)?);
-    Some(of_order(order, top_order(per) as f64, library))
+    Some((per, strongest_order(per, phi, fast)?))
 }
 
 /// Real motion at orders of the scale period: an error of the sensor there shows in the radius as much as along the circle, but for

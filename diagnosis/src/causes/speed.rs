@@ -276,7 +276,7 @@ fn common_bandwidth(speed: &Speed) -> Candidate {
             )
         }),
         ..cause(
-            "common_bandwidth",
+            super::COMMON_BANDWIDTH,
             vec![square.scaled(-0.5 * speed.top * speed.top)],
             &[],
             "s",

@@ -17,10 +17,12 @@ const NEAR: [f64; 2] = [0.75, 1.5];
 const WIDE: f64 = 4.0;
 /// So many times a line is what stands beside it as high: noise beside a line that is seen is half as high, hardly more.
 const AS_HIGH: f64 = 0.85;
+/// Steady lines that may be beside it, and higher.
+const OTHERS: usize = 2;
 /// Harmonics that are its own.
 const HARMONICS: usize = 10;
 
-/// Whether something beside a line of interference is as high as it is, along the radius as well as with the angle.
+/// Whether many things beside a line of interference are as high as it is, along the radius as well as with the angle.
 pub(crate) fn is_one_of_many(
     context: &Context,
     residual: &Residual,
@@ -36,7 +38,7 @@ pub(crate) fn is_one_of_many(
         .all(|tangential| beaten(context, hertz, &residual.radial, tangential))
 }
 
-/// Whether something beside a line is as high in the spectrum of both channels.
+/// Whether more than a few lines beside a line are as high in the spectrum of both channels.
 fn beaten(context: &Context, hertz: f64, radial: &[f64], tangential: &[f64]) -> bool {
     let n = radial.len();
     let frame = |k: usize| {
@@ -58,15 +60,24 @@ fn beaten(context: &Context, hertz: f64, radial: &[f64], tangential: &[f64]) -> 
         .iter()
         .copied()
         .fold(0.0, f64::max);
-    // Along the radius a line has an image about twice the angle, which is a line, too, at a constant speed.
-    let turning = context.speed.iter().sum::<f64>() / n as f64 / TAU;
-    let image = (2.0 * turning.abs() / context.rate * length as f64 - own).abs();
-    let is_own = |k: usize| {
-        let mut places = (1..=HARMONICS).map(|m| m as f64 * own).chain([image]);
-        places.any(|at| (k as f64 - at).abs() <= WIDE * per)
-    };
+    // Along the radius a line has an image on either side of twice the angle, which are lines, too, at a constant speed.
+    let turning = 2.0 * context.speed.iter().sum::<f64>() / n as f64 / TAU / context.rate;
+    let turning = turning * length as f64;
+    let with_images = |at: f64| [at, (turning - at).abs(), (turning + at).abs()];
+    let mut known: Vec<f64> = (1..=HARMONICS).map(|m| m as f64 * own).collect();
+    known.extend(with_images(own));
     let [low, high] = NEAR.map(|share| share * own);
-    near(low.max(own - BESIDE * per), high.min(own + BESIDE * per))
-        .filter(|k| !is_own(*k))
-        .any(|k| power[k] > AS_HIGH * highest)
+    // Another line or two that are steady leave nothing beside them.
+    for _ in 0..=OTHERS {
+        let is_known = |k: &usize| known.iter().any(|at| (*k as f64 - at).abs() <= WIDE * per);
+        let beside = near(low.max(own - BESIDE * per), high.min(own + BESIDE * per));
+        let crest = beside
+            .filter(|k| !is_known(k))
+            .max_by(|a, b| power[*a].total_cmp(&power[*b]));
+        let Some(crest) = crest.filter(|k| power[*k] > AS_HIGH * highest) else {
+            return false;
+        };
+        known.extend(with_images(crest as f64));
+    }
+    true
 }

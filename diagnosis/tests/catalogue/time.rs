@@ -87,6 +87,30 @@ fn a_line_that_wanders_has_no_name() {
     assert!(found.unexplained.significant);
 }
 
+/// Two that are steady both have their names, however near each other and alike they are.
+#[test]
+fn two_lines_beside_each_other() {
+    let mains = Case {
+        channels: |c, s, t, _, _| {
+            let both = 0.005 * ((TAU * 311.3 * t).cos() + (TAU * 348.7 * t).cos());
+            (c + both, s - 0.8 * both)
+        },
+        ..PLAIN
+    };
+    let found = diagnosed(&mains, 7);
+    assert_eq!(
+        names(&found),
+        ["interference"; 2],
+        "{}",
+        found.unexplained.signature
+    );
+    assert!(
+        !found.unexplained.significant,
+        "{}",
+        found.unexplained.signature
+    );
+}
+
 /// What goes to and fro less than four times is no line, whatever it is, and does not hide one.
 #[test]
 fn hum_beside_a_slow_wave() {
