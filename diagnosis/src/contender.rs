@@ -12,7 +12,7 @@ use crate::context::Context;
 use crate::exact;
 use crate::held::holds;
 use crate::library::Shape;
-use crate::model::{Fit, System};
+use crate::model::{Fit, Residual, System};
 use crate::names::plain;
 use crate::rivals;
 use crate::score::{ITSELF, RIVALS, Scored, score};
@@ -62,11 +62,12 @@ pub(crate) struct Nameless {
     pub(crate) is_noise: bool,
 }
 
-/// The best cause that holds; one that explains nearly as much may hold where the first does not.
+/// The best cause that holds; one that explains nearly as much may hold where the first does not. `left` is what the fit leaves.
 pub(crate) fn contender(
     system: &mut System,
     catalogue: &Catalogue,
     fit: &Fit,
+    left: &Residual,
     mut scored: Vec<Scored>,
 ) -> Contender {
     off_the_grid(system, fit, &mut scored);
@@ -139,7 +140,7 @@ pub(crate) fn contender(
         let listed = |name: &str| name != ACCELERATION_GAIN;
         let locked = goes_with_angle(system.context, &own.candidate);
         let crawling = causes::crawls(system.context, &own.candidate);
-        let wandering = one_of_many(system, fit, &own.candidate);
+        let wandering = causes::is_one_of_many(system.context, left, &own.candidate);
         let nameable = listed(own.candidate.name)
             && rivals.iter().all(|r| listed(r))
             && !(locked || crawling || wandering);
@@ -258,12 +259,6 @@ fn fewer_first(scored: &mut [Scored]) {
     if let Some(at) = others.min_by_key(|i| scored[*i].freedom) {
         scored[..=at].rotate_right(1);
     }
-}
-
-/// Whether a line in the channels is one of many beside each other.
-fn one_of_many(system: &System, fit: &Fit, candidate: &Candidate) -> bool {
-    candidate.domain == Domain::Line
-        && causes::is_one_of_many(system.context, &system.residual(fit), candidate)
 }
 
 /// Whether, at a speed that hardly changes, a line stands where something that goes with the angle would: at half orders of

@@ -223,7 +223,7 @@ fn search(
         if partial && most < CLEAR {
             break;
         }
-        match contender(system, catalogue, &found.fit, scored) {
+        match contender(system, catalogue, &found.fit, &residual, scored) {
             Contender::Unnamed(_) if partial => break,
             Contender::Unnamed(one) => match one.domain {
                 // Real motion that is no line is the axis at work, and no error.
