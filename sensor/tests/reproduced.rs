@@ -205,3 +205,21 @@ fn a_motion_is_over_the_true_time() {
         assert!(off < 3.0 * NOISE, "{off} rad");
     }
 }
+
+/// However coarse the numbers of a clock that counts from long ago are beside its samples.
+#[test]
+fn every_time_of_a_motion_is_later_than_the_one_before() {
+    let sensor = with(&[]);
+    let all = sensor.simulate(&driven(), 11);
+    let kept = || (0..SAMPLES).filter(|k| k % 97 < 67);
+    let of = |values: &[f64]| kept().map(|k| values[k]).collect();
+    let samples = Samples {
+        time_s: kept().map(|k| 1_700_000_000.0 + k as f64 / 2e6).collect(),
+        cos: of(&all.cos),
+        sin: of(&all.sin),
+    };
+    let recording = recording(&sensor, samples);
+    let found = diagnose(&recording).expect("an ellipse");
+    let motion = Motion::along(&sensor, &motion_csv(&found, &recording), "motion.csv");
+    assert!(motion.is_ok(), "{motion:?}");
+}

@@ -1,6 +1,7 @@
 //! What flicker noise gains on data that it was not fitted to.
 
-use super::{Line, bands, corner, likelihood, white_beside};
+use super::spectrum::{Line, bands};
+use super::{corner, likelihood, white_beside};
 
 /// Lines of the spectrum that are left together.
 const BLOCK: usize = 2;
