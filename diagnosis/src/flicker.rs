@@ -115,9 +115,9 @@ fn corner(lines: &[Line], bands: &[Band]) -> (f64, f64) {
     best
 }
 
-/// The spectrum of what is left of the radius in bands, without hum: for plots.
+/// The spectrum of what names leave of the radius in bands, without what is slower and without hum: for plots.
 pub(crate) fn gathered(context: &Context, radial: &[f64]) -> Vec<Band> {
-    let mut lines = spectrum(context, radial, SLOWEST);
+    let mut lines = spectrum(context, &slow::without(context, radial), SLOWEST);
     without_hum(&mut lines);
     bands(&lines)
 }
