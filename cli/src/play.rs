@@ -36,8 +36,7 @@ pub(crate) fn source(
 /// # Errors
 /// The file is not what it should be.
 pub(crate) fn sensor(path: &Path) -> Result<(Sensor, Option<PathBuf>)> {
-    let file = path.display().to_string();
-    let text = std::fs::read_to_string(path).with_context(|| format!("cannot read {file}"))?;
+    let (text, file) = text(path)?;
     let sensor = Sensor::from_toml(&text, &file)?;
     let folder = path.parent().unwrap_or(Path::new(""));
     let along = sensor.motion.file.as_ref().map(|named| folder.join(named));
@@ -76,10 +75,16 @@ fn simulated(path: &Path) -> Result<Recording> {
     Ok(recording)
 }
 
+/// What stands in a file, and its name for messages.
+fn text(path: &Path) -> Result<(String, String)> {
+    let file = path.display().to_string();
+    let text = std::fs::read_to_string(path).with_context(|| format!("cannot read {file}"))?;
+    Ok((text, file))
+}
+
 /// The motion in a file.
 fn moved(sensor: &Sensor, along: &Path) -> Result<Motion> {
-    let file = along.display().to_string();
-    let text = std::fs::read_to_string(along).with_context(|| format!("cannot read {file}"))?;
+    let (text, file) = text(along)?;
     Ok(Motion::along(sensor, &text, &file)?)
 }
 

@@ -1,6 +1,8 @@
 //! What is seen of what is added to the channels: along the radius, and, where a reference shows the motion, along the circle
 //! too.
 
+use std::ops::Range;
+
 use crate::context::Context;
 use crate::model::{Residual, System};
 use crate::pair::PairSums;
@@ -80,18 +82,24 @@ impl<'a> Channels<'a> {
         if self.samples() >= all {
             return 0.0;
         }
-        let (mut sums, mut count) = (PairSums::default(), 0.0);
-        for k in 0..self.samples() {
-            for Row { of: [c, s], left } in self.rows(k) {
-                sums.add(c, s, left, self.context.weight[k]);
-                count += self.context.weight[k];
-            }
-        }
         let power = self.power();
         if power <= 0.0 {
             return 0.0;
         }
-        0.5 * count * (power / (power - sums.explained()).max(f64::MIN_POSITIVE)).ln()
+        let counting: f64 = self.context.weight[..self.samples()].iter().sum();
+        let left = power - self.sums(0..self.samples()).explained();
+        0.5 * counting * self.count() * (power / left.max(f64::MIN_POSITIVE)).ln()
+    }
+
+    /// Sums of products of offsets of both channels and what is seen of some samples.
+    pub(crate) fn sums(&self, of: Range<usize>) -> PairSums {
+        let mut sums = PairSums::default();
+        for k in of {
+            for Row { of: [c, s], left } in self.rows(k) {
+                sums.add(c, s, left, self.context.weight[k]);
+            }
+        }
+        sums
     }
 
     /// Sum of squares.

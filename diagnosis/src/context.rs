@@ -170,6 +170,17 @@ impl Context {
         self.top_speed
     }
 
+    /// What is along the radius and along the circle, in the frame of the channels.
+    pub(crate) fn in_frame(&self, radial: &[f64], tangential: &[f64]) -> [Vec<f64>; 2] {
+        let frame = |k: usize| {
+            let (r, t) = (radial[k], tangential[k]);
+            let (c, s) = (self.cos[k], self.sin[k]);
+            (r * c - t * s, r * s + t * c)
+        };
+        let (in_c, in_s) = (0..radial.len()).map(frame).unzip();
+        [in_c, in_s]
+    }
+
     /// The spline that the angle is followed by.
     pub(crate) fn followed(&self) -> Option<&Spline> {
         self.finer.as_ref().or(self.spline.as_ref())

@@ -86,11 +86,7 @@ fn traces(system: &System, found: &mut Selection) -> Vec<Unnamed> {
     }
     // What has no name stands aside: it spans names, too. So does a name that was taken back, as a harmonic spans a bend.
     let everything = found.of(found.accepted.clone(), system);
-    let kept: Vec<usize> = (0..found.accepted.len())
-        .filter(|i| !found.accepted[*i].doubted)
-        .collect();
-    let named = kept.iter().map(|i| found.accepted[*i].clone()).collect();
-    let named = found.of(named, system);
+    let (kept, named) = found.kept(system);
     // All that has one name is one error.
     let mut names: Vec<(&'static str, Vec<usize>)> = vec![];
     for (i, one) in found.accepted.iter().enumerate() {
@@ -104,9 +100,10 @@ fn traces(system: &System, found: &mut Selection) -> Vec<Unnamed> {
     let gain = |own: &[usize]| {
         let places = own.iter().filter_map(|i| kept.iter().position(|k| k == i));
         let places: Vec<usize> = places.collect();
-        match places.is_empty() {
-            true => gain_of(system, &everything, own),
-            false => gain_of(system, &named, &places),
+        if places.is_empty() {
+            gain_of(system, &everything, own)
+        } else {
+            gain_of(system, &named, &places)
         }
     };
     let gains: Vec<f64> = names.iter().map(|(_, own)| gain(own)).collect();
@@ -209,12 +206,7 @@ fn leftovers(
     // The smallest goes first: without it the others explain more by themselves.
     let mut largest: Option<(f64, &'static str)> = None;
     loop {
-        let sure = |i: &usize| !found.accepted[*i].doubted;
-        let kept: Vec<usize> = (0..found.accepted.len()).filter(sure).collect();
-        let named = found.of(
-            kept.iter().map(|i| found.accepted[*i].clone()).collect(),
-            system,
-        );
+        let (kept, named) = found.kept(system);
         let gain = |i: &usize| {
             let at = kept.iter().position(|k| k == i)?;
             let other = found.accepted[*i].candidate.name != name;

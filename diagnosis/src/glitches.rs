@@ -8,6 +8,7 @@ use crate::correlate::sums;
 use crate::edges::{Edges, edges};
 use crate::finding::{Finding, Parameter, Place};
 use crate::solve::weights_of;
+use crate::timebase::GAP;
 use crate::units;
 
 /// Samples on either side of the curve through the neighbours.
@@ -191,7 +192,7 @@ impl Curve<'_> {
             let doubled = bad || repeats(recording, k) || repeats(recording, k + 1);
             // Across a gap in time there is no such curve.
             let step = |j: usize| recording.time_s[j] - recording.time_s[j - 1];
-            let gap = (k + 1 - reach..=k + reach).any(|j| step(j) * rate > 1.5);
+            let gap = (k + 1 - reach..=k + reach).any(|j| step(j) * rate > GAP);
             sizes[k] > limit && !doubled && !gap
         };
         let inside = reach..n.saturating_sub(reach);

@@ -48,14 +48,19 @@ pub(crate) fn column(side: usize, f: impl Fn(f64) -> f64) -> Vec<f64> {
         .collect()
 }
 
+/// What a curve of that order through `side` samples on either side is made of.
+pub(crate) fn powers(side: usize, order: i32) -> Vec<Vec<f64>> {
+    (0..=order)
+        .map(|degree| column(side, |x| x.powi(degree)))
+        .collect()
+}
+
 /// What a step between two samples in the middle adds to a curve of that order through `side` samples on either side: the
 /// weights of the samples that give its size, free of that curve, and of one of the samples.
 fn step_weights(side: usize, order: i32, but: Option<usize>) -> Vec<f64> {
     let single = |one: usize| (0..2 * side).map(|i| f64::from(i == one)).collect();
-    let curve: Vec<Vec<f64>> = (0..=order)
-        .map(|degree| column(side, |x| x.powi(degree)))
-        .chain(but.map(single))
-        .collect();
+    let mut curve = powers(side, order);
+    curve.extend(but.map(single));
     let step = column(side, |x| 0.5 * x.signum());
     weights_of(&step, &curve)
 }
@@ -69,9 +74,7 @@ impl Corners {
     pub(crate) fn new(side: usize, order: i32) -> Self {
         /// Steps of a sixteenth of a side by which they may stand beside the middle.
         const BESIDE: i32 = 4;
-        let curve: Vec<Vec<f64>> = (0..=order)
-            .map(|degree| column(side, |x| x.powi(degree)))
-            .collect();
+        let curve = powers(side, order);
         let corner = |(degree, place): (i32, i32)| -> Vec<f64> {
             let from = f64::from(place) / 16.0;
             let bent = column(side, |x| (x - from).max(0.0).powi(degree));

@@ -4,7 +4,7 @@
 use nonius_recording::Recording;
 
 use crate::checks::{Checked, ninth};
-use crate::jumps::{AROUND, Corners, SIDES, angle, column};
+use crate::jumps::{AROUND, Corners, SIDES, angle, column, powers};
 use crate::solve::{dot, weights_of, without};
 
 /// Longer curves, for slow axes.
@@ -30,9 +30,7 @@ struct Curves {
 
 impl Curves {
     fn new((side, order): (usize, i32)) -> Self {
-        let powers: Vec<Vec<f64>> = (0..=order)
-            .map(|degree| column(side, |x| x.powi(degree)))
-            .collect();
+        let powers = powers(side, order);
         let known = if order < BENDS { 2 } else { 3 };
         let middle = side as f64 - 0.5;
         // The derivative of xⁿ is n xⁿ⁻¹.
@@ -61,18 +59,18 @@ impl Curves {
         angle.get(place.checked_sub(self.side)?..place + self.side)
     }
 
-    /// What a delay of one sample takes off the angle near a place.
-    fn of_one(&self, near: &[f64]) -> Vec<f64> {
-        let mut sum = vec![0.0; near.len()];
+    /// What a delay of one sample takes off the angle near a place: its square, and its product with the angle.
+    fn of_one(&self, near: &[f64]) -> [f64; 2] {
+        let mut one = vec![0.0; near.len()];
         for (speed, behind) in self.speeds.iter().zip(&self.behind) {
             let by = dot(near, speed);
-            sum.iter_mut().zip(behind).for_each(|(s, b)| *s += by * b);
+            one.iter_mut().zip(behind).for_each(|(s, b)| *s += by * b);
         }
-        sum
+        [dot(&one, &one), dot(near, &one)]
     }
 
-    /// Noise of a sample about a place, by what delays seem to be on either side of it; how well that and the speed tell a delay.
-    fn noise(&self, angle: &[f64], place: usize) -> Option<[f64; 2]> {
+    /// The angle about a place, where its noise is known.
+    fn look<'a>(&'a self, angle: &'a [f64], place: usize) -> Option<Look<'a>> {
         let side = self.side;
         let around = place.saturating_sub(AROUND * side)..place + AROUND * side;
         let apart = around
@@ -81,30 +79,47 @@ impl Curves {
         let sizes: Vec<f64> = apart
             .filter_map(|j| self.near(angle, j))
             .map(|near| {
-                let one = self.of_one(near);
-                (dot(near, &one) / dot(&one, &one).sqrt().max(f64::MIN_POSITIVE)).abs()
+                let [square, with] = self.of_one(near);
+                (with / square.sqrt().max(f64::MIN_POSITIVE)).abs()
             })
             .collect();
-        let noise = ninth(&sizes) / 1.645;
-        let one = self.of_one(self.near(angle, place)?);
-        let told = dot(&one, &one).sqrt() / noise;
-        (sizes.len() > AROUND * PARTS).then_some([noise, told])
+        let near = self.near(angle, place)?;
+        (sizes.len() > AROUND * PARTS).then(|| Look {
+            curves: self,
+            near,
+            of_one: self.of_one(near),
+            noise: ninth(&sizes) / 1.645,
+        })
+    }
+}
+
+/// The angle about a place.
+struct Look<'a> {
+    curves: &'a Curves,
+    near: &'a [f64],
+    /// See [`Curves::of_one`].
+    of_one: [f64; 2],
+    /// Of a sample, by what delays seem to be on either side.
+    noise: f64,
+}
+
+impl Look<'_> {
+    /// Standard deviations by which a delay of one sample is seen.
+    fn told(&self) -> f64 {
+        self.of_one[0].sqrt() / self.noise
     }
 
-    /// Whether the angle behind a place is late by one sample, and no corner of the drive is the likelier reason: it may stand
+    /// Whether the angle behind the place is late by one sample, and no corner of the drive is the likelier reason: it may stand
     /// anywhere and have any size, which is paid for.
-    fn late(&self, angle: &[f64], place: usize, [noise, told]: [f64; 2]) -> bool {
-        let Some(near) = self.near(angle, place) else {
-            return false;
-        };
-        let one = self.of_one(near);
-        let (with, square) = (dot(near, &one), dot(&one, &one));
+    fn is_late(&self) -> bool {
+        let ([square, with], told) = (self.of_one, self.told());
+        let corners = &self.curves.corners;
         let samples = -with / square;
-        let paid = (2.0 * self.side as f64).ln() + 2.0 * (self.corners.count() as f64).ln();
+        let paid = (2.0 * self.curves.side as f64).ln() + 2.0 * (corners.count() as f64).ln();
         let explained = -2.0 * with - square;
         samples * told > SURE
             && (samples - 1.0).abs() < WHOLE + 3.0 / told
-            && self.corners.explained(near) < explained + paid * noise * noise
+            && corners.explained(self.near) < explained + paid * self.noise.powi(2)
     }
 }
 
@@ -119,9 +134,9 @@ pub(crate) fn late(recording: &Recording, checked: &Checked, of: &[usize]) -> Ve
     };
     let all: Vec<Curves> = SIDES.into_iter().chain([LONGER]).map(Curves::new).collect();
     let is_late = |k: &usize| {
-        let looks = all.iter().filter_map(|c| Some((c, c.noise(&angle, *k)?)));
-        let best = looks.max_by(|a, b| a.1[1].total_cmp(&b.1[1]));
-        best.is_some_and(|(curves, noise)| curves.late(&angle, *k, noise))
+        let looks = all.iter().filter_map(|curves| curves.look(&angle, *k));
+        let best = looks.max_by(|a, b| a.told().total_cmp(&b.told()));
+        best.is_some_and(|look| look.is_late())
     };
     of.iter().copied().filter(is_late).collect()
 }

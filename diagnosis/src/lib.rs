@@ -42,6 +42,7 @@ mod one_over_f;
 mod pair;
 mod part;
 mod polygon;
+mod polynomial;
 mod rail;
 mod reference;
 mod repair;

@@ -10,11 +10,10 @@ use crate::context::Context;
 use crate::diagnose::Diagnosis;
 use crate::finding::Finding;
 use crate::spline::Spline;
+use crate::timebase::GAP;
 
 /// What a sample counts that the diagnosis leaves out: where there is no other, the motion goes along it.
 const LEFT_OUT: f64 = 1e-6;
-/// A time from one sample to the next of more than so many usual ones is a pause.
-const PAUSE: f64 = 1.5;
 
 /// Where the axis is by the extended model, as a spline of the sample's number: radians of the scale period.
 #[derive(Clone, Debug)]
@@ -41,10 +40,9 @@ impl Motion {
     fn smooth(&self, context: &Context, findings: &[Finding]) -> Self {
         let mut added = vec![0.0; context.samples()];
         for finding in findings {
-            let at = of_motion(finding, context);
-            for (k, added) in added.iter_mut().enumerate() {
-                *added += at(k);
-            }
+            let at = added_by(finding, context);
+            let each = added.iter_mut().enumerate();
+            each.for_each(|(k, added)| *added += at(k));
         }
         let added = self.spline.fit(&added, &weights(context));
         let pairs = self.coefficients.iter().zip(added);
@@ -62,16 +60,16 @@ fn weights(context: &Context) -> Vec<f64> {
 
 /// What the simulation of a finding adds to the angle at each sample, radians, and the positions hold yet: real motion, and the lag of a
 /// low pass that was seen in the radius.
-fn of_motion<'a>(finding: &'a Finding, context: &'a Context) -> impl Fn(usize) -> f64 + 'a {
-    let number = |name: &str| finding.parameter(name).unwrap_or(0.0);
-    let (amplitude, phase) = (number("amplitude"), number("phase"));
+fn added_by<'a>(finding: &'a Finding, context: &'a Context) -> impl Fn(usize) -> f64 + 'a {
     let cause = finding.cause.as_str();
-    let (frequency, order) = (number("frequency_hz"), number("order"));
+    let [amplitude, phase, frequency, order, tau] =
+        ["amplitude", "phase", "frequency_hz", "order", "tau_s"]
+            .map(|name| finding.parameter(name).unwrap_or(0.0));
     move |k| {
         let angle = match (cause, &context.phi) {
             (VIBRATION, _) => TAU * frequency * context.time[k],
             (COGGING, Some(phi)) => order * phi[k],
-            (COMMON_BANDWIDTH, _) => return -(number("tau_s") * context.speed[k]).atan(),
+            (COMMON_BANDWIDTH, _) => return -(tau * context.speed[k]).atan(),
             _ => return 0.0,
         };
         amplitude * (angle + phase).cos()
@@ -94,7 +92,7 @@ fn runs(context: &Context) -> Vec<Run> {
         last: 0,
     }];
     for k in 1..time.len() {
-        let pause = (time[k] - time[k - 1]) * rate > PAUSE;
+        let pause = (time[k] - time[k - 1]) * rate > GAP;
         match runs.last_mut() {
             Some(run) if pause => {
                 // Times that scatter never run back.

@@ -3,43 +3,14 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::causes::legendre;
-use crate::solve::Normal;
-
 /// Pieces of the recording between which a knot may stand.
 pub(crate) const PIECES: usize = 64;
-/// Numbers of a knot.
-const CHANNELS: usize = 2;
+/// Most numbers of a knot, and of a step beside its place.
+pub(crate) const CHANNELS: usize = 2;
 /// Most knots beside the ends.
 const MOST: usize = 16;
 /// Columns with less than this share of their own square are combinations of others.
 const DEPENDENT: f64 = 1e-8;
-
-/// Log-likelihood that polynomials of a degree explain, sampled at the knots, each number at its price but for `free` of them; from the
-/// sums that [`Polygon::new`] takes.
-pub(crate) fn polynomials(
-    gram: &DMatrix<f64>,
-    right: &DVector<f64>,
-    degree: usize,
-    price: f64,
-    free: usize,
-) -> f64 {
-    let columns = CHANNELS * (degree + 1);
-    let at = |i: usize, j: usize| {
-        if i % CHANNELS == j % CHANNELS {
-            legendre(
-                j / CHANNELS,
-                2.0 * (i / CHANNELS) as f64 / PIECES as f64 - 1.0,
-            )
-        } else {
-            0.0
-        }
-    };
-    let values = DMatrix::from_fn(CHANNELS * (PIECES + 1), columns, at);
-    let products = values.tr_mul(gram) * &values;
-    let found = Normal::new(products, values.tr_mul(right), 0.0).solve();
-    found.gain() - price * (found.rank as f64 - free as f64)
-}
 
 /// Sums of products of what values at `PIECES` + 1 evenly spaced knots, of both channels, make of the data.
 pub(crate) struct Polygon {

@@ -85,9 +85,8 @@ impl Selection {
     /// The model that can be simulated: the five parameters and the causes that are findings, without the shapes that stand
     /// in for what has no name. Those would make anything look explained.
     pub(crate) fn named(&self, system: &System) -> Self {
-        let sure = self.accepted.iter().filter(|a| !a.doubted);
-        let sure: Vec<Accepted> = sure.cloned().collect();
-        let names = self.of(sure.clone(), system);
+        let (kept, names) = self.kept(system);
+        let sure: Vec<Accepted> = kept.iter().map(|i| self.accepted[*i].clone()).collect();
         let pairs = sure.iter().zip(&names.accepted);
         let findings = pairs.filter_map(|(one, alone)| {
             let own = self.own(one, system);
@@ -95,6 +94,15 @@ impl Selection {
             Some(Accepted { own, ..one.clone() })
         });
         self.of(findings.collect(), system)
+    }
+
+    /// The names that were not taken back: which they are, and what they explain alone.
+    pub(crate) fn kept(&self, system: &System) -> (Vec<usize>, Self) {
+        let all = 0..self.accepted.len();
+        let kept: Vec<usize> = all.filter(|i| !self.accepted[*i].doubted).collect();
+        let names = kept.iter().map(|i| self.accepted[*i].clone());
+        let names = self.of(names.collect(), system);
+        (kept, names)
     }
 
     /// The five parameters and these causes, without the shapes that stand in for what has no name.

@@ -9,7 +9,8 @@ use nalgebra::{DMatrix, DVector};
 use crate::channels::{Channels, Row};
 use crate::generic::hat;
 use crate::pair::PairSums;
-use crate::polygon::{PIECES, Polygon, polynomials};
+use crate::polygon::{CHANNELS, PIECES, Polygon};
+use crate::polynomial;
 use crate::solve::Normal;
 use crate::statistics::price;
 
@@ -21,8 +22,6 @@ const MOST: usize = 24;
 const KNOTS: [usize; 8] = [2, 3, 4, 6, 8, 12, 20, 40];
 /// Degrees of curves that a slow change may follow.
 const DEGREES: [usize; 3] = [2, 3, 6];
-/// Most numbers of a step, beside its place, and of a knot.
-const CHANNELS: usize = 2;
 
 /// Log-likelihood by which lines have to explain more than steps do of what is strong: a slow change does by far.
 const CLEARLY: f64 = 15.0;
@@ -82,8 +81,8 @@ pub(crate) fn instead(seen: Channels, noise: f64, changes: &[Change]) -> Option<
         let bent = Polygon::new(&gram, &right).explained(price, change.numbers());
         lines = lines.max(bent);
         // What bends evenly needs fewer numbers than lines do.
-        let curved =
-            DEGREES.map(|degree| polynomials(&gram, &right, degree, price, change.numbers()));
+        let curved = DEGREES
+            .map(|degree| polynomial::explained(&gram, &right, degree, price, change.numbers()));
         lines = curved.into_iter().fold(lines, f64::max);
         let numbers = change.numbers() as f64;
         steps = steps.max(self::steps(

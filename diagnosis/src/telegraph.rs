@@ -62,12 +62,7 @@ impl Chain {
     fn start(seen: &Channels, length: usize, white: f64) -> Option<Self> {
         let levels: Vec<Level> = (0..seen.samples() / length)
             .map(|i| {
-                let mut sums = PairSums::default();
-                for k in i * length..(i + 1) * length {
-                    for row in seen.rows(k) {
-                        sums.add(row.of[0], row.of[1], row.left, seen.context.weight[k]);
-                    }
-                }
+                let mut sums = seen.sums(i * length..(i + 1) * length);
                 // Where only one offset is seen, the other does not count.
                 sums.add_nothing(0.1 * length as f64);
                 sums.amounts()

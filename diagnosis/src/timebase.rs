@@ -18,6 +18,8 @@ const BLOCK: usize = 256;
 const NEAR: usize = 4;
 /// Of so many samples not one has the codes of the one before where each that has is looked at.
 const SELDOM: usize = 500;
+/// A time from one sample to the next of more than so many usual ones is a gap.
+pub(crate) const GAP: f64 = 1.5;
 /// Repeated samples that chance may make of a recording.
 const BY_CHANCE: f64 = 0.003;
 
@@ -189,7 +191,7 @@ pub(crate) fn dropped(recording: &Recording, checked: &mut Checked, time_base: T
     let n = time.len();
     let gaps: Vec<(usize, f64)> = (1..n)
         .map(|k| (k, (time[k] - time[k - 1]) * rate))
-        .filter(|g| g.1 > 1.5)
+        .filter(|g| g.1 > GAP)
         .collect();
     // More than a few gaps of odd lengths are a time base that is not regular.
     let whole = gaps

@@ -96,12 +96,7 @@ impl Search<'_> {
 
     /// Frequencies that may be lines in the frame of the channels, of what is along the radius and along the circle.
     pub(super) fn in_frame(&self, radial: &[f64], tangential: &[f64]) -> Vec<Line> {
-        let frame = |k: usize| {
-            let (r, t) = (radial[k], tangential[k]);
-            let (c, s) = (self.context.cos[k], self.context.sin[k]);
-            (r * c - t * s, r * s + t * c)
-        };
-        let (in_c, in_s): (Vec<f64>, Vec<f64>) = (0..radial.len()).map(frame).unzip();
+        let [in_c, in_s] = self.context.in_frame(radial, tangential);
         let (power, length) = pair_spectrum(&in_c, &in_s);
         let mut list: Vec<Line> = vec![];
         let highest = self

@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 use std::rc::Rc;
 
+use super::INTERFERENCE;
 use super::frequencies::{self, Line, Search};
 use crate::block::Block;
 use crate::cause::{Candidate, Domain, Estimate, Exact, Make, Reads, polar};
@@ -113,7 +114,7 @@ impl Search<'_> {
                         p[3].brief()
                     )
                 }),
-                ..self.candidate("interference", Domain::Line, hertz, make, library)
+                ..self.candidate(INTERFERENCE, Domain::Line, hertz, make, library)
             }
         };
         reach.map(|harmonics| one(harmonics, library)).collect()

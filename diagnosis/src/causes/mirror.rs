@@ -29,7 +29,7 @@ pub(super) fn unmirrored(context: &Context, seen: f64) -> f64 {
         return seen;
     }
     let weight = &context.weight;
-    let wider = Spline::new(context.samples(), WIDER * spline.spacing(), weight);
+    let wider = wider(context, spline);
     let lines = [seen, mirror].map(|f| wave(&number(context), f));
     let mut columns = vec![context.measured.as_slice()];
     columns.extend(lines.iter().flatten().map(Vec::as_slice));
@@ -61,8 +61,8 @@ pub(super) fn unmirrored_order(
         return seen;
     };
     let weight = &context.weight;
-    let wider = Spline::new(context.samples(), WIDER * spline.spacing(), weight);
-    let other = strongest_order(per, phi, &wider.residual(&context.measured, weight));
+    let left = wider(context, spline).residual(&context.measured, weight);
+    let other = strongest_order(per, phi, &left);
     let Some(other) = other.filter(|other| *other != seen) else {
         return seen;
     };
@@ -78,6 +78,11 @@ pub(super) fn unmirrored_order(
     } else {
         seen
     }
+}
+
+/// The spline with knots farther apart.
+fn wider(context: &Context, spline: &Spline) -> Spline {
+    Spline::new(context.samples(), WIDER * spline.spacing(), &context.weight)
 }
 
 /// Square of what waves at right angles to each other explain.

@@ -29,7 +29,6 @@ pub(crate) use line::{crawls, wave as line_wave};
 pub(crate) use place::{highest_order, order_waves, strongest_order, without_cogging};
 pub(crate) use speed::{varies as speed_varies, varies_much as speed_varies_much};
 pub(crate) use steady::is_one_of_many;
-pub(crate) use time::{DEGREE as SLOWEST_CHANGES, legendre};
 
 /// Highest order of the scale period.
 pub(crate) const ORDERS: usize = 8;
@@ -38,6 +37,8 @@ pub(crate) const ORDERS: usize = 8;
 pub(crate) const HYSTERESIS: &str = "hysteresis";
 /// Real motion that goes with the revolution.
 pub(crate) const COGGING: &str = "cogging";
+/// A line that is added to the channels.
+pub(crate) const INTERFERENCE: &str = "interference";
 /// A low pass in both channels.
 pub(crate) const COMMON_BANDWIDTH: &str = "common_bandwidth";
 /// Real motion at a fixed frequency.

@@ -40,9 +40,10 @@ pub(crate) fn candidates(
         vec![]
     };
     let fast = residual.fast();
-    let order = cogging_order(context, phi, fast);
-    let order = order.map(|(per, order)| (per, unmirrored_order(context, (per, phi), fast, order)));
-    list.extend(order.map(|(per, order)| of_order(order, top_order(per) as f64, library)));
+    let per = context.periods_per_revolution.unwrap_or(1);
+    let seen = strongest_order(per, phi, fast);
+    let order = seen.map(|seen| unmirrored_order(context, (per, phi), fast, seen));
+    list.extend(order.map(|order| cogging(per, order, library)));
     list
 }
 
@@ -57,11 +58,10 @@ pub(crate) fn weighed(
         return vec![];
     };
     let both = [&weighed.fast, &weighed.matched[1]];
-    let orders = both.map(|values| cogging_order(context, phi, values));
+    let per = context.periods_per_revolution.unwrap_or(1);
+    let orders = both.map(|values| strongest_order(per, phi, values));
     let found = orders.into_iter().flatten();
-    found
-        .map(|(per, order)| of_order(order, top_order(per) as f64, library))
-        .collect()
+    found.map(|order| cogging(per, order, library)).collect()
 }
 
 /// Highest order of the revolution that is looked at.
@@ -151,10 +151,9 @@ pub(crate) fn without_cogging(context: &Context, mut values: Vec<f64>) -> Vec<f6
     values
 }
 
-/// Periods per revolution, and the order in which the axis seems to cog.
-fn cogging_order(context: &Context, phi: &[f64], fast: &[f64]) -> Option<(u32, usize)> {
-    let per = context.periods_per_revolution.unwrap_or(1);
-    Some((per, strongest_order(per, phi, fast)?))
+/// Real motion of an order, of all that are looked at with so many periods per revolution.
+fn cogging(per: u32, order: usize, library: &mut Library) -> Candidate {
+    of_order(order, top_order(per) as f64, library)
 }
 
 /// Real motion at orders of the scale period: an error of the sensor there shows in the radius as much as along the circle, but for

@@ -4,7 +4,8 @@
 
 use std::f64::consts::TAU;
 
-use crate::cause::{Candidate, Domain};
+use super::INTERFERENCE;
+use crate::cause::Candidate;
 use crate::context::Context;
 use crate::lines::{pair_spectrum, window};
 use crate::model::Residual;
@@ -28,7 +29,7 @@ pub(crate) fn is_one_of_many(
     residual: &Residual,
     candidate: &Candidate,
 ) -> bool {
-    let line = candidate.domain == Domain::Line && candidate.name == "interference";
+    let line = candidate.name == INTERFERENCE;
     let Some(hertz) = candidate.inner().filter(|_| line) else {
         return false;
     };
@@ -41,13 +42,12 @@ pub(crate) fn is_one_of_many(
 /// Whether more than a few lines beside a line are as high in the spectrum of both channels.
 fn beaten(context: &Context, hertz: f64, radial: &[f64], tangential: &[f64]) -> bool {
     let n = radial.len();
-    let frame = |k: usize| {
-        let (r, t) = (radial[k] * window(k, n), tangential[k] * window(k, n));
-        let (c, s) = (context.cos[k], context.sin[k]);
-        (r * c - t * s, r * s + t * c)
-    };
-    let (in_c, in_s): (Vec<f64>, Vec<f64>) = (0..n).map(frame).unzip();
-    let (power, length) = pair_spectrum(&in_c, &in_s);
+    let mut channels = context.in_frame(radial, tangential);
+    for channel in &mut channels {
+        let values = channel.iter_mut().enumerate();
+        values.for_each(|(k, v)| *v *= window(k, n));
+    }
+    let (power, length) = pair_spectrum(&channels[0], &channels[1]);
     // Places of the spectrum in a cycle per recording.
     let per = length as f64 / n as f64;
     let own = hertz / context.rate * length as f64;

@@ -7,20 +7,8 @@ use crate::cause::{Candidate, Domain};
 use crate::context::Context;
 use crate::finding::{Chip, Parameter};
 use crate::library::Shape;
+use crate::polynomial::{DEGREE, legendre};
 use crate::trig::{Trig, channel, normalised};
-
-/// Highest degree of a polynomial of the time.
-pub(crate) const DEGREE: usize = 6;
-
-/// Legendre polynomial of a time from −1 to 1.
-pub(crate) fn legendre(degree: usize, x: f64) -> f64 {
-    let (mut before, mut now) = (0.0, 1.0);
-    for n in 0..degree {
-        let m = n as f64;
-        (before, now) = (now, ((2.0 * m + 1.0) * x * now - m * before) / (m + 1.0));
-    }
-    now
-}
 
 pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
     let beta = context.ellipse.beta;

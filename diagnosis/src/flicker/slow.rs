@@ -3,14 +3,14 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::causes::{SLOWEST_CHANGES, legendre};
 use crate::context::Context;
+use crate::polynomial::{DEGREE, legendre};
 use crate::solve::Normal;
 
 /// A radial residual without offsets of the channels that are polynomials of time.
 pub(super) fn without(context: &Context, radial: &[f64]) -> Vec<f64> {
     let last = (radial.len().max(2) - 1) as f64;
-    let count = 2 * (SLOWEST_CHANGES + 1);
+    let count = 2 * (DEGREE + 1);
     let row = |k: usize, out: &mut [f64]| {
         let time = 2.0 * k as f64 / last - 1.0;
         for (degree, pair) in out.chunks_mut(2).enumerate() {
