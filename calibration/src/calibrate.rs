@@ -121,6 +121,11 @@ pub fn calibrate(
         cannot_tell.extend(words::of_ratio(&fit));
     }
     cannot_tell.extend(words::of_residuals(method, &fit, own_residual));
+    cannot_tell.extend(words::of_places(nothing::places_of(angles), c.len()));
+    if own_residual > words::ROUNDING {
+        let steps = [c, s].map(samples::code_step);
+        cannot_tell.extend(words::of_rounding(fit.noise, steps));
+    }
     let mut remarks = vec![];
     if let Some(given) = options.noise_ratio {
         let own = unbiased::fit(c, s, &samples.start, None);

@@ -17,24 +17,25 @@ fn slimness(centred: &[nalgebra::Vector2<f64>]) -> f64 {
     (values.min().max(0.0) / values.max().max(f64::MIN_POSITIVE)).sqrt()
 }
 
-/// At how many places of the period the samples stand, seen from their mean: clusters that are a gap of 20° and more apart. A cloud
-/// about its mean, and an arc, have one. Near the mean noise alone makes the angle; places of a ring stand away from it.
+/// At how many places of the period the samples stand, seen from their mean. A cloud about its mean, and an arc, have one. Near the mean
+/// noise alone makes the angle; places of a ring stand away from it.
 fn places(centred: &[nalgebra::Vector2<f64>]) -> usize {
-    /// Degrees.
-    const GAP: f64 = 20.0;
     /// Share of the rms distance.
     const AWAY: f64 = 0.5;
     let rms = (centred.iter().map(|y| y.norm_squared()).sum::<f64>() / centred.len() as f64).sqrt();
-    let mut angles: Vec<f64> = centred
-        .iter()
-        .filter(|y| y.norm() > AWAY * rms)
-        .map(|y| y.y.atan2(y.x).to_degrees())
-        .collect();
+    let away = centred.iter().filter(|y| y.norm() > AWAY * rms);
+    places_of(
+        away.map(|y| y.y.atan2(y.x) / std::f64::consts::TAU)
+            .collect(),
+    )
+}
+
+/// Clusters of angles, in turns, that are a gap of 20° and more apart.
+pub(crate) fn places_of(mut angles: Vec<f64>) -> usize {
+    /// Turns.
+    const GAP: f64 = 20.0 / 360.0;
     angles.sort_by(f64::total_cmp);
-    let around = angles
-        .first()
-        .zip(angles.last())
-        .map(|(a, b)| a + 360.0 - b);
+    let around = angles.first().zip(angles.last()).map(|(a, b)| a + 1.0 - b);
     let between = angles.windows(2).map(|pair| pair[1] - pair[0]);
     between
         .chain(around)

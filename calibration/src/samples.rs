@@ -88,6 +88,24 @@ pub(crate) fn gap(ellipse: &Ellipse, cos: &[f64], sin: &[f64]) -> f64 {
     turns.windows(2).map(|w| w[1] - w[0]).fold(across, f64::max)
 }
 
+/// The step of the codes that the values are; `None` where they are none, or so fine that few values are alike.
+pub(crate) fn code_step(values: &[f64]) -> Option<f64> {
+    /// Values of each code.
+    const ALIKE: usize = 2;
+    let mut codes = values.to_vec();
+    codes.sort_unstable_by(f64::total_cmp);
+    codes.dedup();
+    if codes.len() < 3 || ALIKE * codes.len() > values.len() {
+        return None;
+    }
+    let gaps = || codes.windows(2).map(|pair| pair[1] - pair[0]);
+    let step = gaps().fold(f64::INFINITY, f64::min);
+    // Decimals round the codes.
+    let on_grid =
+        |gap: f64| (gap / step - (gap / step).round()).abs() < 0.05 * (gap / step).max(1.0);
+    gaps().all(on_grid).then_some(step)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

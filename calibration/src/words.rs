@@ -121,6 +121,47 @@ pub(crate) fn of_arc(
     out
 }
 
+/// Of samples that stand at a few places of the period only. Five places lie on an ellipse whatever the signals are, and at eight a third
+/// harmonic and the noise of one channel look alike.
+pub(crate) fn of_places(places: usize, samples: usize) -> Option<String> {
+    /// Samples at each place, from which on it is no chance.
+    const EACH: usize = 8;
+    ((3..=8).contains(&places) && samples >= EACH * places).then(|| {
+        format!(
+            "the samples stand at {places} places of the period only (the speed was exactly {places} samples a period): whether the \
+             signals are an ellipse and how much noise each channel has cannot be told from so few, and a distortion is in the \
+             parameters; record at another speed"
+        )
+    })
+}
+
+/// Of codes that are coarse beside the noise: rounding repeats with the angle then.
+pub(crate) fn of_rounding(noise: [f64; 2], steps: [Option<f64>; 2]) -> Option<String> {
+    /// Noise and rounding together, in codes: a third of a code and 1/√12.
+    const COARSE: f64 = 0.44;
+    let share = |i: usize| steps[i].map(|step| noise[i] / step);
+    let quiet = [share(0), share(1)]
+        .into_iter()
+        .flatten()
+        .fold(f64::INFINITY, f64::min);
+    (quiet < COARSE).then(|| {
+        format!(
+            "the residual is {quiet:.2} of a code, of which rounding alone makes 0.29: rounding beside so little noise is no noise but \
+             repeats with the angle, and the parameters may be off by two to three of their error bars"
+        )
+    })
+}
+
+/// Two decimals, or of less than one hundredth the power of ten.
+fn percent(share: f64) -> String {
+    let percent = 100.0 * share;
+    if percent < 0.01 {
+        format!("{percent:.0e}")
+    } else {
+        format!("{percent:.2}")
+    }
+}
+
 /// Of the noise, and of what is not noise.
 pub(crate) fn of_residuals(method: Method, fit: &Fit, residual_rms: f64) -> Vec<String> {
     let mut out = vec![];
@@ -131,11 +172,11 @@ pub(crate) fn of_residuals(method: Method, fit: &Fit, residual_rms: f64) -> Vec<
         && !method.set().cubic()
     {
         out.push(format!(
-            "the signals are no exact ellipse: the radius strays by {:.2} % of the amplitude rms in step with the angle, \
+            "the signals are no exact ellipse: the radius strays by {} % of the amplitude rms in step with the angle, \
              most at order {}; the parameters are those of the nearest ellipse, and the error bars, which count it as \
              noise, are a rough guess; how large an angle error stays the radius does not say, for bends alike in both \
              channels hardly show there; `nonius diagnose` looks for the cause",
-            shape.rms * 100.0,
+            percent(shape.rms),
             shape.order
         ));
     }

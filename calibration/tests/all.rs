@@ -3,6 +3,7 @@
 mod codes;
 mod cubic;
 mod methods;
+mod places;
 mod properties;
 mod recordings;
 mod report;
