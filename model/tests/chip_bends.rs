@@ -4,7 +4,9 @@ use std::f64::consts::TAU;
 
 use crate::chip_support::{Bench, optical, order, rms};
 use nonius_kept::figure;
+use nonius_model::design::Design;
 use nonius_model::spec::{CalibrationMethod, Spec};
+use rayon::prelude::*;
 
 /// Samples per period of the signal; the loop's bandwidth is `bandwidth` times its frequency.
 const PER_PERIOD: f64 = 126.0;
@@ -267,4 +269,53 @@ fn the_sum_of_squares_corrects_a_wholly_miscalibrated_sensor() {
             assert!(rest <= 0.5, "{rest}");
         }
     }
+}
+
+/// From few samples a period to many. What the loop does not follow it amplifies all the more the fewer there are: third harmonics that
+/// the radius has doubled stand in the phase error like a motion that is too fast, and must not close the gate for good.
+#[test]
+fn the_completion_wakes_at_every_speed() {
+    let mut cases = vec![];
+    for per_period in [
+        8.3, 12.3, 16.3, 20.3, 30.3, 40.13, 50.13, 64.3, 126.0, 500.3,
+    ] {
+        // No loop is wider than a ninth of the sample rate.
+        let widths = [0.5, 1.0, 1.4, 2.0].into_iter();
+        for bandwidth in widths.filter(|width| width / per_period < 0.11) {
+            for parameters in [8, 9] {
+                for sign in [1.0, -1.0] {
+                    cases.push((per_period, bandwidth, parameters, sign));
+                }
+            }
+        }
+    }
+    let left = |&(per_period, bandwidth, parameters, sign): &(f64, f64, u32, f64)| {
+        let mut spec = spec(parameters, true, 126.0 / per_period * bandwidth);
+        if Design::new(&spec).is_err() {
+            // So wide a loop jitters by more.
+            spec.accuracy.rms_periods = 1e-3;
+        }
+        let order_2 = |sensor: fn(f64) -> (f64, f64)| {
+            let signals = shifted(sensor, (sign, -1.0));
+            let mut bench = Bench::new(&spec, 5);
+            let before = order(&bench.miscalibration(&signals), 2);
+            for k in 0..(1200.0 * per_period) as u64 {
+                bench.step(signals(sign * TAU * k as f64 / per_period));
+            }
+            order(&bench.miscalibration(&signals), 2) / before
+        };
+        [order_2(cubic), order_2(third_harmonics)]
+    };
+    let rows: Vec<[f64; 2]> = cases.par_iter().map(left).collect();
+    let worst = |i: usize| rows.iter().map(|row| row[i]).fold(0.0, f64::max);
+    for (case, row) in cases.iter().zip(&rows) {
+        println!("{case:?}: {row:.4?} of order 2 is left");
+    }
+    assert!(worst(1) < 1.0 / 25.0, "{}", worst(1));
+    assert!(worst(0) < 0.02, "{}", worst(0));
+    figure(
+        "order 2 of the miscalibration, completed, at 8 to 500 samples a period, loops of half to twice the signal's frequency as far as the sample rate allows, both directions: what is left of 15 mrad by cubic terms and of 30 by third harmonics, mrad",
+        &format!("{:.2}; {:.2}", 15.0 * worst(0), 30.0 * worst(1)),
+        "model/tests/chip_bends.rs",
+    );
 }

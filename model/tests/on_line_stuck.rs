@@ -105,92 +105,105 @@ fn another_amplitude_is_learned() {
 /// Samples without one channel, or both.
 const GAPS: [u32; 3] = [1, 20, 3000];
 
-/// Periods of travel that a loss in the first gear takes the parameters back by.
-const TAKEN_BACK: usize = 2;
+/// Periods of travel after a loss in which the parameters are no worse than they are at their worst within as many without it: on
+/// their way they swing, those of bends and of sums of squares widely.
+const WATCHED: u32 = 4;
 
-/// How much worse than they were then they may be for some periods after a loss in the first gear, of the first miscalibration: noise; with
-/// bends, of which a part of a period says little, and with means over many sectors, which begin again, more.
+/// How much worse than that, of the first miscalibration.
 fn worse_by(spec: &Spec) -> f64 {
     let calibration = &spec.calibration;
     match calibration.method {
-        CalibrationMethod::SumOfSquares => 0.3,
-        _ if calibration.has_bend() => 0.12,
-        _ => 0.03,
+        // Bends by the sum of squares are not guarded: what they learn on their way cannot be told from a loss.
+        CalibrationMethod::SumOfSquares if calibration.has_bend() => 0.2,
+        // A part of a period says little of bends, and what is remembered goes on acting.
+        _ if calibration.has_bend() && !calibration.starts() => 0.1,
+        CalibrationMethod::SumOfSquares | CalibrationMethod::Exact => 0.07,
+        _ => 0.012,
     }
 }
 
-/// Once a period of travel has passed in which no residual was large, a loss leaves what was known at the end of one: the parameters are
-/// hardly worse than they were within the last two periods, which in the first gear is up to a quarter of what was wrong at first, or 60 %
-/// with the bends, which learn more slowly. A start by least squares has solved by then. Once a gear has ended calm, a loss of any length
-/// moves next to nothing.
+/// Once a period of travel has passed in which no residual was large, a loss leaves what was known: the parameters are hardly worse
+/// than they would be without it. Once a gear has ended calm, a loss of any length moves next to nothing.
 #[test]
 fn a_loss_soon_after_lock() {
-    let rows: Vec<[f64; 2]> = searches()
+    const PLACES: u32 = 8;
+    let searches = searches();
+    let rows: Vec<(&Spec, [f64; 3])> = searches
         .par_iter()
         .map(|variant| {
             let Variant { spec, what, .. } = variant;
             let signals = sensor_for(spec, 5);
             let mut settling = Bench::new(spec, 5);
-            let first = largest(&settling.miscalibration_at(72, &signals));
-            let mut worst = [0.0f64; 2];
+            let wrong = |bench: &Bench| largest(&bench.miscalibration_at(72, &signals));
+            let first = wrong(&settling);
             let mut turns = 0.0;
-            let (mut looked, mut past, mut beyond) = ([0; 2], vec![], 0.0f64);
-            for place in 0..8 * 16 {
-                for _ in 0..PERIOD / 8 {
-                    settling.step(signals(TAU * turns));
+            let mut go = |bench: &mut Bench| {
+                let begun = turns;
+                for _ in 0..PERIOD / PLACES {
+                    bench.step(signals(TAU * turns));
                     turns += 1.0 / f64::from(PERIOD);
                 }
-                let before = largest(&settling.miscalibration_at(72, &signals));
+                begun
+            };
+            let course: Vec<(Bench, f64)> = (0..PLACES * (16 + WATCHED))
+                .map(|_| {
+                    go(&mut settling);
+                    (settling.clone(), wrong(&settling))
+                })
+                .collect();
+            let (mut worst, mut looked, mut beyond) = ([0.0f64; 2], [0; 2], 0.0f64);
+            for place in 0..PLACES * 16 {
+                let at = place as usize;
+                let (settling, before) = &course[at];
                 let state = &settling.chip.state;
                 let begun = state.gamma_gear.raw(0) > 0 || state.gear_periods.raw(0) > 0;
                 if !(begun && state.locked) {
-                    // What the first quiet period may have ended with is known; what was before is not.
-                    past = vec![before];
                     continue;
                 }
-                past.push(before);
                 let calm = usize::from(state.calm);
                 looked[calm] += 1;
-                let lately = past.iter().rev().take(8 * TAKEN_BACK + 1);
-                let lately = lately.copied().fold(0.0, f64::max);
-                let gap = GAPS[place % GAPS.len()];
+                let ahead = &course[at..=at + (PLACES * WATCHED) as usize];
+                let without = ahead.iter().map(|(_, wrong)| *wrong).fold(0.0, f64::max);
+                let gap = GAPS[at % GAPS.len()];
+                let from = (place + 1) * (PERIOD / PLACES);
                 for left in [[0.0, 0.0], [0.0, 1.0], [1.0, 0.0]] {
                     let mut bench = settling.clone();
-                    for k in 0..gap + 3 * PERIOD {
+                    for k in 0..gap + WATCHED * PERIOD {
                         let [left_c, left_s] = if k < gap { left } else { [1.0; 2] };
-                        let (c, s) = signals(TAU * (turns + f64::from(k) / f64::from(PERIOD)));
+                        let (c, s) = signals(TAU * f64::from(from + k) / f64::from(PERIOD));
                         bench.step((left_c * c, left_s * s));
                         if k >= gap && (k - gap).is_multiple_of(30) {
-                            let after = largest(&bench.miscalibration_at(72, &signals));
+                            let after = wrong(&bench);
                             worst[calm] = worst[calm].max((after - before) / first);
-                            beyond = beyond.max((after - lately) / first);
+                            beyond = beyond.max((after - without) / first);
                         }
                     }
                 }
             }
             let set = spec.calibration.parameters;
-            println!("{what}, {set}: {worst:.3?}, {beyond:.3} beyond what was lately");
-            assert!(
-                beyond < worse_by(spec),
-                "{what}, {set}: {beyond} beyond what was lately"
-            );
+            println!("{what}, {set}: {worst:.3?}, {beyond:.3} beyond what it is without");
+            assert!(beyond < worse_by(spec), "{what}, {set}: {beyond} beyond");
             assert!(looked[0] >= 8 && looked[1] >= 8 * 8, "{what}: {looked:?}");
-            let most = if spec.calibration.has_bend() {
-                0.6
-            } else {
-                0.25
-            };
             assert!(
-                worst[0] < most && worst[1] < 0.03,
+                worst[1] < 0.015,
                 "{what}: {worst:?} of the first miscalibration"
             );
-            worst
+            (spec, [worst[0], worst[1], beyond])
         })
         .collect();
-    let worst = |calm: usize| rows.iter().map(|row| row[calm]).fold(0.0, f64::max);
+    let worst = |i: usize, of: &dyn Fn(&Spec) -> bool| {
+        let rows = rows.iter().filter(|(spec, _)| of(spec));
+        100.0 * rows.map(|(_, row)| row[i]).fold(0.0, f64::max)
+    };
+    let final_form = |spec: &Spec| spec.calibration.is_linear_final();
     figure(
-        "either channel or both gone for 1, 20 or 3000 samples within 16 periods from power-up, every search: what that adds at most, % of the first miscalibration, before a gear has ended calm and from then on",
-        &format!("{:.0}; {:.1}", 100.0 * worst(0), 100.0 * worst(1)),
+        "either channel or both gone for 1, 20 or 3000 samples within 16 periods from power-up, what is worse within four periods than it is without, % of the first miscalibration: final form of four and five parameters; every search; and what is worse than before the loss from the first calm gear on",
+        &format!(
+            "{:.1}; {:.0}; {:.1}",
+            worst(2, &final_form),
+            worst(2, &|_| true),
+            worst(1, &|_| true)
+        ),
         "model/tests/on_line_stuck.rs",
     );
 }

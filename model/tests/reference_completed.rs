@@ -215,7 +215,7 @@ fn the_completion_learns_at_the_rate_stated() {
         println!(
             "loop {bandwidth} f: |S(2f)|^2 = {sensitivity:.4}, rate {rate:.3e}, stated {expected:.3e} per sample"
         );
-        assert!((rate / expected - 1.0).abs() < 0.05, "{rate} {expected}");
+        assert!((rate / expected - 1.0).abs() < 0.01, "{rate} {expected}");
     }
 }
 

@@ -49,12 +49,13 @@ const SHIFTED: [(&str, &str); 3] = [
 ];
 
 /// Limits that are compared with: few bits make short comparators, and they need not be exact.
-const LIMITS: [&str; 5] = [
+const LIMITS: [&str; 6] = [
     "lock_error",
     "lock_residual",
     "restart_residual",
     "hold_residual",
     "small_error",
+    "far_error",
 ];
 
 fn note(name: &str, constant: &Constant) -> Option<String> {

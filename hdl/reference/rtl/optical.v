@@ -6,7 +6,7 @@
 // far, is 2^-4 at first and 2^-9 after 5 gears.
 // After S. Balemi, "Automatic calibration of sinusoidal encoder signals", IFAC 2005; equation numbers are the paper's.
 //
-// Design bf4a848f45b1: 17 products on 1 multiplier, 20 clocks per sample.
+// Design e6f01c2c5f0c: 17 products on 1 multiplier, 20 clocks per sample.
 //
 // Formats: sW.F is a two's complement number of W bits, F of them behind the point; uW.F has no sign and is kept here
 // with a zero in front, so that every number is signed. Angles are in turns of a scale period. A factor that is a power
@@ -27,11 +27,11 @@
 //      |                          | gamma_settled periods_modulo_4 sector sector_relative period_ahead period_behind
 //      |                          | a_period_away reach_ahead reach_behind unseen_ahead used_ahead_counts may_add_ahead
 //      |                          | sector_ahead unseen_behind used_behind_counts may_add_behind sector_behind
-//      |                          | search_begun proven_stand held_and_lost nominal held_some_periods held_unknown
-//      |                          | held_long rises_again restart_cause last_gamma_gear returned_lately
-//      |                          | gear_periods_done disturbed_before quiet gear_done periods_count_ends
-//      |                          | parameters_follow held_before gain_c_inside gain_c_rests gain_s_inside gain_s_rests
-//      |                          | gains_steady proves nothing_proven_yet
+//      |                          | search_begun proven_stand held_and_lost lost_in_first_gear proven_or_unknown
+//      |                          | nominal disturbed_again search_fails held_some_periods held_unknown held_long
+//      |                          | rises_again restart_cause last_gamma_gear returned_lately gear_periods_done
+//      |                          | disturbed_before quiet gear_done parameters_follow held_before gain_c_inside
+//      |                          | gain_c_rests gain_s_inside gain_s_rests gains_steady proves nothing_proven_yet
 //    1 | loop_ab * error_previous | sin_value sin_slope y_c y_s counting whole_period travel_clear sector_added
 //      |                          | new_sector still_used_ahead used_up_ahead still_used_behind used_up_behind y_5
 //      |                          | known_in_lock held_or_known astray_goes_on period_breaks_off lost_before
@@ -43,23 +43,25 @@
 //    7 | s * cos_hat              | c_exact c s_weak
 //    8 | c * sin_hat              | c_weak signal_present may_flip
 //    9 | c * cos_hat              | e_exact e_seen e
-//   10 | s * sin_hat              | e_in_window e_change e_small far_behind catches_up astray_lately astray_period_ends
+//   10 | s * sin_hat              | e_in_window e_change e_small behind e_near far_behind behind_or_far catches_up
+//      |                          | teaches period_has_hole period_dropped astray_lately astray_period_ends
 //      |                          | astray_again
 //   11 | e * e                    | rho_exact rho rho_in_window radius_present in_window flip level_step half_turn
 //      |                          | loop_follows rho_high rho_large rho_not_small rho_rises proven_better may_recall
 //   12 | loop_a * e_change        | level_moved level_full level_empty narrower loop_gear_up full_in_last_gear
 //      |                          | sample_counts counted period_tick rho_too_large residual_large disturbed_lately
 //      |                          | disturbed_or_held disturbed_or_recalled hold_cause hold signal_in_doubt
-//      |                          | held_in_doubt recall residual_rough radius_large fresh rho_limited disturbed_period
-//      |                          | gamma_restart gear_passed gamma_shift gamma_gear_up gamma_gear_counted
-//      |                          | gear_periods_up periods_end gear_periods_again held_periods_up free_period
-//      |                          | held_periods_step held_periods_stay within_period gear_ends_calm stays_calm
-//      |                          | still_held holding gamma_gear_searched first_gear_period restart_risen recall_again
-//      |                          | known_to_be_calm last_gear_passed quiet_periods_pass quiet_periods_end proved
-//      |                          | gain_moved remember search_improves remember_better return_ends signal_changed
+//      |                          | held_in_doubt recall residual_rough radius_large counted_and_free rho_limited
+//      |                          | disturbed_period gamma_restart gear_passed gamma_shift gamma_gear_up
+//      |                          | gamma_gear_counted quiet_period_ends gear_periods_up disturbed_period_ends
+//      |                          | quiet_breaks_off gear_breaks_off return_ends gear_periods_again held_periods_up
+//      |                          | free_period held_periods_step held_periods_stay within_period gear_ends_calm
+//      |                          | stays_calm still_held holding gamma_gear_searched first_gear_period restart_risen
+//      |                          | recall_again known_to_be_calm last_gear_passed quiet_periods_pass quiet_periods_end
+//      |                          | proved gain_moved remember search_improves remember_better signal_changed
 //      |                          | still_known fades fade_ends
-//   13 | cos_hat * rho_limited    | kick recall_any remember_recent return_goes_on together_again period_taught
-//      |                          | travel_ends search_ends theta_applies lock_falls
+//   13 | cos_hat * rho_limited    | kick sample_teaches fresh recall_any remember_recent return_goes_on together_again
+//      |                          | period_taught travel_ends search_ends theta_applies lock_falls
 //   14 | sin_hat * rho_limited    | speed alpha_hat_turned alpha_hat_sum carry backwards not_forwards rho_c gradient_2
 //   15 | y_c * rho_c              | count_before rho_s step_2 gradient_4
 //   16 | y_s * rho_s              | gradient_1 step_1 step_4
@@ -90,6 +92,8 @@
 //     loop_gear_last         3                       Last loop gear.
 //     small_error            0.0625                  |e|, radians, from which the loop is catching up with motion, and
 //                                                    |ρ| from which the completion rests.
+//     far_error              0.125                   |e|, radians, that no sensor leaves whose search has begun, and no
+//                                                    bends that calibration is to find.
 //     gamma_gear_settled     4                       From this γ gear on γ has settled.
 //     gamma_gear_last        5                       Last γ gear.
 //     gear_periods_last      3                       Periods of travel per γ gear, less one.
@@ -111,6 +115,8 @@
 //     minus_quarter          -0.25                   −¼.
 //     minus_small_error      -0.0625                 Minus small_error: |e|, radians, from which the loop is catching
 //                                                    up with motion, and |ρ| from which the completion rests.
+//     minus_far_error        -0.125                  Minus far_error: |e|, radians, that no sensor leaves whose search
+//                                                    has begun, and no bends that calibration is to find.
 //     minus_restart_residual -0.25                   Minus restart_residual: |ρ| above this begins the search again.
 //     minus_hold_residual    -0.0625                 Minus hold_residual: |ρ| above this is not small: it holds the
 //                                                    parameters once a gear has ended without.
@@ -259,15 +265,17 @@ module optical (
     reg signed [7:0] travel_low_next;
     reg ahead_used_next;
     reg behind_used_next;
+    reg gamma_gear_below_one;
+    reg not_gamma_gear_below_one;
+    reg search_begun;
     reg not_astray_long;
+    reg teaches;
     reg not_catches_up;
     reg loop_follows;
     reg rho_high;
     reg rho_large;
     reg rho_not_small;
     reg calm_and_rho_not_small;
-    reg gamma_gear_below_one;
-    reg search_begun;
     reg not_fading;
     reg proven_stand;
     reg held_and_lost;
@@ -275,10 +283,15 @@ module optical (
     reg may_recall;
     reg not_radius_present;
     reg recall;
+    reg counted_and_free;
+    reg astray_and_not_astray_long;
+    reg period_dropped;
+    reg not_period_dropped;
     reg fresh;
     reg signed [14:0] rho_limited;
     reg signed [17:0] rho_c;
     reg signed [17:0] rho_s;
+    reg signed [23:0] running_5_next_chosen;
     reg signed [13:0] y_5;
     reg nominal;
     reg signed [24:0] step_5;
@@ -290,9 +303,9 @@ module optical (
     reg restart_cause;
     reg gamma_gear_below_gamma_gear_last;
     reg last_gamma_gear;
+    reg disturbed_before;
     reg quiet;
     reg gear_done;
-    reg periods_count_ends;
     reg not_returning;
     reg parameters_follow;
     reg held_before;
@@ -616,18 +629,27 @@ module optical (
     wire behind_used_next_now = counting_now & used_up_behind; // step 1
 
     // The loop catches up
-    //   once gamma has settled, a sample with a large |e| does not count, unless two periods of travel had one
+    //   once gamma has settled, a sample with a large |e| does not count, from the first quiet period on one with a
+    //   larger |e| teaches nothing, unless two periods of travel had one
     wire e_small = // step 10, with small_error, minus_small_error
         ($signed(e[17:12]) < 6'sd1) & ($signed(~e[17:12]) < 6'sd1);
-    wire far_behind = gamma_settled & ~e_small; // step 10
+    wire behind = gamma_settled & ~e_small; // step 10
+    wire e_near = // step 10, with far_error, minus_far_error
+        ($signed(e[17:13]) < 5'sd1) & ($signed(~e[17:13]) < 5'sd1);
+    wire gamma_gear_below_one_now = gamma_gear < 4'sd1; // step 0
+    wire not_gamma_gear_below_one_now = ~gamma_gear_below_one_now; // step 0
+    wire search_begun_now = not_gamma_gear_below_one_now | ~(gear_periods < 7'sd1); // step 0
+    wire far_behind = ~e_near & search_begun; // step 10
+    wire behind_or_far = far_behind | behind; // step 10
     wire not_astray_long_now = ~astray_long; // step 0
-    wire catches_up = far_behind & not_astray_long; // step 10
+    wire catches_up = behind & not_astray_long; // step 10
+    wire teaches_now = ~(behind_or_far & not_astray_long); // step 10
     wire not_catches_up_now = ~catches_up; // step 10
     wire loop_follows_now = in_window_now & not_catches_up; // step 11
     wire sample_counts = counting & loop_follows; // step 12
     wire counted = sample_counts & new_sector; // step 12
     wire period_tick = counted & whole_period; // step 12
-    wire astray_lately = astray | far_behind; // step 10
+    wire astray_lately = astray | behind_or_far; // step 10
     wire astray_goes_on_now = ~whole_period_now & counting_now; // step 1
     wire astray_period_ends = whole_period & astray_lately; // step 10
     wire astray_again = astray_period_ends & astray_before; // step 10
@@ -652,8 +674,6 @@ module optical (
     wire disturbed_or_held = disturbed_lately | held; // step 12
     wire disturbed_or_recalled = disturbed_or_held | returning; // step 12
     wire hold_cause = disturbed_or_recalled | level_moved_below_lock_full; // step 12
-    wire gamma_gear_below_one_now = gamma_gear < 4'sd1; // step 0
-    wire search_begun_now = ~gamma_gear_below_one_now | ~(gear_periods < 7'sd1); // step 0
     wire hold = hold_cause & search_begun; // step 12
     wire not_fading_now = ~fading; // step 0
     wire proven_stand_now = known & not_fading_now; // step 0
@@ -668,7 +688,16 @@ module optical (
     wire recall_now = held_in_doubt & may_recall; // step 12
     wire residual_rough = rho_not_small & sample_counts; // step 12
     wire radius_large = rho_high & sample_counts; // step 12
-    wire fresh_now = counted & ~hold; // step 12
+    wire counted_and_free_now = counted & ~hold; // step 12
+    wire sample_teaches = counted_and_free & teaches; // step 13
+
+    // A period that is dropped
+    //   where a period ends in which the loop caught up, the search goes back to theta as it is applied
+    wire astray_and_not_astray_long_now = astray & not_astray_long_now; // step 0
+    wire period_has_hole = astray_and_not_astray_long | catches_up; // step 10
+    wire period_dropped_now = travel_clear & period_has_hole; // step 10
+    wire not_period_dropped_now = ~period_dropped_now; // step 10
+    wire fresh_now = sample_teaches & not_period_dropped; // step 13
 
     // Radius, whatever the loop lags behind
     //   radius - 1 = rho + e^2/2
@@ -689,6 +718,12 @@ module optical (
     wire signed [31:0] sin_hat_times_rho_limited = product_0[31:0]; // s32.32, step 15
     wire signed [17:0] rho_s_now = // s18.18, step 15
         sin_hat_times_rho_limited[31:14] + {17'b0, sin_hat_times_rho_limited[13]};
+    wire signed [24:0] running_1_next_chosen = period_dropped ? theta_1_deviation : running_1; // s25.25, step 17
+    wire signed [23:0] running_2_next_chosen = period_dropped ? theta_2_deviation : running_2; // s24.25, step 15
+    wire signed [24:0] running_3_next_chosen = period_dropped ? theta_3_deviation : running_3; // s25.25, step 18
+    wire signed [23:0] running_4_next_chosen = period_dropped ? theta_4_deviation : running_4; // s24.25, step 16
+    wire signed [23:0] running_5_next_chosen_now = // s24.25, step 10
+        period_dropped_now ? theta_5_deviation : running_5;
 
     // Parameter update
     //   theta -= gamma gradient, each component times a power of two that lets all parameters converge alike; once
@@ -698,11 +733,13 @@ module optical (
     wire signed [30:0] gradient_5 = product_0[30:0]; // s31.31, step 18
     wire signed [28:0] y_c_times_rho_c = product_0[28:0]; // s29.29, step 16
     wire signed [28:0] y_s_times_rho_s = product_0[28:0]; // s29.29, step 17
-    wire nominal_now = gamma_gear_below_one_now & (signal_lost & ~locked); // step 0
+    wire lost_in_first_gear = gamma_gear_below_one_now & (signal_lost & ~locked); // step 0
+    wire proven_or_unknown = ~search_begun_now | known; // step 0
+    wire nominal_now = lost_in_first_gear & proven_or_unknown; // step 0
     wire signed [24:0] step_5_geared = shifted_2; // s25.25, step 18
     wire signed [24:0] step_5_now = fresh ? step_5_geared : 25'sd0; // s25.25, step 18
     wire signed [25:0] running_5_next_difference = // s26.25, step 19
-        {{2{running_5[23]}}, running_5} - {step_5[24], step_5};
+        {{2{running_5_next_chosen[23]}}, running_5_next_chosen} - {step_5[24], step_5};
     wire signed [23:0] running_5_next_bits = // s24.25, step 19
         (running_5_next_difference[25:23] == {3{running_5_next_difference[25]}})
             ? running_5_next_difference[23:0]
@@ -711,7 +748,7 @@ module optical (
     wire signed [24:0] step_1_geared = shifted_2; // s25.25, step 16
     wire signed [21:0] step_1_now = fresh ? step_1_geared[21:0] : 22'sd0; // s22.25, step 16
     wire signed [25:0] running_1_next_difference = // s26.25, step 17
-        {running_1[24], running_1} - {{4{step_1[21]}}, step_1};
+        {running_1_next_chosen[24], running_1_next_chosen} - {{4{step_1[21]}}, step_1};
     wire signed [24:0] running_1_next_bits = // s25.25, step 17
         (running_1_next_difference[25] == running_1_next_difference[24])
             ? running_1_next_difference[24:0]
@@ -720,7 +757,7 @@ module optical (
     wire signed [24:0] step_2_geared_now = shifted_2; // s25.25, step 14
     wire signed [20:0] step_2 = fresh ? step_2_geared[20:0] : 21'sd0; // s21.25, step 15
     wire signed [24:0] running_2_next_difference = // s25.25, step 15
-        {running_2[23], running_2} - {{4{step_2[20]}}, step_2};
+        {running_2_next_chosen[23], running_2_next_chosen} - {{4{step_2[20]}}, step_2};
     wire signed [23:0] running_2_next_bits = // s24.25, step 15
         (running_2_next_difference[24] == running_2_next_difference[23])
             ? running_2_next_difference[23:0]
@@ -729,7 +766,7 @@ module optical (
     wire signed [24:0] step_3_geared = shifted_2; // s25.25, step 17
     wire signed [21:0] step_3_now = fresh ? step_3_geared[21:0] : 22'sd0; // s22.25, step 17
     wire signed [25:0] running_3_next_difference = // s26.25, step 18
-        {running_3[24], running_3} - {{4{step_3[21]}}, step_3};
+        {running_3_next_chosen[24], running_3_next_chosen} - {{4{step_3[21]}}, step_3};
     wire signed [24:0] running_3_next_bits = // s25.25, step 18
         (running_3_next_difference[25] == running_3_next_difference[24])
             ? running_3_next_difference[24:0]
@@ -738,7 +775,7 @@ module optical (
     wire signed [24:0] step_4_geared_now = shifted_2; // s25.25, step 15
     wire signed [20:0] step_4 = fresh ? step_4_geared[20:0] : 21'sd0; // s21.25, step 16
     wire signed [24:0] running_4_next_difference = // s25.25, step 16
-        {running_4[23], running_4} - {{4{step_4[20]}}, step_4};
+        {running_4_next_chosen[23], running_4_next_chosen} - {{4{step_4[20]}}, step_4};
     wire signed [23:0] running_4_next_bits = // s24.25, step 16
         (running_4_next_difference[24] == running_4_next_difference[23])
             ? running_4_next_difference[23:0]
@@ -746,19 +783,21 @@ module optical (
 
     // Gears of gamma
     //   gamma halves after some periods of travel, starts again when the residual stays large
+    wire disturbed_again = ~search_begun_now | held; // step 0
+    wire search_fails = ~calm & disturbed_again; // step 0
     wire held_some_periods = ~(held_periods < 9'sh1f); // step 0, with held_periods_last
     wire held_unknown = held_some_periods & ~proven_stand_now; // step 0
     wire held_long_now = ~(held_periods < 9'shff) | held_unknown; // step 0, with hold_periods_last
     wire rises_again = risen & fading; // step 0
-    wire restart_cause_now = (~calm | held_long_now) | rises_again; // step 0
+    wire restart_cause_now = (search_fails | held_long_now) | rises_again; // step 0
     wire disturbed_period = period_tick & disturbed; // step 12
     wire gamma_restart = disturbed_period & restart_cause; // step 12
     wire gamma_gear_below_gamma_gear_last_now = gamma_gear < 4'sd5; // step 0, with gamma_gear_last
     wire last_gamma_gear_now = ~gamma_gear_below_gamma_gear_last_now; // step 0
     wire returned_lately = returning & ($signed(gear_periods[6:5]) < 2'sd1); // step 0, with returning_periods
     wire gear_periods_done = ~(gear_periods < 7'sd3) & ~returned_lately; // step 0, with gear_periods_last
-    wire disturbed_before = disturbed | held; // step 0
-    wire quiet_now = ~disturbed_before; // step 0
+    wire disturbed_before_now = disturbed | held; // step 0
+    wire quiet_now = ~disturbed_before_now; // step 0
     wire gear_done_now = gear_periods_done & quiet_now; // step 0
     wire gear_passed = period_tick & gear_done; // step 12
     wire gamma_shift = gear_passed & gamma_gear_below_gamma_gear_last; // step 12
@@ -766,13 +805,16 @@ module optical (
     wire signed [4:0] gamma_gear_counted_sum = // s5.0, step 12
         {gamma_gear[3], gamma_gear} + {{3{gamma_gear_up[1]}}, gamma_gear_up};
     wire signed [3:0] gamma_gear_counted = {1'b0, gamma_gear_counted_sum[2:0]}; // u3.0, step 12
-    wire signed [1:0] gear_periods_up = period_tick ? 2'sd1 : 2'sd0; // s2.0, step 12
+    wire quiet_period_ends = period_tick & quiet; // step 12
+    wire signed [1:0] gear_periods_up = quiet_period_ends ? 2'sd1 : 2'sd0; // s2.0, step 12
     wire signed [7:0] gear_periods_next_sum = // s8.0, step 12
         {gear_periods[6], gear_periods} + {{6{gear_periods_up[1]}}, gear_periods_up};
     wire signed [6:0] gear_periods_next_bits = {1'b0, gear_periods_next_sum[5:0]}; // u6.0, step 12
-    wire periods_count_ends_now = gear_done_now | disturbed_before; // step 0
-    wire periods_end = period_tick & periods_count_ends; // step 12
-    wire gear_periods_again = (periods_end | gamma_restart) | not_counting; // step 12
+    wire disturbed_period_ends = period_tick & disturbed_before; // step 12
+    wire quiet_breaks_off = disturbed_period_ends | not_counting; // step 12
+    wire gear_breaks_off = quiet_breaks_off & not_gamma_gear_below_one; // step 12
+    wire return_ends = gear_passed | gamma_restart; // step 12
+    wire gear_periods_again = return_ends | gear_breaks_off; // step 12
     wire signed [1:0] held_periods_up = disturbed_period ? 2'sd1 : 2'sd0; // s2.0, step 12
     wire not_returning_now = ~returning; // step 0
     wire parameters_follow_now = quiet_now & not_returning_now; // step 0
@@ -794,7 +836,7 @@ module optical (
     wire holding = (disturbed_period & ~gamma_restart) | still_held; // step 12
     wire signed [3:0] gamma_gear_searched = gamma_restart ? 4'sd0 : gamma_gear_counted; // u3.0, step 12
     wire signed [6:0] gear_periods_next_now = gear_periods_again ? 7'sd0 : gear_periods_next_bits; // u6.0, step 12
-    wire first_gear_period = (period_tick & quiet) & gamma_gear_below_one; // step 12
+    wire first_gear_period = quiet_period_ends & gamma_gear_below_one; // step 12
     wire disturbed_next_now = residual_large | (disturbed & within_period); // step 12
     wire rough_next_now = residual_rough | (rough & within_period); // step 12
     wire risen_next_now = radius_large | (risen & within_period); // step 12
@@ -841,7 +883,6 @@ module optical (
     wire search_improves = (gear_passed | first_gear_period) & gamma_gear_below_gamma_gear_last; // step 12
     wire remember_better_now = search_improves | quiet_periods_end; // step 12
     wire remember_recent_now = remember_better | recall_any_now; // step 13
-    wire return_ends = gear_passed | gamma_restart; // step 12
     wire not_return_ends_now = ~return_ends; // step 12
     wire return_goes_on = recall & not_return_ends; // step 13
     wire signal_changed = restart_risen & not_fading; // step 12
@@ -875,7 +916,7 @@ module optical (
     // Parameters as they are applied
     //   theta = what the search has found, once gamma has settled where a period of travel ends
     //   (paper section 5.5: static measurements may bias the estimates)
-    wire period_taught = fresh & whole_period; // step 13
+    wire period_taught = fresh_now & whole_period; // step 13
     wire period_breaks_off_now = travel_clear_now & ~whole_period_now; // step 1
     wire travel_ends = period_taught | period_breaks_off; // step 13
     wire search_ends = gamma_gear_below_gamma_gear_settled | travel_ends; // step 13
@@ -966,21 +1007,23 @@ module optical (
             a_period_away <= a_period_away_now;
             sector_ahead <= sector_ahead_now;
             sector_behind <= sector_behind_now;
-            not_astray_long <= not_astray_long_now;
             gamma_gear_below_one <= gamma_gear_below_one_now;
+            not_gamma_gear_below_one <= not_gamma_gear_below_one_now;
             search_begun <= search_begun_now;
+            not_astray_long <= not_astray_long_now;
             not_fading <= not_fading_now;
             proven_stand <= proven_stand_now;
             held_and_lost <= held_and_lost_now;
             not_apart <= not_apart_now;
+            astray_and_not_astray_long <= astray_and_not_astray_long_now;
             nominal <= nominal_now;
             held_long <= held_long_now;
             restart_cause <= restart_cause_now;
             gamma_gear_below_gamma_gear_last <= gamma_gear_below_gamma_gear_last_now;
             last_gamma_gear <= last_gamma_gear_now;
+            disturbed_before <= disturbed_before_now;
             quiet <= quiet_now;
             gear_done <= gear_done_now;
-            periods_count_ends <= periods_count_ends_now;
             not_returning <= not_returning_now;
             parameters_follow <= parameters_follow_now;
             held_before <= held_before_now;
@@ -1048,7 +1091,11 @@ module optical (
             rho_exact_difference <= rho_exact_difference_now;
             e_in_window <= e_in_window_now;
             e_change <= e_change_now;
+            teaches <= teaches_now;
             not_catches_up <= not_catches_up_now;
+            period_dropped <= period_dropped_now;
+            not_period_dropped <= not_period_dropped_now;
+            running_5_next_chosen <= running_5_next_chosen_now;
             astray_next <= astray_next_now;
             astray_before_next <= astray_before_next_now;
             astray_long_next <= astray_long_next_now;
@@ -1072,7 +1119,7 @@ module optical (
             lock_level_next_chosen <= lock_level_next_chosen_now;
             locked_next <= locked_next_now;
             recall <= recall_now;
-            fresh <= fresh_now;
+            counted_and_free <= counted_and_free_now;
             rho_limited <= rho_limited_now;
             held_periods_next <= held_periods_next_now;
             gear_periods_next <= gear_periods_next_now;
@@ -1096,6 +1143,7 @@ module optical (
         if (step == 5'd13) begin
             loop_gear_next <= loop_gear_next_now;
             speed_sum <= speed_sum_now;
+            fresh <= fresh_now;
             recall_any <= recall_any_now;
             remember_recent <= remember_recent_now;
             returning_next <= returning_next_now;

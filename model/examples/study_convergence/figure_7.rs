@@ -11,7 +11,7 @@ use nonius_model::spec::Spec;
 
 use super::method::Method;
 use super::on_chip::OnChip;
-use super::scenario::{SPEED, Scenario, samples};
+use super::scenario::{SENSOR, SPEED, Scenario, samples};
 
 /// Who says the parameters.
 pub(crate) const SOURCES: [&str; 3] = ["paper", "chip", "heydemann"];
@@ -24,7 +24,7 @@ pub(crate) type Row = (f64, [[f64; 5]; 3]);
 pub(crate) fn figure_7(spec: &Spec) -> Result<Vec<Row>, Box<dyn std::error::Error>> {
     let set = Parameters::Five;
     // The beginning, before it stands still.
-    let record = samples(Scenario::Standstill).take(10_000);
+    let record = samples(Scenario::Standstill, &SENSOR).take(10_000);
     let record: Vec<[f64; 2]> = record.map(|s| s.y).collect();
     let target = set.from_five(heydemann::calibrate(&record)?.theta());
     let mut config = from_spec::config(spec)?;

@@ -15,7 +15,7 @@ use nonius_model::reference::sum_of_squares::Smoothing;
 use nonius_model::reference::{Config, Parameters, Reference, Sensor, Steps, Theta};
 
 use super::on_chip::{self, OnChip};
-use super::scenario::SPEED;
+use super::scenario::{IN_PHASE, SENSOR, SPEED};
 
 /// Sample time, seconds.
 const TS: f64 = 1e-6;
@@ -52,11 +52,11 @@ impl Correction {
         }
     }
 
-    /// The Θ that corrects this sensor, where the set has one; of the chip's, that with phase.
-    pub(crate) fn of(self, sensor: &Sensor) -> Option<Theta> {
+    /// The Θ that corrects this sensor; of a set without phase, one without a phase error.
+    pub(crate) fn of(self, sensor: &Sensor) -> Theta {
         match self {
-            Self::Paper(set) => (set.count() % 2 == 1).then(|| set.from_five(sensor.theta())),
-            Self::Bent => Some(on_chip::bent_theta(sensor)),
+            Self::Paper(set) => set.from_five(sensor.theta()),
+            Self::Bent => on_chip::bent_theta(sensor),
         }
     }
 }
@@ -87,7 +87,7 @@ impl Method {
         let travelled = Gate::Travelled(WINDOW);
         let squares = Search::SumOfSquares(Smoothing::Forgetting { lambda: 0.9 });
         let batch = Search::SumOfSquares(Smoothing::Batch { samples: 64 });
-        for set in [Parameters::Four, Parameters::Five] {
+        for set in Parameters::ALL {
             add("sum of squares, lambda 0.9,", set, squares, travelled);
             add("sum of squares, batch 64,", set, batch, travelled);
         }
@@ -145,6 +145,16 @@ impl Method {
     /// No loop and no search: the arctangent of the signals, or of what their extremes make of them.
     pub(crate) fn is_baseline(&self) -> bool {
         matches!(self, Self::OpenLoop(_))
+    }
+
+    /// The sensor that it meets: one that it can express.
+    pub(crate) fn sensor(&self) -> Sensor {
+        let in_phase = match self {
+            Self::OpenLoop(_) => false,
+            Self::Paper(set, _) => set.count() % 2 == 0,
+            Self::Chip(chip) => !chip.design.structure.calibration.has_phase(),
+        };
+        if in_phase { IN_PHASE } else { SENSOR }
     }
 
     /// The design, where it is a chip.
@@ -214,9 +224,11 @@ pub(crate) fn config(set: Parameters, search: Search, gate: Gate) -> Config {
         .expect("poles inside the unit circle");
     let tracking = LoopConfig::new(LoopMethod::Three(FilterType::Two), &poles, TS)
         .expect("the paper builds it");
-    // 4 MᵀMΘ ε is eight times Mᵀ n ρ for small ρ, and a forgetting factor of 0.9 multiplies by ten.
+    // 4 MᵀMΘ ε is eight times Mᵀ n ρ for small ρ, and a forgetting factor of 0.9 multiplies by ten. Bends that move at once where half a
+    // period ends overshoot.
     let scale = match search {
         Search::SumOfSquares(Smoothing::Forgetting { .. }) => 1.0 / 80.0,
+        Search::SumOfSquares(Smoothing::Batch { .. }) if set.count() > 5 => 1.0 / 32.0,
         Search::SumOfSquares(Smoothing::Batch { .. }) => 1.0 / 8.0,
         _ => 1.0,
     };

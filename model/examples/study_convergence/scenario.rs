@@ -20,6 +20,12 @@ pub(crate) const SENSOR: Sensor = Sensor {
     beta: 0.087_266,
 };
 
+/// The same without a phase error, for sets that cannot express one.
+pub(crate) const IN_PHASE: Sensor = Sensor {
+    beta: 0.0,
+    ..SENSOR
+};
+
 /// The cases of the comparison.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Scenario {
@@ -67,9 +73,9 @@ impl Scenario {
         }
     }
 
-    /// Noise-free signals at the angle α and sample k.
-    pub(crate) fn signals(self, alpha: f64, k: u32) -> [f64; 2] {
-        let [c, s] = SENSOR.signals(alpha);
+    /// Noise-free signals of a sensor at the angle α and sample k.
+    pub(crate) fn signals(self, sensor: &Sensor, alpha: f64, k: u32) -> [f64; 2] {
+        let [c, s] = sensor.signals(alpha);
         match self {
             Self::Drift => [c - 0.1 * f64::from(k) / f64::from(SAMPLES), s],
             Self::ThirdHarmonic => [
@@ -102,12 +108,12 @@ pub(crate) struct Sample {
     pub(crate) y: [f64; 2],
 }
 
-/// All samples of a scenario, the same for every method.
-pub(crate) fn samples(scenario: Scenario) -> impl Iterator<Item = Sample> {
+/// All samples of a sensor in a scenario, the same for every method.
+pub(crate) fn samples(scenario: Scenario, sensor: &Sensor) -> impl Iterator<Item = Sample> {
     let mut random = StdRng::seed_from_u64(20);
     let mut alpha = 0.0;
     (0..SAMPLES).map(move |k| {
-        let [c, s] = scenario.signals(alpha, k);
+        let [c, s] = scenario.signals(sensor, alpha, k);
         // Box and Muller.
         let radius = (-2.0 * (1.0 - random.random::<f64>()).ln()).sqrt() * scenario.sigma();
         let (sin, cos) = (TAU * random.random::<f64>()).sin_cos();

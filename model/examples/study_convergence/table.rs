@@ -4,21 +4,22 @@ use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
 use nonius_model::design::Design;
+use nonius_model::reference::Sensor;
 
 use super::costs::Costs;
 use super::limit;
 use super::method::{Method, Said};
-use super::scenario::{SAMPLES, SENSOR, Scenario, samples};
+use super::scenario::{SAMPLES, Scenario, samples};
 
 /// Miscalibration of Θ at sample k, radians: (rms, largest), the constant part removed.
-fn miscalibration(scenario: Scenario, k: u32, said: &Said) -> (f64, f64) {
+fn miscalibration(scenario: Scenario, sensor: &Sensor, k: u32, said: &Said) -> (f64, f64) {
     const POINTS: u32 = 90;
     let errors: Vec<f64> = (0..POINTS)
         .map(|i| {
             let alpha = TAU * f64::from(i) / f64::from(POINTS);
             let [c, s] = said
                 .correction
-                .corrected(&said.theta, scenario.signals(alpha, k));
+                .corrected(&said.theta, scenario.signals(sensor, alpha, k));
             wrapped(s.atan2(c) - alpha)
         })
         .collect();
@@ -49,14 +50,12 @@ struct Outcome {
 }
 
 fn run(scenario: Scenario, method: &mut Method) -> Outcome {
-    let calibrates_phase = method
-        .design()
-        .is_none_or(|d| d.structure.calibration.has_phase());
+    let sensor = method.sensor();
     let mut furthest = 0.0f64;
     let (mut square, mut counted) = (0.0, 0.0);
     let mut course: Vec<(f64, f64)> = Vec::new();
     let mut last = None;
-    for (sample, k) in samples(scenario).zip(0..SAMPLES) {
+    for (sample, k) in samples(scenario, &sensor).zip(0..SAMPLES) {
         let said = method.step(sample.y);
         if k >= SAMPLES / 10 * 9 {
             let error = wrapped(said.alpha_hat - sample.alpha);
@@ -65,7 +64,7 @@ fn run(scenario: Scenario, method: &mut Method) -> Outcome {
             counted += 1.0;
         }
         if k % 60 == 0 {
-            let rms = miscalibration(scenario, k, &said).0;
+            let rms = miscalibration(scenario, &sensor, k, &said).0;
             course.push((sample.alpha / TAU, rms));
         }
         last = Some(said);
@@ -83,12 +82,10 @@ fn run(scenario: Scenario, method: &mut Method) -> Outcome {
         (Some(i), Some(first)) if i < course.len() / 2 => i.max(first),
         (_, first) => first.unwrap_or(0),
     };
-    let (rms, largest) = miscalibration(scenario, SAMPLES, &said);
+    let (rms, largest) = miscalibration(scenario, &sensor, SAMPLES, &said);
     let reachable = !matches!(scenario, Scenario::ThirdHarmonic | Scenario::Drift);
-    let own = said.correction.of(&SENSOR).filter(|_| reachable);
-    let parameter = own
-        .filter(|_| calibrates_phase)
-        .map(|own| (said.theta - own).amax());
+    let calibrates = reachable && !method.is_baseline();
+    let parameter = calibrates.then(|| (said.theta - said.correction.of(&sensor)).amax());
     Outcome {
         parameter,
         rms,

@@ -371,6 +371,7 @@ pub(super) fn constants(
         lock_restart: whole(full / 2),
         loop_gear_last: whole(acquisition.gears.into()),
         small_error: Constant::rounded(spec.small_error(), f.min(8)),
+        far_error: Constant::rounded(spec.far_error(), f.min(8)),
         travel_samples_last: whole(travel_samples(spec).into()),
         gamma_gear_settled: whole(Calibration::SETTLED.into()),
         gamma_gear_last: whole(structure.calibration.gears().into()),

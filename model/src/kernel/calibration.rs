@@ -6,7 +6,7 @@
 use super::gradient::{self, Bent, Seen};
 use super::sensitivity::Sensitivity;
 use super::step::{Equaliser, Mover};
-use super::{Coefficients, State, Structure, gather, gears, start, waits};
+use super::{Coefficients, State, Structure, gather, gears, start};
 use crate::signal::{Formula, Logic, Signal, Wide};
 use crate::spec::CalibrationMethod;
 
@@ -60,10 +60,11 @@ pub struct Update<S: Signal> {
     pub w_null: S,
 }
 
-/// The parameter accumulators after this sample, all but θ9. `PLAIN` as [`Structure::is_plain`].
+/// The parameter accumulators after this sample, all but θ9; the search goes on from those that it has `searched`. `PLAIN` as [`Structure::is_plain`].
 #[inline(always)]
 pub fn update<S: Signal, const PLAIN: bool>(
     seen: &Seen<S>,
+    searched: [S; 9],
     gate: Gate<S>,
     state: &State<S>,
     k: &Coefficients<S>,
@@ -78,7 +79,7 @@ pub fn update<S: Signal, const PLAIN: bool>(
     };
     seen.rho.begin(formula);
     let mut this = Update {
-        theta: waits::searched(state, structure),
+        theta: searched,
         sensitivities: [Sensitivity {
             gradient: k.zero,
             rate: k.zero,
@@ -171,7 +172,7 @@ pub fn update<S: Signal, const PLAIN: bool>(
         None if method == CalibrationMethod::Batch => period_ends().named("batch_due"),
         None => gate.fresh,
     };
-    let nominal = gears::nominal(state, k);
+    let nominal = gears::nominal(state, k, structure);
     let mover = Mover {
         due,
         start: starting.zip(solved),

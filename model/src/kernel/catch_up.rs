@@ -2,12 +2,15 @@
 //!
 //! Once γ has settled, a phase error larger than a calibrated sensor leaves in lock is motion. Such a sample counts for nothing: it
 //! teaches nothing, and its residual (which holds e²/2 and more of the lag) neither holds nor recalls a parameter. It leaves a hole in its
-//! period of travel. The bends' own parameters are pulled far by the rest of that period, so in the final form with them it is dropped
-//! where it ends: the search goes back to what is applied.
+//! period of travel. What the rest of that period teaches pulls to one side, so where the search waits for the end of a period this one is
+//! dropped there: the search goes back to what is applied.
+//!
+//! Before γ has settled, but not before the search has begun, one that is twice as large teaches nothing either: it is a channel that is
+//! lost, whose residual is small at first where the signal passes zero. The residual counts: it holds the parameters where it is large.
 //!
 //! An axis catches up sooner or later. Where two periods of travel one after the other both have such a sample, it is something
 //! else: a sensor that is worse than promised, or places of the period that do not show what is wrong. Then all samples count again, until a
-//! period has none.
+//! period has none, and the completion learns from phase errors of twice that, too: third harmonics that the radius has doubled.
 
 use super::calibration::Gate;
 use super::detector::within;
@@ -16,7 +19,8 @@ use crate::signal::{Formula, Logic, Signal};
 
 static CATCHES_UP: Formula = Formula {
     title: "The loop catches up",
-    equation: "once gamma has settled, a sample with a large |e| does not count, unless two periods of travel had one",
+    equation: "once gamma has settled, a sample with a large |e| does not count, from the first quiet period on one with a larger |e| \
+               teaches nothing, unless two periods of travel had one",
     source: "",
 };
 
@@ -29,12 +33,14 @@ static DROPPED: Formula = Formula {
 /// What a sample says about the loop.
 #[derive(Clone, Copy, Debug)]
 pub struct CatchUp<S: Signal> {
-    /// |e| is no larger than a calibrated sensor leaves.
-    pub small: S::Bool,
+    /// |e| is no larger than a calibrated sensor leaves, or where that is known to be another one, than twice as much.
+    pub of_sensor: S::Bool,
     /// It is far behind.
     large: S::Bool,
     /// It catches up: the sample does not count.
     pub now: S::Bool,
+    /// It does not, and is not far behind either.
+    pub teaches: S::Bool,
 }
 
 /// Whether the loop catches up with motion in this sample; `None` where that is never known: before γ can settle, and with a loop of
@@ -42,6 +48,7 @@ pub struct CatchUp<S: Signal> {
 #[inline(always)]
 pub fn catch_up<S: Signal>(
     e: S,
+    starting: Option<S::Bool>,
     state: &State<S>,
     k: &Coefficients<S>,
     structure: &Structure,
@@ -52,35 +59,58 @@ pub fn catch_up<S: Signal>(
     e.begin(&CATCHES_UP);
     let small = within(e, k.small_error).named("e_small");
     let settled = gears::settled(state, k, structure);
-    let large = settled.and(small.not()).named("far_behind");
-    let now = large.and(state.astray_long.not()).named("catches_up");
-    Some(CatchUp { small, large, now })
+    let behind = settled.and(small.not()).named("behind");
+    // What is not calibrated yet leaves more.
+    let near = within(e, k.far_error).named("e_near");
+    let large = if structure.calibration.guards_early() {
+        let begun = gears::begun(state, k);
+        // A start needs all of its periods.
+        let searching = starting.map_or(begun, |starting| {
+            begun.and(starting.not()).named("searching")
+        });
+        let far = near.not().and(searching).named("far_behind");
+        far.or(behind).named("behind_or_far")
+    } else {
+        behind
+    };
+    let open = state.astray_long.not();
+    let bent = near.and(state.astray_long).named("e_of_bends");
+    Some(CatchUp {
+        of_sensor: small.or(bent).named("e_of_sensor"),
+        large,
+        now: behind.and(open).named("catches_up"),
+        teaches: large.and(open).not().named("teaches"),
+    })
+}
+
+/// What the search goes on from: what it has found, or where a period is `dropped` what is applied. θ9 has its own end of one.
+#[inline(always)]
+pub fn searched<S: Signal>(
+    dropped: Option<S::Bool>,
+    state: &State<S>,
+    structure: &Structure,
+) -> [S; 9] {
+    let mut theta = waits::searched(state, structure);
+    let Some(dropped) = dropped else {
+        return theta;
+    };
+    for (theta, applied) in theta.iter_mut().zip(waits::applied(state)).take(8) {
+        *theta = S::select(dropped, applied, *theta);
+    }
+    theta
 }
 
 impl<S: Signal> CatchUp<S> {
-    /// What the search has `found`, or where a period ends in which the loop caught up what is applied: with bends, where the search
-    /// waits for the end of a period. θ9 has its own end of one.
+    /// Whether a period ends (`clear`) in which the loop caught up; `None` where the search does not wait for the end of one.
     #[inline(always)]
-    pub fn dropped(
-        self,
-        found: [S; 9],
-        gate: Gate<S>,
-        state: &State<S>,
-        structure: &Structure,
-    ) -> [S; 9] {
-        let calibration = &structure.calibration;
-        if !(calibration.has_bend() && calibration.waits()) {
-            return found;
+    pub fn drops(self, clear: S::Bool, state: &State<S>, structure: &Structure) -> Option<S::Bool> {
+        if !structure.calibration.waits() {
+            return None;
         }
-        found[0].begin(&DROPPED);
+        state.gamma_gear.begin(&DROPPED);
         let astray = state.astray.and(state.astray_long.not());
         let hole = astray.or(self.now).named("period_has_hole");
-        let dropped = gate.clear.and(hole).named("period_dropped");
-        let mut theta = found;
-        for (theta, applied) in theta.iter_mut().zip(waits::applied(state)).take(8) {
-            *theta = S::select(dropped, applied, *theta);
-        }
-        theta
+        Some(clear.and(hole).named("period_dropped"))
     }
 
     /// Whether the running period has had such a sample, the last one, and both of the two before that or more: the registers after

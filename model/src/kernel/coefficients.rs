@@ -138,6 +138,8 @@ coefficients! {
     loop_gear_last,
     /// |e|, radians, from which the loop is catching up with motion, and |ρ| from which the completion rests.
     small_error,
+    /// |e|, radians, that no sensor leaves whose search has begun, and no bends that calibration is to find.
+    far_error,
     /// A period of travel that takes so many samples is too slow for the completion.
     travel_samples_last,
     /// From this γ gear on γ has settled.

@@ -106,7 +106,7 @@ fn follows<S: Signal>(
     let round = open.and(small).named("completion_open");
     // Where the loop catches up with motion, e is no error of the sensor. A loop of type 1 always lags.
     let calm = match catch_up {
-        Some(catch_up) => catch_up.small,
+        Some(catch_up) => catch_up.of_sensor,
         None if structure.filter_type == 1 => return round,
         None => within(e, k.small_error).named("e_small"),
     };

@@ -6,8 +6,8 @@
 //! quiet a large one does the same, and after a sample out of the lock window they are held until the lock level is full again. Where it has been large for [`HELD`](crate::spec::Calibration::HELD) periods, or
 //! where better parameters are known for [`hold_periods`](crate::spec::Calibration::hold_periods) more than not, and lock was not lost,
 //! the signal has changed, and the search begins again; at once where it has followed a signal that faded, and the radius is far too
-//! large now: the signal is back. A signal that is lost in the first gear leaves parameters of which nothing is known: they begin again
-//! from their nominal values, or with recall from the best that is known.
+//! large now: the signal is back. A signal that is lost before the search has begun leaves parameters of which nothing is known: they begin
+//! again from their nominal values, or with recall from the best that is known. After that they stay, and the first gear goes on.
 
 use super::calibration::Gate;
 use super::detector::within;
@@ -99,10 +99,11 @@ pub fn hold<S: Signal>(
         disturbed
     };
     let suspect = disturbed.or(follows.not());
-    // Until a first period has passed without a large residual they are free: what follows badly finds back so.
-    let begun = state.gear_periods.less_than(k.one).not();
-    let later = first_gear(state, k).not().or(begun).named("search_begun");
-    let held = suspect.named("hold_cause").and(later).named("hold");
+    // What follows badly finds back while they are free.
+    let held = suspect
+        .named("hold_cause")
+        .and(begun(state, k))
+        .named("hold");
     // γ is in its last gear then: where it leaves it nothing is known, or the signal may be fading.
     let recall = structure.calibration.recalls().then(|| {
         let proven = proven(state);
@@ -160,11 +161,26 @@ fn calm<S: Signal>(state: &State<S>, k: &Coefficients<S>, structure: &Structure)
     }
 }
 
-/// The signal is lost in the first gear: the parameters are nominal, or recalled.
+/// The signal is lost before the search has begun: nothing is known, and the parameters are nominal. With recall what is proven is
+/// better in all of the first gear: it may have followed a fade.
 #[inline(always)]
-pub fn nominal<S: Signal>(state: &State<S>, k: &Coefficients<S>) -> S::Bool {
+pub fn nominal<S: Signal>(state: &State<S>, k: &Coefficients<S>, structure: &Structure) -> S::Bool {
     let lost = state.signal_lost.and(state.locked.not());
-    first_gear(state, k).and(lost).named("nominal")
+    let lost = first_gear(state, k).and(lost).named("lost_in_first_gear");
+    let unknown = begun(state, k).not();
+    let unknown = if structure.calibration.recalls() {
+        unknown.or(state.known).named("proven_or_unknown")
+    } else {
+        unknown
+    };
+    lost.and(unknown).named("nominal")
+}
+
+/// A period of travel has passed without a large residual since γ was as large as it begins. The first gear counts it also without lock.
+#[inline(always)]
+pub fn begun<S: Signal>(state: &State<S>, k: &Coefficients<S>) -> S::Bool {
+    let any = state.gear_periods.less_than(k.one).not();
+    first_gear(state, k).not().or(any).named("search_begun")
 }
 
 /// γ is as large as it begins.
@@ -229,6 +245,16 @@ pub fn restart<S: Signal>(
     structure: &Structure,
 ) -> S::Bool {
     let early = calm(state, k, structure).not();
+    let early = if structure.calibration.guards_early() {
+        // A signal that is lost where a period ends disturbs one.
+        let again = begun(state, k)
+            .not()
+            .or(state.held)
+            .named("disturbed_again");
+        early.and(again).named("search_fails")
+    } else {
+        early
+    };
     let cause = early.or(long(state, k, structure));
     let cause = if structure.calibration.recalls() {
         cause.or(state.risen.and(state.fading).named("rises_again"))
@@ -274,15 +300,19 @@ pub fn gears<S: Signal>(
     let gear = (state.gamma_gear + up)
         .quantise(&structure.formats.gamma_gear)
         .named("gamma_gear_counted");
-    let one_more = S::select(tick, k.one, k.zero).named("gear_periods_up");
+    let quiet_ends = tick.and(quiet).named("quiet_period_ends");
+    let one_more = S::select(quiet_ends, k.one, k.zero).named("gear_periods_up");
     let counted = (state.gear_periods + one_more).quantise(&structure.formats.gear_periods);
-    let count_ends = done.or(quiet.not()).named("periods_count_ends");
-    let again = tick.and(count_ends).named("periods_end").or(restart);
-    // Periods before a loss of lock were not quiet.
-    let again = hold
+    // Periods before one that was not quiet, or before a loss of lock, were not quiet. In the first gear they say that there is
+    // something to keep.
+    let breaks = tick.and(quiet.not()).named("disturbed_period_ends");
+    let breaks = hold
         .recall
-        .map_or(again, |_| again.or(counting.not()))
-        .named("gear_periods_again");
+        .map_or(breaks, |_| breaks.or(counting.not()))
+        .named("quiet_breaks_off")
+        .and(first_gear(state, k).not())
+        .named("gear_breaks_off");
+    let again = passed.or(restart).or(breaks).named("gear_periods_again");
     let held_periods = held_periods((gate, quiet), restart, counting, state, k, structure);
     let within = tick.not().and(counting).named("within_period");
     let smooth = passed.and(state.rough.not()).named("gear_ends_calm");

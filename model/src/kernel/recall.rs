@@ -10,8 +10,8 @@
 //! gains move on is not what it was, either: then only a radius that is too large, as where a fade is over, or a loss of lock after four
 //! periods and more with one that is too small, as where it ends, brings back what is proven, and what falls out for some samples does
 //! not. Where the radius is far too large before that, the signal is back: what is proven comes back, with the last gear. So it does
-//! where the signal is lost in the first gear, with which nothing else is known; before anything is proven that is what the last gear
-//! ended with, in the first one the last quiet period, and the search goes on from there.
+//! where the signal is lost in the first gear: it may have followed the fade. Before anything is proven, and before the search has begun
+//! again, that is what the last gear ended with, in the first one the last quiet period, and the search goes on from there.
 
 use super::calibration::Update;
 use super::detector::within;
@@ -61,7 +61,7 @@ pub fn recall<S: Signal>(
     // The signal is back that the search had followed down, or it is lost before the search knew it again.
     let risen = gears.restart.and(state.risen).named("restart_risen");
     let back = risen.and(state.fading);
-    let lost = nominal(state, k);
+    let lost = nominal(state, k, structure);
     let again = back.or(lost).and(state.known).named("recall_again");
     let all = recall.or(again).or(lost).named("recall_any");
     if !all.is_known_false() {

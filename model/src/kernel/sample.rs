@@ -105,7 +105,7 @@ fn advance_of<S: Signal, const PLAIN: bool>(
     let measure = starting.map(|running| start::measure(e, running, k));
     let waits = waits::Waits::of(state, k, structure);
     let travel = travel::travel(counting, (measure, waits), state, k, structure);
-    let catch_up = catch_up::catch_up(e, state, k, structure);
+    let catch_up = catch_up::catch_up(e, starting, state, k, structure);
     let follows = catch_up.map_or(in_window, |catch_up| {
         in_window.and(catch_up.now.not()).named("loop_follows")
     });
@@ -120,7 +120,14 @@ fn advance_of<S: Signal, const PLAIN: bool>(
         k,
         structure,
     );
-    let fresh = counted.and(hold.held.not());
+    let free = counted.and(hold.held.not());
+    let taught = catch_up.map_or(free, |catch_up| {
+        free.named("counted_and_free").and(catch_up.teaches)
+    });
+    let dropped = catch_up.and_then(|catch_up| catch_up.drops(travel.clear, state, structure));
+    let fresh = dropped.map_or(taught, |dropped| {
+        taught.named("sample_teaches").and(dropped.not())
+    });
     let estimate = (cos_hat, sin_hat);
     let mut polar = None;
     // What the gradient is made of: the residual, and the pair or its estimate.
@@ -155,10 +162,8 @@ fn advance_of<S: Signal, const PLAIN: bool>(
         whole_period: travel.whole_period,
         clear: travel.clear,
     };
-    let mut updated = calibration::update::<S, PLAIN>(&seen, gate, state, k, structure);
-    if let (false, Some(catch_up)) = (PLAIN, catch_up) {
-        updated.theta = catch_up.dropped(updated.theta, gate, state, structure);
-    }
+    let searched = catch_up::searched(dropped, state, structure);
+    let mut updated = calibration::update::<S, PLAIN>(&seen, searched, gate, state, k, structure);
     let completion = if PLAIN {
         None
     } else {
@@ -178,7 +183,7 @@ fn advance_of<S: Signal, const PLAIN: bool>(
         )
     });
     if let Some(completed) = &completed {
-        let (old, nominal) = (state.theta_9_deviation, gears::nominal(state, k));
+        let (old, nominal) = (state.theta_9_deviation, gears::nominal(state, k, structure));
         updated.theta[8] = step::moved(old, completed.step, 8, nominal, k, structure);
     }
     let mut gears = gears::gears(hold, gate, (counting, starting), state, k, structure);

@@ -9,7 +9,7 @@
 //! its place at most. Where all of a period moves the parameters at its end, a vibration moves nothing, and every sector counts.
 
 use super::waits::Waits;
-use super::{Coefficients, Input, State, Structure};
+use super::{Coefficients, Input, State, Structure, gears};
 use crate::format::{Format, Quantiser};
 use crate::signal::{Formula, Logic, Signal};
 
@@ -129,10 +129,17 @@ pub fn travel<S: Signal>(
         ["used_behind_counts", "may_add_behind", "sector_behind"],
     );
     let clear = whole_period.or(counting.not()).named("travel_clear");
+    // Once γ has settled what was near when counting stopped counts as used, too: an axis that rests where lock comes back teaches nothing.
+    let stops = match waits {
+        Waits::Never => Some(counting.not().and(gears::settled(state, k, structure))),
+        _ => None,
+    };
+    let stops = stops.map(|stops| stops.named("stops_near"));
     // A side was used where a period on it ends, until a sector there is used or another period ends.
     let used = |ends: S::Bool, before: S::Bool, again: S::Bool, name: [&'static str; 2]| {
         let still = before.and(whole_period.or(again).not()).named(name[0]);
-        counting.and(ends.or(still).named(name[1]))
+        let used = counting.and(ends.or(still).named(name[1]));
+        stops.map_or(used, |stops| used.or(stops))
     };
     let keep = |x: S| x.quantise(&Quantiser::wrapping(SECTOR));
     Travel {

@@ -178,6 +178,11 @@ impl Reference {
         self.go_on(&seen, steps, complete, Theta::zeros())
     }
 
+    /// What the search has found since the last period of travel ended is forgotten.
+    pub fn drop_period(&mut self) {
+        self.pending = Theta::zeros();
+    }
+
     /// What is known of the next sample before it comes: e and ρ are not, and are 0.
     #[must_use]
     pub fn expected(&self) -> Estimate {
@@ -315,7 +320,7 @@ impl Reference {
         let mut seen = self.behind.step(far, self.gate.cleared(), locked);
         seen.ends_so &= by.drops;
         if seen.ends_so {
-            self.pending = Theta::zeros();
+            self.drop_period();
         }
         seen
     }

@@ -107,6 +107,12 @@ impl Spec {
         least.log2().ceil().exp2()
     }
 
+    /// |e|, radians, that no sensor leaves whose search has begun: twice as much.
+    #[must_use]
+    pub fn far_error(&self) -> f64 {
+        2.0 * self.small_error()
+    }
+
     /// A gain that moves by more within twice [`gear_periods`](Calibration::gear_periods) is of a signal that fades: a part of the
     /// amplitude, or six times a gain's noise.
     #[must_use]
@@ -164,6 +170,14 @@ impl Calibration {
             CalibrationMethod::Final | CalibrationMethod::Exact
         );
         self.is_on() && by_samples && self.settles()
+    }
+
+    /// From the first quiet period on, a residual or a phase error that is far too large is a signal that goes, not a search on its way.
+    /// Batches leave out a period with one anyway, and bends by sums of squares swing so far.
+    #[must_use]
+    pub fn guards_early(&self) -> bool {
+        let swings = self.squares() && self.has_bend();
+        self.is_on() && self.settles() && !self.is_batch() && !swings
     }
 
     /// The step of the phase becomes smaller once γ has settled ([`Self::PHASE_HALVINGS`]): until then it is twice as fast as what it

@@ -246,7 +246,18 @@ pub(crate) fn compare(
         let due = !spec.calibration.waits() || before.gamma_gear < 4.0 || whole_period && fresh;
         let y = codes.map(|code| code as f64 / half * unit);
         let fresh = fresh && spec.calibration.is_on();
-        let seen = paper.step_with(y, (fresh.then_some(&gamma), due), false);
+        // Where a period ends in which the loop caught up it is dropped, its last sample, too.
+        let caught_up = before.astray || before.gamma_gear >= 4.0 && e.abs() >= spec.small_error();
+        let dropped = whole_period
+            && caught_up
+            && !before.astray_long
+            && design.structure.catches_up()
+            && spec.calibration.waits();
+        let teaches = fresh && !dropped;
+        let seen = paper.step_with(y, (teaches.then_some(&gamma), due && !dropped), false);
+        if dropped {
+            paper.drop_period();
+        }
 
         let angle = wrapped(chip.position() - paper.tracking().alpha_hat() / TAU);
         let ts = paper.tracking().config.ts;
