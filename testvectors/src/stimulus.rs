@@ -128,13 +128,13 @@ pub fn named(design: &Design, rows: usize) -> Vec<Stimulus> {
             let t = k as f64 / n - 0.5;
             pair(0.3 + 4.0 * dead * n * t * t, 1.0, 0.0)
         }),
-        // The signal grows before gamma has settled, goes while the search has begun again and once more in its first gear, and falls a
-        // little later; it goes, comes back small, and grows.
+        // The signal grows before gamma has settled, goes before the search has begun again and once more after its first period, and falls
+        // a little later; it goes, comes back small, and grows.
         motion("loss", &|k| {
             let gain = match k as f64 / n {
                 t if t < 0.2 => 0.72,
                 t if t > 0.235 && t < 0.25 => 0.0,
-                t if t > 0.37 && t < 0.385 => 0.0,
+                t if t > 0.45 && t < 0.465 => 0.0,
                 t if t > 0.60 && t < 0.64 => 1.0 - 2.5 * (t - 0.60),
                 t if t < 0.66 => 1.0,
                 t if t < 0.72 => 0.0,

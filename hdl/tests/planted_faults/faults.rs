@@ -251,8 +251,50 @@ pub(crate) fn faults() -> Vec<Fault> {
         ),
         swap(
             "quiet periods counted from before the loss",
-            &["wire gear_periods_again ="],
+            &["wire quiet_breaks_off ="],
             " | not_counting",
+            "",
+        ),
+        swap(
+            "quiet periods forgotten in the first gear",
+            &["wire gear_breaks_off ="],
+            " & not_gamma_gear_below_one",
+            "",
+        ),
+        swap(
+            "a disturbed period counts as quiet",
+            &["wire quiet_period_ends"],
+            " & quiet",
+            "",
+        ),
+        swap(
+            "the search fails with the first disturbed period",
+            &["wire disturbed_again ="],
+            "~search_begun_now | held",
+            "1'b1",
+        ),
+        swap(
+            "nothing is known in the first gear",
+            &["wire proven_or_unknown ="],
+            "~search_begun_now | known",
+            "1'b1",
+        ),
+        swap(
+            "a phase error that is far too large teaches",
+            &["wire far_behind ="],
+            "~e_near & search_begun",
+            "1'b0",
+        ),
+        swap(
+            "a phase error that is far too large never teaches",
+            &["wire teaches_now ="],
+            " & not_astray_long",
+            "",
+        ),
+        swap(
+            "a period is kept in which the loop caught up",
+            &["wire fresh_now ="],
+            " & not_period_dropped",
             "",
         ),
         swap(
