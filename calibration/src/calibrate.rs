@@ -121,8 +121,8 @@ pub fn calibrate(
         cannot_tell.extend(words::of_ratio(&fit));
     }
     cannot_tell.extend(words::of_residuals(method, &fit, own_residual));
-    cannot_tell.extend(words::of_places(nothing::places_of(angles), c.len()));
-    if own_residual > words::ROUNDING {
+    cannot_tell.extend(nothing::narrow_places_of(angles).and_then(words::of_places));
+    if own_residual > words::ROUNDING && !(fit.ratio_extreme || fit.ratio_assumed) {
         let steps = [c, s].map(samples::code_step);
         cannot_tell.extend(words::of_rounding(fit.noise, steps));
     }

@@ -31,17 +31,32 @@ fn places(centred: &[nalgebra::Vector2<f64>]) -> usize {
 }
 
 /// Clusters of angles, in turns, that are a gap of 20° and more apart.
-pub(crate) fn places_of(mut angles: Vec<f64>) -> usize {
+pub(crate) fn places_of(angles: Vec<f64>) -> usize {
+    gaps(angles).len().max(1)
+}
+
+/// The same where the angles are so many, or the clusters so narrow, that it is no chance.
+pub(crate) fn narrow_places_of(angles: Vec<f64>) -> Option<usize> {
+    /// Angles of which hardly any place of the period would be left out.
+    const MANY: usize = 128;
+    /// Angles of each place, and share of the period that all places fill, of fewer.
+    const EACH: usize = 8;
+    const NARROW: f64 = 0.1;
+    let samples = angles.len();
+    let gaps = gaps(angles);
+    let filled = 1.0 - gaps.iter().sum::<f64>();
+    let narrow = filled < NARROW && samples >= EACH * gaps.len();
+    (samples >= MANY || narrow).then_some(gaps.len().max(1))
+}
+
+/// Gaps of 20° and more between neighbouring angles, in turns.
+fn gaps(mut angles: Vec<f64>) -> Vec<f64> {
     /// Turns.
     const GAP: f64 = 20.0 / 360.0;
     angles.sort_by(f64::total_cmp);
     let around = angles.first().zip(angles.last()).map(|(a, b)| a + 1.0 - b);
     let between = angles.windows(2).map(|pair| pair[1] - pair[0]);
-    between
-        .chain(around)
-        .filter(|gap| *gap > GAP)
-        .count()
-        .max(1)
+    between.chain(around).filter(|gap| *gap > GAP).collect()
 }
 
 /// Where the samples draw no ellipse at all.
@@ -59,8 +74,8 @@ pub(crate) fn of_nothing(cos: &[f64], sin: &[f64], why: &Error) -> String {
         ),
         Error::NoEllipse if places > 2 => (
             format!(
-                "the samples stand at {places} places of the period only, which is too few: the speed was exactly {places} \
-                 samples a period"
+                "the samples stand at {places} places of the period only, which is too few: the speed was such that {places} samples \
+                 make whole periods, or the axis stood there"
             ),
             "record at another speed",
         ),

@@ -92,18 +92,23 @@ pub(crate) fn gap(ellipse: &Ellipse, cos: &[f64], sin: &[f64]) -> f64 {
 pub(crate) fn code_step(values: &[f64]) -> Option<f64> {
     /// Values of each code.
     const ALIKE: usize = 2;
+    /// Share of the range below which values differ by rounding alone.
+    const SAME: f64 = 1e-9;
+    /// Steps that are still told from rounded decimals.
+    const TOLD: f64 = 8.0;
     let mut codes = values.to_vec();
     codes.sort_unstable_by(f64::total_cmp);
-    codes.dedup();
+    let range = codes.last()? - codes.first()?;
+    codes.dedup_by(|b, a| *b - *a < SAME * range);
     if codes.len() < 3 || ALIKE * codes.len() > values.len() {
         return None;
     }
     let gaps = || codes.windows(2).map(|pair| pair[1] - pair[0]);
     let step = gaps().fold(f64::INFINITY, f64::min);
-    // Decimals round the codes.
-    let on_grid =
-        |gap: f64| (gap / step - (gap / step).round()).abs() < 0.05 * (gap / step).max(1.0);
-    gaps().all(on_grid).then_some(step)
+    let steps = || gaps().map(|gap| gap / step).filter(|steps| *steps < TOLD);
+    steps()
+        .all(|steps| (steps - steps.round()).abs() < 0.05 * steps)
+        .then_some(step)
 }
 
 #[cfg(test)]

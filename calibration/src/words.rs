@@ -123,14 +123,12 @@ pub(crate) fn of_arc(
 
 /// Of samples that stand at a few places of the period only. Five places lie on an ellipse whatever the signals are, and at eight a third
 /// harmonic and the noise of one channel look alike.
-pub(crate) fn of_places(places: usize, samples: usize) -> Option<String> {
-    /// Samples at each place, from which on it is no chance.
-    const EACH: usize = 8;
-    ((3..=8).contains(&places) && samples >= EACH * places).then(|| {
+pub(crate) fn of_places(places: usize) -> Option<String> {
+    (3..=8).contains(&places).then(|| {
         format!(
-            "the samples stand at {places} places of the period only (the speed was exactly {places} samples a period): whether the \
-             signals are an ellipse and how much noise each channel has cannot be told from so few, and a distortion is in the \
-             parameters; record at another speed"
+            "the samples stand at {places} places of the period only ({places} samples made whole periods, or the axis stood there): \
+             whether the signals are an ellipse and how much noise each channel has cannot be told from so few, and a distortion is \
+             in the parameters; record at another speed"
         )
     })
 }

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use nonius_calibration::{Calibration, Method, Options, calibrate};
-use rand::{SeedableRng, rngs::StdRng};
+use rand::{Rng, SeedableRng, rngs::StdRng};
 use rand_distr::{Distribution, StandardNormal};
 
 const SAMPLES: u32 = 4000;
@@ -47,6 +47,26 @@ fn a_few_places_of_the_period_are_named() {
             "{per_period}: {:?}",
             found.cannot_tell
         );
+    }
+}
+
+/// A short recording at any places leaves gaps, too.
+#[test]
+fn gaps_between_few_samples_are_no_places() {
+    let mut random = StdRng::seed_from_u64(3);
+    for samples in [32, 40, 48, 64, 100, 200] {
+        for _ in 0..200 {
+            let one = |random: &mut StdRng| {
+                let alpha = random.random_range(0.0..TAU);
+                let mut noise = || -> f64 { StandardNormal.sample(random) };
+                (alpha.cos() + 1e-3 * noise(), alpha.sin() + 1e-3 * noise())
+            };
+            let (cos, sin): (Vec<f64>, Vec<f64>) = (0..samples).map(|_| one(&mut random)).unzip();
+            let Ok(found) = calibrate(&cos, &sin, Method::Unbiased, &Options::default()) else {
+                continue;
+            };
+            assert!(!says(&found, "places of the period"), "{samples}");
+        }
     }
 }
 
