@@ -269,7 +269,8 @@ fn the_travel_gates_decide_alike() {
     };
     let mut gate = GateState::new(Gate::Travelled(always));
     let mut catching_up = Behind::default();
-    let (mut counted, mut fresh, mut behind, mut long) = (0, 0, 0, 0);
+    let (mut counted, mut fresh) = (0, 0);
+    let (mut behind, mut long, mut dropped) = (0, 0, 0);
     for k in 0..80_000 {
         let t = f64::from(k);
         let turns = 3.0 * (t / 3000.0).sin() + 0.9 * (t / 411.0).sin() + 0.2 * (t / 67.0).sin();
@@ -289,6 +290,7 @@ fn the_travel_gates_decide_alike() {
             let far = chip_waits && probes.e.to_f64().abs() >= spec.small_error();
             let seen = catching_up.step(far, gate.cleared(), true);
             behind += u32::from(expected && seen.catches_up);
+            dropped += u32::from(expected && !seen.catches_up && seen.ends_so);
             long += u32::from(far && !seen.catches_up);
             let expected = expected && !seen.catches_up && !seen.ends_so;
             assert_eq!(probes.fresh, expected, "sample {k}");
@@ -299,7 +301,7 @@ fn the_travel_gates_decide_alike() {
     println!("{fresh} of {counted} samples were in a fresh sector");
     assert!(counted > 75_000 && fresh > 1000);
     assert!(
-        behind > 10 && long > 10,
-        "{behind} caught up, {long} counted all the same"
+        behind > 10 && long > 10 && dropped > 0,
+        "{behind} caught up, {long} counted all the same, {dropped} ended a period that is dropped"
     );
 }

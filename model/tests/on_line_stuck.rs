@@ -114,7 +114,7 @@ fn worse_by(spec: &Spec) -> f64 {
     let calibration = &spec.calibration;
     match calibration.method {
         // Bends by the sum of squares are not guarded: what they learn on their way cannot be told from a loss.
-        CalibrationMethod::SumOfSquares if calibration.has_bend() => 0.2,
+        CalibrationMethod::SumOfSquares if calibration.has_bend() => 0.17,
         // A part of a period says little of bends, and what is remembered goes on acting.
         _ if calibration.has_bend() && !calibration.starts() => 0.1,
         CalibrationMethod::SumOfSquares | CalibrationMethod::Exact => 0.07,
@@ -123,7 +123,7 @@ fn worse_by(spec: &Spec) -> f64 {
 }
 
 /// Once a period of travel has passed in which no residual was large, a loss leaves what was known: the parameters are hardly worse
-/// than they would be without it. Once a gear has ended calm, a loss of any length moves next to nothing.
+/// than they would be at their worst in the four periods after it without it. Once a gear has ended calm, a loss of any length moves next to nothing.
 #[test]
 fn a_loss_soon_after_lock() {
     const PLACES: u32 = 8;
@@ -183,6 +183,7 @@ fn a_loss_soon_after_lock() {
             let set = spec.calibration.parameters;
             println!("{what}, {set}: {worst:.3?}, {beyond:.3} beyond what it is without");
             assert!(beyond < worse_by(spec), "{what}, {set}: {beyond} beyond");
+            assert!(worst[0] < 0.5, "{what}, {set}: {worst:?}");
             assert!(looked[0] >= 8 && looked[1] >= 8 * 8, "{what}: {looked:?}");
             assert!(
                 worst[1] < 0.015,

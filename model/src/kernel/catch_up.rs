@@ -35,11 +35,11 @@ static DROPPED: Formula = Formula {
 pub struct CatchUp<S: Signal> {
     /// |e| is no larger than a calibrated sensor leaves, or where that is known to be another one, than twice as much.
     pub of_sensor: S::Bool,
-    /// It is far behind.
+    /// It is behind, or before γ has settled far behind.
     large: S::Bool,
     /// It catches up: the sample does not count.
     pub now: S::Bool,
-    /// It does not, and is not far behind either.
+    /// Neither does it nor is it far behind, or both have been so for long.
     pub teaches: S::Bool,
 }
 

@@ -176,7 +176,8 @@ pub fn nominal<S: Signal>(state: &State<S>, k: &Coefficients<S>, structure: &Str
     lost.and(unknown).named("nominal")
 }
 
-/// A period of travel has passed without a large residual since γ was as large as it begins. The first gear counts it also without lock.
+/// A period of travel has passed without a large residual since γ was as large as it begins; in the first gear a loss of lock does not take
+/// that back. A search of one gear counts anew each time its periods have passed.
 #[inline(always)]
 pub fn begun<S: Signal>(state: &State<S>, k: &Coefficients<S>) -> S::Bool {
     let any = state.gear_periods.less_than(k.one).not();

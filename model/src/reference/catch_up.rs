@@ -1,4 +1,7 @@
 //! What the loop sees while it catches up with a stop or a start is no error of the sensor. The paper has nothing of the kind.
+//!
+//! The chip guards its search before γ has settled, too, and bounds the phase error that its completion learns from; this reference, which
+//! shows what the paper does, does neither.
 
 /// When the loop catches up: such a sample teaches nothing. Where two periods of travel one after the other have one, that is not what it
 /// is, and all teach until a period has none.

@@ -38,7 +38,8 @@ pub struct Calibration {
     /// Periods of travel between gears. Default: see [`gear_periods`](Self::gear_periods).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gear_periods: Option<u32>,
-    /// |ρ| above this returns to the first γ, until a gear has ended with a small residual.
+    /// |ρ| above this returns to the first γ, until a gear has ended with a small residual; where the search is
+    /// [guarded](Self::guards_early) in two periods one after the other.
     #[serde(default = "restart")]
     pub restart_residual: f64,
     /// |ρ| above this holds the parameters once a gear has ended without: the signal may be fading. See [`Spec::hold_residual`].
@@ -107,7 +108,7 @@ impl Spec {
         least.log2().ceil().exp2()
     }
 
-    /// |e|, radians, that no sensor leaves whose search has begun: twice as much.
+    /// |e|, radians, that hardly a sensor leaves whose search has begun: twice as much.
     #[must_use]
     pub fn far_error(&self) -> f64 {
         2.0 * self.small_error()
