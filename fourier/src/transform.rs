@@ -5,11 +5,12 @@ use std::cell::RefCell;
 use rustfft::FftPlanner;
 pub use rustfft::num_complex::Complex;
 
-/// Plans of more values are not kept: they take room in proportion.
+/// Of plans of more values only those of the last length are kept: they take room in proportion.
 const KEPT: usize = 1 << 16;
 
 thread_local! {
     static PLANS: RefCell<FftPlanner<f64>> = RefCell::new(FftPlanner::new());
+    static LARGE: RefCell<(usize, FftPlanner<f64>)> = RefCell::new((0, FftPlanner::new()));
 }
 
 /// X(k) = Σ x(n) exp(−2πi kn/N).
@@ -30,7 +31,12 @@ fn transform(values: &mut [Complex<f64>], plan: Plan) {
         return;
     }
     let plan = if n > KEPT {
-        plan(&mut FftPlanner::new(), n)
+        LARGE.with_borrow_mut(|(last, planner)| {
+            if *last != n {
+                (*last, *planner) = (n, FftPlanner::new());
+            }
+            plan(planner, n)
+        })
     } else {
         PLANS.with_borrow_mut(|planner| plan(planner, n))
     };

@@ -13,7 +13,7 @@ use crate::block::Block;
 use crate::cause::{Candidate, Domain, Exact, Make, Sign, each};
 use crate::context::Context;
 use crate::finding::{Chip, Parameter};
-use crate::library::{Library, Shape, Use};
+use crate::library::{Fill, Library, Shape, Use};
 use crate::lines::median;
 use crate::model::{Residual, Weighed};
 use crate::solve::{Normal, without};
@@ -153,7 +153,7 @@ pub(crate) fn without_cogging(context: &Context, mut values: Vec<f64>) -> Vec<f6
 
 /// Real motion of an order, of all that are looked at with so many periods per revolution.
 fn cogging(per: u32, order: usize, library: &mut Library) -> Candidate {
-    of_order(order, top_order(per) as f64, library)
+    of_order(order, (per, top_order(per) as f64), library)
 }
 
 /// Real motion at orders of the scale period: an error of the sensor there shows in the radius as much as along the circle, but for
@@ -167,23 +167,35 @@ pub(super) fn cogging_with_the_period(context: &Context, library: &mut Library) 
         .filter(|per| turning && *per > 1);
     let Some(per) = per else { return vec![] };
     (1..=ORDERS)
-        .map(|order| of_order(order * per as usize, ORDERS as f64, library))
+        .map(|order| of_order(order * per as usize, (per, ORDERS as f64), library))
         .collect()
 }
 
-/// Cogging of an order of the revolution.
-fn of_order(order: usize, trials: f64, library: &mut Library) -> Candidate {
+/// cos and sin of an order of the revolution with so many periods; one of the scale period is the angle's, some times over.
+fn wave_of_order(order: usize, per: usize) -> Fill {
+    Rc::new(move |block, out| {
+        let n = block.len();
+        if !order.is_multiple_of(per) {
+            for (k, phi) in block.phi.unwrap_or_default().iter().enumerate() {
+                (out[n + k], out[k]) = (order as f64 * phi).sin_cos();
+            }
+            return;
+        }
+        let (cos, sin) = out.split_at_mut(n);
+        cos.copy_from_slice(block.cos);
+        sin.copy_from_slice(block.sin);
+        for _ in 1..order / per {
+            for (k, (c, s)) in block.cos.iter().zip(block.sin).enumerate() {
+                (cos[k], sin[k]) = (cos[k] * c - sin[k] * s, sin[k] * c + cos[k] * s);
+            }
+        }
+    })
+}
+
+/// Cogging of an order of the revolution with so many periods, of so many that are looked at.
+fn of_order(order: usize, (per, trials): (u32, f64), library: &mut Library) -> Candidate {
     let make: Make = Rc::new(move |_, library| {
-        let place = library.add(
-            2,
-            Use::Motion,
-            Rc::new(move |block, out| {
-                let n = block.len();
-                for (k, phi) in block.phi.unwrap_or_default().iter().enumerate() {
-                    (out[n + k], out[k]) = (order as f64 * phi).sin_cos();
-                }
-            }),
-        );
+        let place = library.add(2, Use::Motion, wave_of_order(order, per as usize));
         [0, 1].map(|i| place.tangential(i)).into()
     });
     let order = order as u32;
