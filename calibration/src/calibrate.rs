@@ -12,7 +12,7 @@ use crate::result::{Calibration, Correlations, Parameter};
 use crate::samples::{self, Samples};
 use crate::set::Set;
 use crate::unbiased::Fit;
-use crate::{extremes, nothing, unbiased, words};
+use crate::{extremes, nothing, places, unbiased, words};
 
 /// Which error bars the samples tell.
 struct Told {
@@ -121,7 +121,7 @@ pub fn calibrate(
         cannot_tell.extend(words::of_ratio(&fit));
     }
     cannot_tell.extend(words::of_residuals(method, &fit, own_residual));
-    cannot_tell.extend(nothing::narrow_places_of(angles).and_then(words::of_places));
+    cannot_tell.extend(places::on_the_curve(angles).and_then(words::of_places));
     if own_residual > words::ROUNDING && !(fit.ratio_extreme || fit.ratio_assumed) {
         let steps = [c, s].map(samples::code_step);
         cannot_tell.extend(words::of_rounding(fit.noise, steps));

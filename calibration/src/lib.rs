@@ -13,6 +13,7 @@ pub mod gradient;
 mod method;
 mod noise;
 mod nothing;
+mod places;
 mod report;
 mod residual;
 mod result;

@@ -3,9 +3,12 @@
 //! A glitch or a row of zeros before the ADC began would bend every estimate, so samples far off the ellipse are left
 //! out, for every method alike.
 
+use std::collections::HashSet;
+
 use nonius_recording::{Ellipse, FitMethod};
 
 use crate::curve::Curve;
+use crate::places;
 
 /// Residual, in robust standard deviations, from which a sample is far off. White noise gets there once in 5·10⁸.
 const FAR: f64 = 6.0;
@@ -79,36 +82,19 @@ fn median(values: &mut [f64]) -> f64 {
 /// Largest arc, in turns, in which there is no sample, as the ellipse sees it.
 pub(crate) fn gap(ellipse: &Ellipse, cos: &[f64], sin: &[f64]) -> f64 {
     let pairs = cos.iter().zip(sin);
-    let mut turns: Vec<f64> = pairs.map(|(c, s)| ellipse.angle(*c, *s)).collect();
-    turns.sort_unstable_by(f64::total_cmp);
-    let across = match (turns.first(), turns.last()) {
-        (Some(first), Some(last)) => first + 1.0 - last,
-        _ => 1.0,
-    };
-    turns.windows(2).map(|w| w[1] - w[0]).fold(across, f64::max)
+    let turns = pairs.map(|(c, s)| ellipse.angle(*c, *s)).collect();
+    places::gaps(turns).fold(0.0, f64::max)
 }
 
 /// The step of the codes that the values are; `None` where they are none, or so fine that few values are alike.
 pub(crate) fn code_step(values: &[f64]) -> Option<f64> {
     /// Values of each code.
-    const ALIKE: usize = 2;
-    /// Share of the range below which values differ by rounding alone.
-    const SAME: f64 = 1e-9;
-    /// Steps that are still told from rounded decimals.
-    const TOLD: f64 = 8.0;
-    let mut codes = values.to_vec();
-    codes.sort_unstable_by(f64::total_cmp);
-    let range = codes.last()? - codes.first()?;
-    codes.dedup_by(|b, a| *b - *a < SAME * range);
-    if codes.len() < 3 || ALIKE * codes.len() > values.len() {
-        return None;
-    }
-    let gaps = || codes.windows(2).map(|pair| pair[1] - pair[0]);
-    let step = gaps().fold(f64::INFINITY, f64::min);
-    let steps = || gaps().map(|gap| gap / step).filter(|steps| *steps < TOLD);
-    steps()
-        .all(|steps| (steps - steps.round()).abs() < 0.05 * steps)
-        .then_some(step)
+    const ALIKE: f64 = 2.0;
+    let step = nonius_recording::code_step(values)?;
+    let first = values.first()?;
+    let codes = values.iter().map(|v| ((v - first) / step).round() as i64);
+    let codes: HashSet<i64> = codes.collect();
+    (ALIKE * codes.len() as f64 <= values.len() as f64).then_some(step)
 }
 
 #[cfg(test)]

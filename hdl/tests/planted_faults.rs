@@ -1,5 +1,6 @@
 //! A testbench that cannot fail is worthless: single faults in the Verilog, and the vectors catch each.
 
+mod corrections;
 mod edit;
 mod faults;
 mod recall;
@@ -9,8 +10,9 @@ use std::collections::HashMap;
 use std::sync::{Arc, LazyLock, Mutex};
 
 use crate::chip::{self, optical};
+use corrections::{harmonic_faults, skew_faults};
 use edit::{Fault, on_one_line};
-use faults::{dropping_faults, faults, harmonic_faults, skew_faults};
+use faults::{dropping_faults, faults};
 use nonius_hdl::verify::{Options, verify};
 use nonius_kept::{every, figure, figure_of_all};
 use nonius_model::design::Design;

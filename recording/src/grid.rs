@@ -62,6 +62,12 @@ pub(crate) fn find(sorted: &[f64], digits: Digits) -> Option<Grid> {
     decimals_alone.then(|| Grid::new(quantum, low, span))
 }
 
+/// The step of the codes that the values are, of which nobody knows how they were written; `None` where there is none to see.
+#[must_use]
+pub fn code_step(values: &[f64]) -> Option<f64> {
+    find(&distinct(values), Digits::default()).map(|grid| grid.step)
+}
+
 /// Where values lie on a grid of that step: the offset in fractions of a step, −0.5 … 0.5, and how
 /// well they agree on it, 0 … 1.
 pub(crate) fn phase(values: &[f64], step: f64, about: f64) -> (f64, f64) {

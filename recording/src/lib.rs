@@ -31,6 +31,7 @@ pub use adc::{Adc, AdcPair, AdcSource};
 pub use declared::{Metadata, Overrides};
 pub use ellipse::{Ellipse, EllipseFit, FitMethod};
 pub use error::{Error, ErrorKind, Place};
+pub use grid::code_step;
 pub use motion::Motion;
 pub use recording::{OtherColumn, Recording};
 pub use standstill::at_rest;

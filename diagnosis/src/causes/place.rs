@@ -181,14 +181,10 @@ fn wave_of_order(order: usize, per: usize) -> Fill {
             }
             return;
         }
-        let (cos, sin) = out.split_at_mut(n);
-        cos.copy_from_slice(block.cos);
-        sin.copy_from_slice(block.sin);
-        for _ in 1..order / per {
-            for (k, (c, s)) in block.cos.iter().zip(block.sin).enumerate() {
-                (cos[k], sin[k]) = (cos[k] * c - sin[k] * s, sin[k] * c + cos[k] * s);
-            }
-        }
+        let top = order / per;
+        let mut all = vec![0.0; (2 * top + 1) * n];
+        block.waves(top, None, &mut all);
+        out.copy_from_slice(&all[(2 * top - 1) * n..]);
     })
 }
 

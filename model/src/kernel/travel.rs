@@ -130,11 +130,10 @@ pub fn travel<S: Signal>(
     );
     let clear = whole_period.or(counting.not()).named("travel_clear");
     // Once γ has settled what was near when counting stopped counts as used, too: an axis that rests where lock comes back teaches nothing.
-    let stops = match waits {
-        Waits::Never => Some(counting.not().and(gears::settled(state, k, structure))),
-        _ => None,
-    };
-    let stops = stops.map(|stops| stops.named("stops_near"));
+    let stops = matches!(waits, Waits::Never).then(|| {
+        let settled = gears::settled(state, k, structure);
+        counting.not().and(settled).named("stops_near")
+    });
     // A side was used where a period on it ends, until a sector there is used or another period ends.
     let used = |ends: S::Bool, before: S::Bool, again: S::Bool, name: [&'static str; 2]| {
         let still = before.and(whole_period.or(again).not()).named(name[0]);

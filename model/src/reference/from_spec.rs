@@ -196,7 +196,6 @@ pub fn config(spec: &Spec) -> Result<Config, ReferenceError> {
         catch_up: (k.is_on() && k.settles() && spec.tracking.filter_type == 2).then(|| CatchUp {
             settled: Calibration::SETTLED,
             e: spec.small_error(),
-            drops: k.waits(),
         }),
         gamma: Gamma {
             first,

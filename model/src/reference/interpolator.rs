@@ -318,7 +318,8 @@ impl Reference {
         };
         let far = self.geared.0 >= by.settled && e.abs() >= by.e;
         let mut seen = self.behind.step(far, self.gate.cleared(), locked);
-        seen.ends_so &= by.drops;
+        // What waits for the end of such a period is dropped there.
+        seen.ends_so &= self.config.gamma.waits.is_some();
         if seen.ends_so {
             self.drop_period();
         }
