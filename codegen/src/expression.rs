@@ -1,4 +1,5 @@
-//! One operation, one statement; a rounding or choice with one reader stands in that, and what only moves the point in each.
+//! One operation, one statement; a rounding or choice with one reader stands in that, what only moves the point in each, and what has a
+//! name only with its point moved has that one.
 
 use nonius_model::graph::{NodeId, Op};
 
@@ -8,10 +9,15 @@ use crate::writer::{Source, Term, Writer};
 
 /// The declarations and assignments that compute node `id` in its cycle.
 pub(crate) fn lines(w: &Writer, id: NodeId) -> Vec<String> {
+    computed(w, w.pointed(id).unwrap_or(id), id)
+}
+
+/// The same where node `of` is computed, and called `id`.
+fn computed(w: &Writer, of: NodeId, id: NodeId) -> Vec<String> {
     let graph = w.graph;
-    let cycle = w.schedule.ready[id.index()];
-    let node = graph.node(id);
-    let bits = width(graph, id);
+    let cycle = w.schedule.ready[of.index()];
+    let node = graph.node(of);
+    let bits = width(graph, of);
     let fraction = node.format.fraction;
     let at = |o: NodeId| w.at(o, cycle);
     let one = |expression: String| vec![declaration(w, id, &expression)];
@@ -41,7 +47,7 @@ pub(crate) fn lines(w: &Writer, id: NodeId) -> Vec<String> {
             one(w.fit(&term, zeros, bits, None))
         }
         Op::Quantise(a, to) => {
-            if let Some(choice) = crate::quantise::choice(w, a, id) {
+            if let Some(choice) = crate::quantise::choice(w, a, of) {
                 return one(chosen(w, choice, cycle, fraction, bits));
             }
             let target = Target { id, to, bits };

@@ -86,12 +86,15 @@ fn holds(to: &Quantiser, range: (i128, i128), fraction: u32) -> bool {
     low >= to.format.min_raw() && high <= to.format.max_raw()
 }
 
-/// Whether sum or choice `a` is written inside its only reader.
+/// Whether `a` is written inside its only reader: a sum, a choice, or what has its name.
 pub(crate) fn fused(w: &Writer, graph: &Graph, a: NodeId) -> bool {
     let reader = graph
         .ids()
         .find(|&id| graph.node(id).op.operands().any(|o| o == a));
     let Some(reader) = reader else { return false };
+    if w.pointed(reader) == Some(a) {
+        return true;
+    }
     let Op::Quantise(_, to) = graph.node(reader).op else {
         return false;
     };

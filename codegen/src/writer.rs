@@ -127,6 +127,20 @@ impl<'a> Writer<'a> {
         (alike && !wire).then(|| self.moved(value).unwrap_or(value))
     }
 
+    /// The nameless value that nothing but named node `id` reads, with another point: it has that name.
+    pub(crate) fn pointed(&self, id: NodeId) -> Option<NodeId> {
+        let node = self.graph.node(id);
+        let Op::Scale(value, _) = node.op else {
+            return None;
+        };
+        let of = self.graph.node(value);
+        let alike = width(self.graph, id) == width(self.graph, value) && node.range == of.range;
+        // The name of a product says of what it is.
+        let computed = matches!(of.op, Op::Add(..) | Op::Sub(..) | Op::Quantise(..));
+        let named = of.name.is_none() && self.moved(id).is_none();
+        (alike && computed && named && self.only_for(value, id)).then_some(value)
+    }
+
     fn is_next(&self, id: NodeId) -> bool {
         self.graph.next.iter().any(|(_, next)| *next == id)
     }

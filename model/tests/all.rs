@@ -13,6 +13,7 @@ mod graph_support;
 mod harmonics;
 mod harmonics_refused;
 mod on_line_figures;
+mod on_line_held;
 mod on_line_interrupted;
 mod on_line_loss;
 mod on_line_moves;

@@ -44,6 +44,8 @@ pub struct Gate<S: Signal> {
     pub whole_period: S::Bool,
     /// The map of sectors is cleared: a period ends, or nothing counts.
     pub clear: S::Bool,
+    /// Where the search waits for the end of a period: it ends, and what it taught is dropped.
+    pub dropped: Option<S::Bool>,
 }
 
 /// The parameters after a sample, and what their search remembers.

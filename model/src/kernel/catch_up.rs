@@ -39,8 +39,8 @@ pub struct CatchUp<S: Signal> {
     large: S::Bool,
     /// It catches up: the sample does not count.
     pub now: S::Bool,
-    /// Neither does it nor is it far behind, or both have been so for long.
-    pub teaches: S::Bool,
+    /// Where that can be known before γ has settled: neither does it nor is it far behind, or both have been so for long.
+    pub teaches: Option<S::Bool>,
 }
 
 /// Whether the loop catches up with motion in this sample; `None` where that is never known: before γ can settle, and with a loop of
@@ -62,24 +62,25 @@ pub fn catch_up<S: Signal>(
     let behind = settled.and(small.not()).named("behind");
     // What is not calibrated yet leaves more.
     let near = within(e, k.far_error).named("e_near");
-    let large = if structure.calibration.guards_early() {
+    let open = state.astray_long.not();
+    let (large, teaches) = if structure.calibration.guards_early() {
         let begun = gears::begun(state, k);
         // A start needs all of its periods.
         let searching = starting.map_or(begun, |starting| {
             begun.and(starting.not()).named("searching")
         });
         let far = near.not().and(searching).named("far_behind");
-        far.or(behind).named("behind_or_far")
+        let large = far.or(behind).named("behind_or_far");
+        (large, Some(large.and(open).not().named("teaches")))
     } else {
-        behind
+        (behind, None)
     };
-    let open = state.astray_long.not();
     let bent = near.and(state.astray_long).named("e_of_bends");
     Some(CatchUp {
         of_sensor: small.or(bent).named("e_of_sensor"),
         large,
         now: behind.and(open).named("catches_up"),
-        teaches: large.and(open).not().named("teaches"),
+        teaches,
     })
 }
 

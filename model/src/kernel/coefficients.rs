@@ -138,7 +138,7 @@ coefficients! {
     loop_gear_last,
     /// |e|, radians, from which the loop is catching up with motion, and |ρ| from which the completion rests.
     small_error,
-    /// |e|, radians, that no sensor leaves whose search has begun, and no bends that calibration is to find.
+    /// |e|, radians, from which a sample teaches nothing once a quiet period has passed, nor the completion once the loop is astray.
     far_error,
     /// A period of travel that takes so many samples is too slow for the completion.
     travel_samples_last,

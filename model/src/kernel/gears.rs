@@ -1,13 +1,15 @@
 //! γ shifts gear: large first, halved after every few periods of travel, large again when the residual shows that the
-//! signal has changed.
+//! signal has changed. A period that is dropped counts for no gear.
 //!
 //! A residual that was small and is no longer may be a signal that fades. So once a gear has ended with a period in which it was small
 //! throughout (`calm`) it moves no parameter: they are held to the end of the first period without it. From the first period on that was
-//! quiet a large one does the same, and after a sample out of the lock window they are held until the lock level is full again. Where it has been large for [`HELD`](crate::spec::Calibration::HELD) periods, or
-//! where better parameters are known for [`hold_periods`](crate::spec::Calibration::hold_periods) more than not, and lock was not lost,
-//! the signal has changed, and the search begins again; at once where it has followed a signal that faded, and the radius is far too
-//! large now: the signal is back. A signal that is lost before the search has begun leaves parameters of which nothing is known: they begin
-//! again from their nominal values, or with recall from the best that is known. After that they stay, and the first gear goes on.
+//! quiet a large one does the same, and after a sample out of the lock window they are held until the lock level is full again.
+//!
+//! Where it has been large for [`HELD`](crate::spec::Calibration::HELD) periods, not counting those that were held to their end without
+//! it, or where better parameters are known for [`hold_periods`](crate::spec::Calibration::hold_periods) more than not, and lock was not
+//! lost, the signal has changed, and the search begins again; at once where it has followed a signal that faded, and the radius is far
+//! too large now: the signal is back. A signal that is lost before the search has begun leaves parameters of which nothing is known: they
+//! begin again from their nominal values, or with recall from the best that is known. After that they stay, and the first gear goes on.
 
 use super::calibration::Gate;
 use super::detector::within;
@@ -177,7 +179,7 @@ pub fn nominal<S: Signal>(state: &State<S>, k: &Coefficients<S>, structure: &Str
 }
 
 /// A period of travel has passed without a large residual since γ was as large as it begins; in the first gear a loss of lock does not take
-/// that back. A search of one gear counts anew each time its periods have passed.
+/// that back.
 #[inline(always)]
 pub fn begun<S: Signal>(state: &State<S>, k: &Coefficients<S>) -> S::Bool {
     let any = state.gear_periods.less_than(k.one).not();
@@ -196,6 +198,16 @@ fn disturbed_period<S: Signal>(gate: Gate<S>, state: &State<S>) -> S::Bool {
     gate.tick.and(state.disturbed).named("disturbed_period")
 }
 
+/// A period had a large residual, and the parameters have not followed for one since.
+#[inline(always)]
+fn held_before<S: Signal>(state: &State<S>, k: &Coefficients<S>) -> S::Bool {
+    state
+        .held_periods
+        .less_than(k.one)
+        .not()
+        .named("held_before")
+}
+
 /// As many periods have been counted as a signal is waited for that may come back: where better parameters are known, for longer.
 #[inline(always)]
 fn long<S: Signal>(state: &State<S>, k: &Coefficients<S>, structure: &Structure) -> S::Bool {
@@ -209,10 +221,11 @@ fn long<S: Signal>(state: &State<S>, k: &Coefficients<S>, structure: &Structure)
     many.or(unknown).named("held_long")
 }
 
-/// Periods held: one after the other; where better parameters are known, as many more as were quiet.
+/// Periods with a large residual, until the parameters have followed for one; where better parameters are known, as many more as those in
+/// which they have.
 #[inline(always)]
 fn held_periods<S: Signal>(
-    (gate, quiet): (Gate<S>, S::Bool),
+    (gate, quiet_ends): (Gate<S>, S::Bool),
     restart: S::Bool,
     counting: S::Bool,
     state: &State<S>,
@@ -220,17 +233,20 @@ fn held_periods<S: Signal>(
     structure: &Structure,
 ) -> S {
     let up = S::select(disturbed_period(gate, state), k.one, k.zero).named("held_periods_up");
-    let (step, stays) = if structure.calibration.recalls() {
-        let free = quiet.and(state.returning.not()).named("parameters_follow");
-        let any = state.held_periods.less_than(k.one).not();
-        let down = gate.tick.and(free).and(any.named("held_before"));
+    // Every second one holds them as well as one after the other: what follows one is held to its end.
+    let goes_on = quiet_ends.not().named("no_quiet_period_ends");
+    let (step, goes_on) = if structure.calibration.recalls() {
+        let free = quiet_ends.and(state.returning.not());
+        let free = free.named("parameters_followed");
+        let down = free.and(held_before(state, k));
         let step = S::select(down.named("free_period"), -k.one, up).named("held_periods_step");
-        // Without lock nothing is travelled.
-        let known = state.known.and(counting).named("known_in_lock");
-        (step, state.held.or(known).named("held_or_known"))
+        (step, goes_on.or(state.known).named("goes_on_or_known"))
     } else {
-        (up, state.held)
+        (up, goes_on)
     };
+    // Without lock nothing is travelled.
+    let stays = goes_on.and(counting).named("held_periods_go_on");
+    let stays = stays.or(state.held).named("held_or_going_on");
     let stays = stays.and(restart.not()).named("held_periods_stay");
     let counted = (state.held_periods + step).quantise(&structure.formats.held_periods);
     S::select(stays, counted, k.zero).quantise(&structure.formats.held_periods)
@@ -248,10 +264,8 @@ pub fn restart<S: Signal>(
     let early = calm(state, k, structure).not();
     let early = if structure.calibration.guards_early() {
         // A signal that is lost where a period ends disturbs one.
-        let again = begun(state, k)
-            .not()
-            .or(state.held)
-            .named("disturbed_again");
+        let again = begun(state, k).not().or(held_before(state, k));
+        let again = again.named("disturbed_again");
         early.and(again).named("search_fails")
     } else {
         early
@@ -295,14 +309,19 @@ pub fn gears<S: Signal>(
     let before = state.disturbed.or(state.held).named("disturbed_before");
     let quiet = before.not().named("quiet");
     let done = done.and(quiet).named("gear_done");
-    let passed = tick.and(done).named("gear_passed");
+    // A period that is dropped has taught nothing.
+    let learned = gate
+        .dropped
+        .map_or(tick, |dropped| tick.and(dropped.not()).named("period_kept"));
+    let passed = learned.and(done).named("gear_passed");
     let shift = passed.and(last.not()).named("gamma_shift");
     let up = S::select(shift, k.one, k.zero).named("gamma_gear_up");
     let gear = (state.gamma_gear + up)
         .quantise(&structure.formats.gamma_gear)
         .named("gamma_gear_counted");
     let quiet_ends = tick.and(quiet).named("quiet_period_ends");
-    let one_more = S::select(quiet_ends, k.one, k.zero).named("gear_periods_up");
+    let one_more = learned.and(quiet).named("quiet_period_kept");
+    let one_more = S::select(one_more, k.one, k.zero).named("gear_periods_up");
     let counted = (state.gear_periods + one_more).quantise(&structure.formats.gear_periods);
     // Periods before one that was not quiet, or before a loss of lock, were not quiet. In the first gear they say that there is
     // something to keep.
@@ -313,8 +332,16 @@ pub fn gears<S: Signal>(
         .named("quiet_breaks_off")
         .and(first_gear(state, k).not())
         .named("gear_breaks_off");
-    let again = passed.or(restart).or(breaks).named("gear_periods_again");
-    let held_periods = held_periods((gate, quiet), restart, counting, state, k, structure);
+    // What has only one gear has begun once and for all.
+    let (counted, passed_again) = if structure.calibration.gears() == 0 {
+        let counted = S::select(passed, k.one, counted).named("gear_periods_begun");
+        (counted, k.never())
+    } else {
+        (counted, passed)
+    };
+    let again = passed_again.or(restart).named("gear_ends").or(breaks);
+    let again = again.named("gear_periods_again");
+    let held_periods = held_periods((gate, quiet_ends), restart, counting, state, k, structure);
     let within = tick.not().and(counting).named("within_period");
     let smooth = passed.and(state.rough.not()).named("gear_ends_calm");
     let calm = smooth.or(state.calm).and(restart.not()).named("stays_calm");

@@ -115,7 +115,7 @@ pub fn recall<S: Signal>(
         std::array::from_fn(|i| S::select(older, recent[i], before[i]))
     };
     // What comes back over some periods is small again before it is whole.
-    let returns = passed.or(gears.restart).named("return_ends").not();
+    let returns = passed.or(gears.restart).not();
     let returning = recall.and(returns).named("return_goes_on");
     // A radius that stays too large is another signal's.
     let another = risen.and(state.fading.not()).named("signal_changed");

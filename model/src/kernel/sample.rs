@@ -121,9 +121,8 @@ fn advance_of<S: Signal, const PLAIN: bool>(
         structure,
     );
     let free = counted.and(hold.held.not());
-    let taught = catch_up.map_or(free, |catch_up| {
-        free.named("counted_and_free").and(catch_up.teaches)
-    });
+    let early = catch_up.and_then(|catch_up| catch_up.teaches);
+    let taught = early.map_or(free, |teaches| free.named("counted_and_free").and(teaches));
     let dropped = catch_up.and_then(|catch_up| catch_up.drops(travel.clear, state, structure));
     let fresh = dropped.map_or(taught, |dropped| {
         taught.named("sample_teaches").and(dropped.not())
@@ -161,6 +160,7 @@ fn advance_of<S: Signal, const PLAIN: bool>(
         tick,
         whole_period: travel.whole_period,
         clear: travel.clear,
+        dropped,
     };
     let searched = catch_up::searched(dropped, state, structure);
     let mut updated = calibration::update::<S, PLAIN>(&seen, searched, gate, state, k, structure);

@@ -182,7 +182,7 @@ bundle! {
         risen,
         /// The residual was large in the period before: the parameters are held.
         held,
-        /// The loop was far behind the axis in the running period of travel, once γ had settled.
+        /// The running period of travel has had an |e| larger than its γ gear expects of a sensor.
         astray,
         /// And in the last one.
         astray_before,

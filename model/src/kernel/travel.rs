@@ -129,10 +129,10 @@ pub fn travel<S: Signal>(
         ["used_behind_counts", "may_add_behind", "sector_behind"],
     );
     let clear = whole_period.or(counting.not()).named("travel_clear");
-    // Once γ has settled what was near when counting stopped counts as used, too: an axis that rests where lock comes back teaches nothing.
+    // Once γ has settled what was near when lock was lost counts as used, too: an axis that rests where it comes back teaches nothing.
     let stops = matches!(waits, Waits::Never).then(|| {
         let settled = gears::settled(state, k, structure);
-        counting.not().and(settled).named("stops_near")
+        state.locked.not().and(settled).named("stops_near")
     });
     // A side was used where a period on it ends, until a sector there is used or another period ends.
     let used = |ends: S::Bool, before: S::Bool, again: S::Bool, name: [&'static str; 2]| {

@@ -130,16 +130,16 @@ impl Hold {
             self.quiet = 0;
         } else if !self.held {
             self.quiet += 1;
-            if !self.returning {
+            // Every second period disturbed holds Θ as well as all of them.
+            if !proven {
+                self.periods = 0;
+            } else if !self.returning {
                 self.periods = self.periods.saturating_sub(1);
             }
             self.returning &= recall.is_some_and(|recall| self.quiet < recall.returning);
         }
         self.held = self.disturbed;
         self.disturbed = false;
-        if !(self.held || proven) {
-            self.periods = 0;
-        }
     }
 }
 
@@ -210,6 +210,11 @@ impl Recall {
     #[must_use]
     pub fn proven(&self) -> bool {
         self.known && !self.fading
+    }
+
+    /// A period of travel, up to α̂, has taught nothing.
+    pub fn dropped(&mut self, alpha_hat: f64) {
+        self.since += TAU.copysign(alpha_hat - self.since);
     }
 
     /// Takes Θ of a sample, to be remembered after `periods` of travel, with the last γ after twice as many.
