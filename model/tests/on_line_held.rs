@@ -4,8 +4,10 @@ use std::f64::consts::TAU;
 
 use crate::chip_support::loss::{PERIOD, sensor_for};
 use crate::chip_support::shipped::variants::{Variant, searches};
-use crate::chip_support::{Bench, optical};
+use crate::chip_support::{Bench, largest, optical};
+use nonius_kept::long;
 use nonius_model::spec::Calibration;
+use rand::{Rng, SeedableRng, rngs::StdRng};
 use rayon::prelude::*;
 
 /// `hold_periods` of these designs.
@@ -27,7 +29,7 @@ fn travel(
 }
 
 /// A residual that is large for an eighth of every second period of travel holds the parameters for as many such periods as one in
-/// each does, not for good. (Without lock nothing is held: bends by sums of squares and in batches lose it to so large a residual.)
+/// each does, not for good. Bends by sums of squares and in batches, which lose lock to so large a residual, find back to it.
 #[test]
 fn every_second_period_disturbed_counts_as_each() {
     searches().par_iter().for_each(|variant| {
@@ -54,8 +56,7 @@ fn every_second_period_disturbed_counts_as_each() {
             let (mut before, mut still, mut longest) = (bench.chip.theta(), 0u32, 0u32);
             travel(&mut bench, &mut at, 300, disturbed, |bench| {
                 let now = bench.chip.theta();
-                let same = bench.chip.state.locked && now == before;
-                still = if same { still + 1 } else { 0 };
+                still = if now == before { still + 1 } else { 0 };
                 longest = longest.max(still);
                 before = now;
             });
@@ -127,4 +128,73 @@ fn a_period_that_is_dropped_counts_for_no_gear() {
     assert_eq!(gear(&bench), settled);
     travel(&mut bench, &mut at, 8, jolts(2), |_| ());
     assert!(gear(&bench) != settled);
+}
+
+/// Whatever happens within forty periods of power-up, gains that jump, channels that go, jolts and stops, of any length: all searches
+/// along the radius find back. Of sums of squares and batches one in two hundred does not: it has learnt what it does not lock to, or another ellipse.
+#[test]
+fn what_happens_early_is_forgotten() {
+    let cases = if long() { 400 } else { 12 };
+    let squares = |of: &Variant| of.spec.calibration.squares();
+    let searches = searches();
+    let (along, squares): (Vec<Variant>, Vec<Variant>) =
+        searches.into_iter().partition(|of| !squares(of));
+    let lost = |searches: &[Variant]| -> Vec<String> {
+        let each = searches
+            .par_iter()
+            .flat_map(|of| (0..cases).into_par_iter().map(move |case| (of, case)));
+        each.filter_map(|(of, case)| {
+            (!finds_back(of, case)).then(|| {
+                format!(
+                    "{}, {}, case {case}",
+                    of.what, of.spec.calibration.parameters
+                )
+            })
+        })
+        .collect()
+    };
+    let of_squares = lost(&squares);
+    println!(
+        "{} of {} by sums of squares do not find back: {of_squares:?}",
+        of_squares.len(),
+        squares.len() as u64 * cases
+    );
+    assert!(of_squares.len() as u64 <= squares.len() as u64 * cases / 50);
+    assert_eq!(lost(&along), [""; 0]);
+}
+
+/// Whether one search is calibrated again, in lock, 400 periods after forty with whatever can happen.
+fn finds_back(variant: &Variant, case: u64) -> bool {
+    let mut spec = variant.spec.clone();
+    if spec.calibration.recalls() {
+        spec.calibration.hold_periods = Some(HOLD);
+    }
+    let mut random = StdRng::seed_from_u64(case);
+    let signals = sensor_for(&spec, random.random_range(0..16));
+    let mut bench = Bench::new(&spec, case);
+    let first = largest(&bench.miscalibration_at(72, &signals));
+    let mut turns = 0.0;
+    let mut left = 40.0;
+    while left > 0.0 {
+        let periods = 0.03 * 100f64.powf(random.random());
+        left -= periods;
+        let gain: [f64; 2] = std::array::from_fn(|_| match random.random_range(0..6) {
+            0 => random.random_range(0.0..1.4),
+            1 => 0.0,
+            _ => 1.0,
+        });
+        let jolt = [0.0, 0.1, 0.25][random.random_range(0..3)];
+        let speed = [1.0, 1.0, -1.0, 0.0][random.random_range(0..4)] / f64::from(PERIOD);
+        for _ in 0..(periods * f64::from(PERIOD)) as u32 {
+            turns += speed;
+            let (c, s) = signals(TAU * (turns + jolt));
+            bench.step((gain[0] * c, gain[1] * s));
+        }
+    }
+    for _ in 0..400 * PERIOD {
+        turns += 1.0 / f64::from(PERIOD);
+        bench.step(signals(TAU * turns));
+    }
+    let after = largest(&bench.miscalibration_at(72, &signals));
+    bench.chip.state.locked && after < 0.05 * first
 }

@@ -143,11 +143,13 @@ pub fn named(design: &Design, rows: usize) -> Vec<Stimulus> {
             };
             faded(pair(0.02 * k as f64 * (top / 0.1), 1.0, 0.0), gain)
         }),
-        // At top speed the signal fades slowly once gamma has settled, and stays so until the search begins again; where there is recall it
+        // At top speed, soon after lock, each second period has a part that is too large. The signal fades slowly once gamma has settled, and stays so until the search begins again; where there is recall it
         // changes for some periods once gamma has settled on it, is then back, and grows until the radius is far too large.
         motion("fade", &|k| {
+            let travelled = k as f64 * top;
             let fading = (k as f64 - n / 3.0) * top;
             let gain = match fading - FADING / 2.0 - followed {
+                _ if travelled > 17.0 && travelled < 24.0 && travelled % 2.0 < 0.2 => 1.35,
                 _ if 3 * k < rows => 1.0,
                 _ if fading < FADING => 1.0 - 0.12 * fading / FADING,
                 _ if !spec.calibration.recalls() => 0.88,

@@ -28,13 +28,13 @@
 //      |                          | a_period_away reach_ahead reach_behind unseen_ahead used_ahead_counts may_add_ahead
 //      |                          | sector_ahead unseen_behind used_behind_counts may_add_behind sector_behind
 //      |                          | search_begun proven_stand held_and_lost lost_in_first_gear proven_or_unknown
-//      |                          | nominal disturbed_again search_fails held_some_periods held_unknown held_long
-//      |                          | rises_again restart_cause last_gamma_gear returned_lately gear_periods_done
-//      |                          | disturbed_before quiet gear_done parameters_follow held_before gain_c_inside
-//      |                          | gain_c_rests gain_s_inside gain_s_rests gains_steady proves nothing_proven_yet
+//      |                          | nominal held_before disturbed_again search_fails held_some_periods held_unknown
+//      |                          | held_long rises_again restart_cause last_gamma_gear returned_lately
+//      |                          | gear_periods_done disturbed_before quiet gear_done gain_c_inside gain_c_rests
+//      |                          | gain_s_inside gain_s_rests gains_steady proves nothing_proven_yet
 //    1 | loop_ab * error_previous | sin_value sin_slope y_c y_s counting whole_period travel_clear sector_added
 //      |                          | new_sector still_used_ahead used_up_ahead still_used_behind used_up_behind y_5
-//      |                          | known_in_lock held_or_known astray_goes_on period_breaks_off lost_before
+//      |                          | astray_goes_on period_breaks_off lost_before
 //    2 | theta_3 * y_s            | cos_value cos_slope drift rate_drifted
 //    3 | sin_slope * sin_inside   |
 //    4 | cos_slope * cos_inside   | sin_magnitude sin_hat
@@ -43,8 +43,8 @@
 //    7 | s * cos_hat              | c_exact c s_weak
 //    8 | c * sin_hat              | c_weak signal_present may_flip
 //    9 | c * cos_hat              | e_exact e_seen e
-//   10 | s * sin_hat              | e_in_window e_change e_small behind e_near far_behind behind_or_far catches_up
-//      |                          | teaches period_has_hole period_dropped astray_lately astray_period_ends
+//   10 | s * sin_hat              | e_in_window e_change e_small behind e_near far_behind behind_or_far teaches
+//      |                          | catches_up period_has_hole period_dropped astray_lately astray_period_ends
 //      |                          | astray_again
 //   11 | e * e                    | rho_exact rho rho_in_window radius_present in_window flip level_step half_turn
 //      |                          | loop_follows rho_high rho_large rho_not_small rho_rises proven_better may_recall
@@ -52,14 +52,15 @@
 //      |                          | sample_counts counted period_tick rho_too_large residual_large disturbed_lately
 //      |                          | disturbed_or_held disturbed_or_recalled hold_cause hold signal_in_doubt
 //      |                          | held_in_doubt recall residual_rough radius_large counted_and_free rho_limited
-//      |                          | disturbed_period gamma_restart gear_passed gamma_shift gamma_gear_up
-//      |                          | gamma_gear_counted quiet_period_ends gear_periods_up disturbed_period_ends
-//      |                          | quiet_breaks_off gear_breaks_off return_ends gear_periods_again held_periods_up
-//      |                          | free_period held_periods_step held_periods_stay within_period gear_ends_calm
-//      |                          | stays_calm still_held holding gamma_gear_searched first_gear_period restart_risen
-//      |                          | recall_again known_to_be_calm last_gear_passed quiet_periods_pass quiet_periods_end
-//      |                          | proved gain_moved remember search_improves remember_better signal_changed
-//      |                          | still_known fades fade_ends
+//      |                          | disturbed_period gamma_restart period_kept gear_passed gamma_shift gamma_gear_up
+//      |                          | gamma_gear_counted quiet_period_ends quiet_period_kept gear_periods_up
+//      |                          | disturbed_period_ends quiet_breaks_off gear_breaks_off gear_ends gear_periods_again
+//      |                          | held_periods_up no_quiet_period_ends parameters_followed free_period
+//      |                          | held_periods_step goes_on_or_known held_periods_go_on held_or_going_on
+//      |                          | held_periods_stay within_period gear_ends_calm stays_calm still_held holding
+//      |                          | gamma_gear_searched first_gear_period restart_risen recall_again known_to_be_calm
+//      |                          | last_gear_passed quiet_periods_pass quiet_periods_end proved gain_moved remember
+//      |                          | search_improves remember_better signal_changed still_known fades fade_ends
 //   13 | cos_hat * rho_limited    | kick sample_teaches fresh recall_any remember_recent return_goes_on together_again
 //      |                          | period_taught travel_ends search_ends theta_applies lock_falls
 //   14 | sin_hat * rho_limited    | speed alpha_hat_turned alpha_hat_sum carry backwards not_forwards rho_c gradient_2
@@ -92,8 +93,8 @@
 //     loop_gear_last         3                       Last loop gear.
 //     small_error            0.0625                  |e|, radians, from which the loop is catching up with motion, and
 //                                                    |ρ| from which the completion rests.
-//     far_error              0.125                   |e|, radians, that no sensor leaves whose search has begun, and no
-//                                                    bends that calibration is to find.
+//     far_error              0.125                   |e|, radians, from which a sample teaches nothing once a quiet
+//                                                    period has passed, nor the completion once the loop is astray.
 //     gamma_gear_settled     4                       From this γ gear on γ has settled.
 //     gamma_gear_last        5                       Last γ gear.
 //     gear_periods_last      3                       Periods of travel per γ gear, less one.
@@ -115,8 +116,9 @@
 //     minus_quarter          -0.25                   −¼.
 //     minus_small_error      -0.0625                 Minus small_error: |e|, radians, from which the loop is catching
 //                                                    up with motion, and |ρ| from which the completion rests.
-//     minus_far_error        -0.125                  Minus far_error: |e|, radians, that no sensor leaves whose search
-//                                                    has begun, and no bends that calibration is to find.
+//     minus_far_error        -0.125                  Minus far_error: |e|, radians, from which a sample teaches nothing
+//                                                    once a quiet period has passed, nor the completion once the loop
+//                                                    is astray.
 //     minus_restart_residual -0.25                   Minus restart_residual: |ρ| above this begins the search again.
 //     minus_hold_residual    -0.0625                 Minus hold_residual: |ρ| above this is not small: it holds the
 //                                                    parameters once a gear has ended without.
@@ -188,7 +190,7 @@ module optical (
     reg calm; // A gear of γ has ended with a small residual since the search began.
     reg risen; // The radius was too large in this period of travel.
     reg held; // The residual was large in the period before: the parameters are held.
-    reg astray; // The loop was far behind the axis in the running period of travel, once γ had settled.
+    reg astray; // The running period of travel has had an |e| larger than its γ gear expects of a sensor.
     reg astray_before; // And in the last one.
     reg astray_long; // And in the last two or more: it is not catching up.
     reg returning; // What was recalled is held until some periods have passed quietly (recall).
@@ -265,10 +267,10 @@ module optical (
     reg signed [7:0] travel_low_next;
     reg ahead_used_next;
     reg behind_used_next;
+    reg not_astray_long;
     reg gamma_gear_below_one;
     reg not_gamma_gear_below_one;
     reg search_begun;
-    reg not_astray_long;
     reg teaches;
     reg not_catches_up;
     reg loop_follows;
@@ -299,6 +301,7 @@ module optical (
     reg signed [24:0] step_2_geared;
     reg signed [21:0] step_3;
     reg signed [24:0] step_4_geared;
+    reg held_before;
     reg held_long;
     reg restart_cause;
     reg gamma_gear_below_gamma_gear_last;
@@ -307,11 +310,9 @@ module optical (
     reg quiet;
     reg gear_done;
     reg not_returning;
-    reg parameters_follow;
-    reg held_before;
-    reg held_or_known;
     reg signed [8:0] held_periods_next;
     reg not_rough;
+    reg signed [3:0] gamma_gear_searched;
     reg signed [6:0] gear_periods_next;
     reg disturbed_next;
     reg rough_next;
@@ -332,7 +333,7 @@ module optical (
     reg remember;
     reg remember_better;
     reg remember_recent;
-    reg not_return_ends;
+    reg not_gear_ends;
     reg fades;
     reg fade_ends;
     reg returning_next;
@@ -588,8 +589,7 @@ module optical (
     wire counting_now = locked & calibrate_held; // step 1
     wire gamma_gear_below_gamma_gear_settled_now = $signed(gamma_gear[3:2]) < 2'sd1; // step 0, with gamma_gear_settled
     wire gamma_settled_now = ~gamma_gear_below_gamma_gear_settled_now; // step 0
-    wire signed [1:0] periods_modulo_4_bits = count[1:0]; // s2.32, step 0
-    wire signed [1:0] periods_modulo_4 = periods_modulo_4_bits; // s2.0, step 0
+    wire signed [1:0] periods_modulo_4 = count[1:0]; // s2.0, step 0
     wire signed [6:0] sector_bits = alpha_hat[27:21]; // u6.6, step 0
     wire signed [7:0] sector_now = {periods_modulo_4, 6'b0} + {sector_bits[6], sector_bits}; // s8.6, step 0
     wire signed [8:0] sector_relative_difference = // s9.6, step 0
@@ -636,14 +636,14 @@ module optical (
     wire behind = gamma_settled & ~e_small; // step 10
     wire e_near = // step 10, with far_error, minus_far_error
         ($signed(e[17:13]) < 5'sd1) & ($signed(~e[17:13]) < 5'sd1);
+    wire not_astray_long_now = ~astray_long; // step 0
     wire gamma_gear_below_one_now = gamma_gear < 4'sd1; // step 0
     wire not_gamma_gear_below_one_now = ~gamma_gear_below_one_now; // step 0
     wire search_begun_now = not_gamma_gear_below_one_now | ~(gear_periods < 7'sd1); // step 0
     wire far_behind = ~e_near & search_begun; // step 10
     wire behind_or_far = far_behind | behind; // step 10
-    wire not_astray_long_now = ~astray_long; // step 0
-    wire catches_up = behind & not_astray_long; // step 10
     wire teaches_now = ~(behind_or_far & not_astray_long); // step 10
+    wire catches_up = behind & not_astray_long; // step 10
     wire not_catches_up_now = ~catches_up; // step 10
     wire loop_follows_now = in_window_now & not_catches_up; // step 11
     wire sample_counts = counting & loop_follows; // step 12
@@ -783,7 +783,8 @@ module optical (
 
     // Gears of gamma
     //   gamma halves after some periods of travel, starts again when the residual stays large
-    wire disturbed_again = ~search_begun_now | held; // step 0
+    wire held_before_now = ~(held_periods < 9'sd1); // step 0
+    wire disturbed_again = ~search_begun_now | held_before_now; // step 0
     wire search_fails = ~calm & disturbed_again; // step 0
     wire held_some_periods = ~(held_periods < 9'sh1f); // step 0, with held_periods_last
     wire held_unknown = held_some_periods & ~proven_stand_now; // step 0
@@ -799,31 +800,34 @@ module optical (
     wire disturbed_before_now = disturbed | held; // step 0
     wire quiet_now = ~disturbed_before_now; // step 0
     wire gear_done_now = gear_periods_done & quiet_now; // step 0
-    wire gear_passed = period_tick & gear_done; // step 12
+    wire period_kept = period_tick & not_period_dropped; // step 12
+    wire gear_passed = period_kept & gear_done; // step 12
     wire gamma_shift = gear_passed & gamma_gear_below_gamma_gear_last; // step 12
     wire signed [1:0] gamma_gear_up = gamma_shift ? 2'sd1 : 2'sd0; // s2.0, step 12
     wire signed [4:0] gamma_gear_counted_sum = // s5.0, step 12
         {gamma_gear[3], gamma_gear} + {{3{gamma_gear_up[1]}}, gamma_gear_up};
     wire signed [3:0] gamma_gear_counted = {1'b0, gamma_gear_counted_sum[2:0]}; // u3.0, step 12
     wire quiet_period_ends = period_tick & quiet; // step 12
-    wire signed [1:0] gear_periods_up = quiet_period_ends ? 2'sd1 : 2'sd0; // s2.0, step 12
+    wire quiet_period_kept = period_kept & quiet; // step 12
+    wire signed [1:0] gear_periods_up = quiet_period_kept ? 2'sd1 : 2'sd0; // s2.0, step 12
     wire signed [7:0] gear_periods_next_sum = // s8.0, step 12
         {gear_periods[6], gear_periods} + {{6{gear_periods_up[1]}}, gear_periods_up};
     wire signed [6:0] gear_periods_next_bits = {1'b0, gear_periods_next_sum[5:0]}; // u6.0, step 12
     wire disturbed_period_ends = period_tick & disturbed_before; // step 12
     wire quiet_breaks_off = disturbed_period_ends | not_counting; // step 12
     wire gear_breaks_off = quiet_breaks_off & not_gamma_gear_below_one; // step 12
-    wire return_ends = gear_passed | gamma_restart; // step 12
-    wire gear_periods_again = return_ends | gear_breaks_off; // step 12
+    wire gear_ends = gear_passed | gamma_restart; // step 12
+    wire gear_periods_again = gear_ends | gear_breaks_off; // step 12
     wire signed [1:0] held_periods_up = disturbed_period ? 2'sd1 : 2'sd0; // s2.0, step 12
+    wire no_quiet_period_ends = ~quiet_period_ends; // step 12
     wire not_returning_now = ~returning; // step 0
-    wire parameters_follow_now = quiet_now & not_returning_now; // step 0
-    wire held_before_now = ~(held_periods < 9'sd1); // step 0
-    wire free_period = (period_tick & parameters_follow) & held_before; // step 12
+    wire parameters_followed = quiet_period_ends & not_returning; // step 12
+    wire free_period = parameters_followed & held_before; // step 12
     wire signed [1:0] held_periods_step = free_period ? 2'sh3 : held_periods_up; // s2.0, step 12
-    wire known_in_lock = known & counting_now; // step 1
-    wire held_or_known_now = held | known_in_lock; // step 1
-    wire held_periods_stay = held_or_known & ~gamma_restart; // step 12
+    wire goes_on_or_known = no_quiet_period_ends | known; // step 12
+    wire held_periods_go_on = goes_on_or_known & counting; // step 12
+    wire held_or_going_on = held_periods_go_on | held; // step 12
+    wire held_periods_stay = held_or_going_on & ~gamma_restart; // step 12
     wire signed [9:0] held_periods_next_sum = // s10.0, step 12
         {held_periods[8], held_periods} + {{8{held_periods_step[1]}}, held_periods_step};
     wire signed [8:0] held_periods_next_bits = {1'b0, held_periods_next_sum[7:0]}; // u8.0, step 12
@@ -834,7 +838,7 @@ module optical (
     wire stays_calm = (gear_ends_calm | calm) & ~gamma_restart; // step 12
     wire still_held = held & ~period_tick; // step 12
     wire holding = (disturbed_period & ~gamma_restart) | still_held; // step 12
-    wire signed [3:0] gamma_gear_searched = gamma_restart ? 4'sd0 : gamma_gear_counted; // u3.0, step 12
+    wire signed [3:0] gamma_gear_searched_now = gamma_restart ? 4'sd0 : gamma_gear_counted; // u3.0, step 12
     wire signed [6:0] gear_periods_next_now = gear_periods_again ? 7'sd0 : gear_periods_next_bits; // u6.0, step 12
     wire first_gear_period = quiet_period_ends & gamma_gear_below_one; // step 12
     wire disturbed_next_now = residual_large | (disturbed & within_period); // step 12
@@ -854,8 +858,8 @@ module optical (
     wire signed [23:0] running_4_next_now = recall_any ? {proven_4, 7'b0} : running_4_next_bits; // s24.25, step 16
     wire signed [23:0] running_5_next = recall_any ? {proven_5, 7'b0} : running_5_next_bits; // s24.25, step 19
     wire known_to_be_calm_now = stays_calm | recall_again_now; // step 12
-    wire signed [3:0] gamma_gear_next_now = // u3.0, step 12, with gamma_gear_last
-        recall_again_now ? 4'sd5 : gamma_gear_searched;
+    wire signed [3:0] gamma_gear_next_now = // u3.0, step 13, with gamma_gear_last
+        recall_again ? 4'sd5 : gamma_gear_searched;
     wire last_gear_passed = gear_passed & last_gamma_gear; // step 12
     wire quiet_periods_pass = last_gear_passed & not_returning; // step 12
     wire quiet_periods_end = quiet_periods_pass & halfway; // step 12
@@ -883,8 +887,8 @@ module optical (
     wire search_improves = (gear_passed | first_gear_period) & gamma_gear_below_gamma_gear_last; // step 12
     wire remember_better_now = search_improves | quiet_periods_end; // step 12
     wire remember_recent_now = remember_better | recall_any_now; // step 13
-    wire not_return_ends_now = ~return_ends; // step 12
-    wire return_goes_on = recall & not_return_ends; // step 13
+    wire not_gear_ends_now = ~gear_ends; // step 12
+    wire return_goes_on = recall & not_gear_ends; // step 13
     wire signal_changed = restart_risen & not_fading; // step 12
     wire still_known = known & ~signal_changed; // step 12
     wire fades_now = (gamma_restart & held_long) | fading; // step 12
@@ -1007,16 +1011,17 @@ module optical (
             a_period_away <= a_period_away_now;
             sector_ahead <= sector_ahead_now;
             sector_behind <= sector_behind_now;
+            not_astray_long <= not_astray_long_now;
             gamma_gear_below_one <= gamma_gear_below_one_now;
             not_gamma_gear_below_one <= not_gamma_gear_below_one_now;
             search_begun <= search_begun_now;
-            not_astray_long <= not_astray_long_now;
             not_fading <= not_fading_now;
             proven_stand <= proven_stand_now;
             held_and_lost <= held_and_lost_now;
             not_apart <= not_apart_now;
             astray_and_not_astray_long <= astray_and_not_astray_long_now;
             nominal <= nominal_now;
+            held_before <= held_before_now;
             held_long <= held_long_now;
             restart_cause <= restart_cause_now;
             gamma_gear_below_gamma_gear_last <= gamma_gear_below_gamma_gear_last_now;
@@ -1025,8 +1030,6 @@ module optical (
             quiet <= quiet_now;
             gear_done <= gear_done_now;
             not_returning <= not_returning_now;
-            parameters_follow <= parameters_follow_now;
-            held_before <= held_before_now;
             not_rough <= not_rough_now;
             proves <= proves_now;
             not_gains_steady <= not_gains_steady_now;
@@ -1046,7 +1049,6 @@ module optical (
             ahead_used_next <= ahead_used_next_now;
             behind_used_next <= behind_used_next_now;
             y_5 <= y_5_now;
-            held_or_known <= held_or_known_now;
             astray_goes_on <= astray_goes_on_now;
             astray_before_and_astray_goes_on <= astray_before_and_astray_goes_on_now;
             astray_long_and_astray_goes_on <= astray_long_and_astray_goes_on_now;
@@ -1122,6 +1124,7 @@ module optical (
             counted_and_free <= counted_and_free_now;
             rho_limited <= rho_limited_now;
             held_periods_next <= held_periods_next_now;
+            gamma_gear_searched <= gamma_gear_searched_now;
             gear_periods_next <= gear_periods_next_now;
             disturbed_next <= disturbed_next_now;
             rough_next <= rough_next_now;
@@ -1129,11 +1132,10 @@ module optical (
             held_next <= held_next_now;
             recall_again <= recall_again_now;
             known_to_be_calm <= known_to_be_calm_now;
-            gamma_gear_next <= gamma_gear_next_now;
             proved <= proved_now;
             remember <= remember_now;
             remember_better <= remember_better_now;
-            not_return_ends <= not_return_ends_now;
+            not_gear_ends <= not_gear_ends_now;
             fades <= fades_now;
             fade_ends <= fade_ends_now;
             either_halfway_or_quiet_periods_pass <= either_halfway_or_quiet_periods_pass_now;
@@ -1145,6 +1147,7 @@ module optical (
             speed_sum <= speed_sum_now;
             fresh <= fresh_now;
             recall_any <= recall_any_now;
+            gamma_gear_next <= gamma_gear_next_now;
             remember_recent <= remember_recent_now;
             returning_next <= returning_next_now;
             fading_next <= fading_next_now;

@@ -21,6 +21,12 @@ pub(crate) fn dropping_faults() -> Vec<Fault> {
             "",
         ),
         swap(
+            "a period that is dropped counts for a gear",
+            &["wire period_kept ="],
+            " & not_period_dropped",
+            "",
+        ),
+        swap(
             "a period is dropped for a stop in its last sample only",
             &["wire period_has_hole"],
             "astray_and_not_astray_long | ",
@@ -270,8 +276,14 @@ pub(crate) fn faults() -> Vec<Fault> {
         swap(
             "the search fails with the first disturbed period",
             &["wire disturbed_again ="],
-            "~search_begun_now | held",
+            "~search_begun_now | held_before_now",
             "1'b1",
+        ),
+        swap(
+            "what is held after a disturbed period lets the count begin anew",
+            &["wire no_quiet_period_ends ="],
+            "~quiet_period_ends",
+            "1'b0",
         ),
         swap(
             "nothing is known in the first gear",

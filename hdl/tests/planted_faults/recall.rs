@@ -97,8 +97,8 @@ pub(crate) fn recall_faults() -> Vec<Fault> {
         ),
         swap(
             "periods at rest are counted off",
-            &["wire parameters_follow_now ="],
-            " & not_returning_now",
+            &["wire parameters_followed ="],
+            " & not_returning",
             "",
         ),
         swap(
@@ -109,9 +109,9 @@ pub(crate) fn recall_faults() -> Vec<Fault> {
         ),
         swap(
             "periods held count on through a loss",
-            &["wire known_in_lock ="],
-            "known & counting_now",
-            "known",
+            &["wire held_periods_go_on ="],
+            " & counting",
+            "",
         ),
     ]
 }

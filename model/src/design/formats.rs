@@ -360,11 +360,8 @@ pub(super) fn constants(
         hold_residual: Constant::rounded(spec.hold_residual(), f.min(8)),
         // A power of two makes a short comparator.
         steady_gain: Constant::rounded(exp2(spec.steady_gain().log2().ceil() as i64), f.min(10)),
-        gain_near_bound: {
-            let gain = structure.formats.deviation[0].format;
-            let power = i64::from(gain.width) - 1 - i64::from(gain.fraction);
-            Constant::rounded(15.0 / 16.0 * exp2(power), (4 - power).max(0) as u32)
-        },
+        gain_near_bound: near_bound(structure.formats.deviation[0].format),
+        bend_near_bound: near_bound(structure.formats.deviation[7].format),
         direction_rate: Constant::rounded(exp2(-i64::from(f)), words.phase_bits),
         lock_down: whole(-8),
         lock_full: whole(full),
@@ -387,4 +384,10 @@ pub(super) fn constants(
         half: Constant::rounded(0.5, 1),
         quarter: Constant::rounded(0.25, 2),
     }
+}
+
+/// Fifteen sixteenths of what a parameter may be away from its nominal value.
+fn near_bound(deviation: Format) -> Constant {
+    let power = i64::from(deviation.width) - 1 - i64::from(deviation.fraction);
+    Constant::rounded(15.0 / 16.0 * exp2(power), (4 - power).max(0) as u32)
 }

@@ -126,6 +126,8 @@ coefficients! {
     steady_gain,
     /// A gain's deviation from which it is near its bound.
     gain_near_bound,
+    /// From this θ8 on, in magnitude, the bends are near their bounds.
+    bend_near_bound,
     /// Rate below which the direction does not change, turns per sample.
     direction_rate,
     /// What a bad sample adds to the lock level.

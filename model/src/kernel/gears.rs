@@ -164,10 +164,18 @@ fn calm<S: Signal>(state: &State<S>, k: &Coefficients<S>, structure: &Structure)
 }
 
 /// The signal is lost before the search has begun: nothing is known, and the parameters are nominal. With recall what is proven is
-/// better in all of the first gear: it may have followed a fade.
+/// better in all of the first gear: it may have followed a fade. Bends that swing widely on their way can come to their bounds, where the
+/// loop does not lock any more: without lock they are nominal, too.
 #[inline(always)]
 pub fn nominal<S: Signal>(state: &State<S>, k: &Coefficients<S>, structure: &Structure) -> S::Bool {
-    let lost = state.signal_lost.and(state.locked.not());
+    let lost = if structure.calibration.swings() {
+        let bend = within(state.theta_8_deviation, k.bend_near_bound);
+        let gone = bend.not().named("bend_near_bound_reached");
+        state.signal_lost.or(gone).named("signal_or_bend_lost")
+    } else {
+        state.signal_lost
+    };
+    let lost = lost.and(state.locked.not());
     let lost = first_gear(state, k).and(lost).named("lost_in_first_gear");
     let unknown = begun(state, k).not();
     let unknown = if structure.calibration.recalls() {

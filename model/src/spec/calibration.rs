@@ -177,8 +177,13 @@ impl Calibration {
     /// Batches leave out a period with one anyway, and bends by sums of squares swing so far.
     #[must_use]
     pub fn guards_early(&self) -> bool {
-        let swings = self.squares() && self.has_bend();
-        self.is_on() && self.settles() && !self.is_batch() && !swings
+        self.is_on() && self.settles() && !self.is_batch() && !self.swings()
+    }
+
+    /// On the way to what they are the parameters swing widely: bends by sums of squares.
+    #[must_use]
+    pub fn swings(&self) -> bool {
+        self.squares() && self.has_bend()
     }
 
     /// The step of the phase becomes smaller once γ has settled ([`Self::PHASE_HALVINGS`]): until then it is twice as fast as what it
