@@ -5,33 +5,29 @@ use nonius_recording::Recording;
 use crate::checks::{Checked, magnitudes, ninth, repeats};
 use crate::context::{against, unwrapped};
 use crate::correlate::sums;
+use crate::delays::{Delays, delays};
 use crate::first;
 use crate::solve::{dot, weights_of};
 
 /// Samples on either side of a jump that are compared, and the order of the curve through them; on slow axes more of them
-/// show it, and on axes that shake a curve that bends more, or fewer of them.
-pub(crate) const SIDES: [(usize, i32); 8] = [
-    (4, 3),
-    (8, 3),
-    (8, 5),
-    (24, 3),
-    (64, 5),
-    (200, 5),
-    (600, 5),
-    (600, 9),
-];
+/// show it, and on axes that shake a curve that bends more, or fewer of them. Longer ones are those of [`delays`].
+const SIDES: [(usize, i32); 6] = [(4, 3), (8, 3), (8, 5), (24, 3), (64, 5), (200, 5)];
 /// So many times the ninth decile of what the curve leaves is a jump: eight standard deviations.
 const FAR: f64 = 4.9;
 /// A jump is so near a whole number of samples, beside what noise makes of it.
-const WHOLE: f64 = 0.15;
+pub(crate) const WHOLE: f64 = 0.15;
 /// Most samples lost at one place that are believed without a clock.
 const MOST: f64 = 32.0;
 /// So many times the samples on a side, to either side, tell how large the noise is just there.
-pub(crate) const AROUND: usize = 8;
+const AROUND: usize = 8;
 /// Standard deviations by which the sensor has to be seen to jump with its reference.
 const TOGETHER: f64 = 3.0;
 /// Standard deviations by which fewer samples may show another jump than more of them do.
 const ALIKE: f64 = 3.5;
+/// Standard deviations from which on all noise together shows a delay.
+const SURE: f64 = 6.5;
+/// Standard deviation of a number of samples below which it is a number.
+const ERROR: f64 = 0.2;
 
 /// A place where an angle jumps: before which sample, how far, and how large the noise is there.
 struct Jump {
@@ -41,7 +37,7 @@ struct Jump {
 }
 
 /// A function of the place among `side` samples on either side, which are the places from −1 to 1.
-pub(crate) fn column(side: usize, f: impl Fn(f64) -> f64) -> Vec<f64> {
+fn column(side: usize, f: impl Fn(f64) -> f64) -> Vec<f64> {
     let middle = side as f64 - 0.5;
     (0..2 * side)
         .map(|i| f((i as f64 - middle) / middle))
@@ -49,7 +45,7 @@ pub(crate) fn column(side: usize, f: impl Fn(f64) -> f64) -> Vec<f64> {
 }
 
 /// What a curve of that order through `side` samples on either side is made of.
-pub(crate) fn powers(side: usize, order: i32) -> Vec<Vec<f64>> {
+fn powers(side: usize, order: i32) -> Vec<Vec<f64>> {
     (0..=order)
         .map(|degree| column(side, |x| x.powi(degree)))
         .collect()
@@ -67,11 +63,11 @@ fn step_weights(side: usize, order: i32, but: Option<usize>) -> Vec<f64> {
 
 /// Corners of a drive: places where the speed, the acceleration or its change is another at once. A curve does not follow
 /// them, and what it leaves looks like a step.
-pub(crate) struct Corners(Vec<Vec<f64>>);
+struct Corners(Vec<Vec<f64>>);
 
 impl Corners {
     /// What they add to a curve of that order through `side` samples on either side: of unit square, free of that curve.
-    pub(crate) fn new(side: usize, order: i32) -> Self {
+    fn new(side: usize, order: i32) -> Self {
         /// Steps of a sixteenth of a side by which they may stand beside the middle.
         const BESIDE: i32 = 4;
         let curve = powers(side, order);
@@ -88,14 +84,9 @@ impl Corners {
     }
 
     /// Square of the angle near a place that the best of them explains.
-    pub(crate) fn explained(&self, near: &[f64]) -> f64 {
+    fn explained(&self, near: &[f64]) -> f64 {
         let squares = self.0.iter().map(|corner| dot(near, corner).powi(2));
         squares.fold(0.0, f64::max)
-    }
-
-    /// How many they are.
-    pub(crate) fn count(&self) -> usize {
-        self.0.len()
     }
 
     /// Whether one of them explains as much of the angle near a jump as the jump does, whose size the weights give.
@@ -291,12 +282,49 @@ pub(crate) fn jumps(recording: &Recording, checked: &Checked) -> Vec<(usize, usi
         }
         shorter[0].push(look);
     }
+    for look in delays(&angle) {
+        found.extend(through_noise(&look, checked, &found));
+    }
     found.sort_unstable();
     found
 }
 
+/// Places that all noise together shows where no sample nearby is bad and none was found before; none where the angle is early
+/// by anything.
+fn through_noise(
+    look: &Delays,
+    checked: &Checked,
+    found: &[(usize, usize)],
+) -> Vec<(usize, usize)> {
+    let mut list = vec![];
+    let mut others = 0;
+    for delay in look.far(SURE) {
+        let k = delay.before;
+        let known = |j: usize| k.abs_diff(j) <= look.side();
+        let bad = (k - 2..k + 2).any(|j| checked.weight[j] == 0.0);
+        if bad || found.iter().any(|f| known(f.0)) || checked.extra.iter().any(|j| known(*j)) {
+            continue;
+        }
+        let whole = delay.samples.round();
+        let known = delay.sigma < ERROR;
+        let off = (delay.samples - whole).abs() > WHOLE + 3.0 * delay.sigma;
+        if known && !off && (1.0..MOST).contains(&whole) {
+            list.push((k, whole as usize));
+        } else if !known || off || whole != -1.0 {
+            others += 1;
+        }
+    }
+    if list.len() > 4 * others {
+        list
+    } else {
+        vec![]
+    }
+}
+
 /// Whether the sensor jumps with its reference: what is between them does not jump, and would if the reference alone did.
 fn together(apart: &[f64], reference: &Jump) -> bool {
+    /// What is between them has no motion that long curves would have to follow.
+    const STILL: [(usize, i32); 2] = [(600, 3), (2000, 3)];
     let k = reference.before;
     let jumps = |(side, order): (usize, i32)| {
         let reach = (AROUND + 1) * side;
@@ -305,7 +333,11 @@ fn together(apart: &[f64], reference: &Jump) -> bool {
         let here = k - near.start;
         (look.sizes[here].abs(), look.sigma(here))
     };
-    let looks = sides(apart.len()).map(jumps);
+    let still = STILL
+        .into_iter()
+        .filter(|(side, _)| apart.len() >= 2 * side);
+    let inside = still.filter(|(side, _)| (*side..apart.len() - side).contains(&k));
+    let looks = sides(apart.len()).chain(inside).map(jumps);
     let surest = looks.min_by(|a, b| a.1.total_cmp(&b.1));
     surest.is_some_and(|(size, sigma)| size + TOGETHER * sigma < reference.size.abs())
 }

@@ -17,6 +17,7 @@ mod codes;
 mod contender;
 mod context;
 mod correlate;
+mod delays;
 mod diagnose;
 mod doubt;
 mod edges;

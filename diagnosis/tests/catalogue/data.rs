@@ -276,7 +276,7 @@ fn a_sample_lost_on_a_slow_axis() {
 
 /// A sample that is lost from sensor and reference alike, where the sensor's noise alone would hide it.
 fn lost_in_noise(rows: &mut Rows) {
-    let slow = (5000..15_000).find(|k| (0.0028..0.0032).contains(&moves(rows, *k)));
+    let slow = (5000..15_000).find(|k| (0.0019..0.0022).contains(&moves(rows, *k)));
     rows.remove(slow.expect("a place where it moves by less than the noise"));
     at_even_times(rows);
 }
