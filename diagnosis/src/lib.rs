@@ -34,6 +34,7 @@ mod late;
 mod left;
 mod library;
 mod lines;
+mod matched;
 mod missing;
 mod model;
 mod motion;
