@@ -3,6 +3,7 @@
 //! is loud at their frequencies: an axis that shakes, a drive that wanders. So both are looked for by matched filters, each
 //! frequency by how quiet it is there.
 
+use std::collections::VecDeque;
 use std::ops::Range;
 
 use crate::checks::{magnitudes, ninth};
@@ -122,22 +123,18 @@ impl Delays {
             .fold(self.typical, f64::max)
     }
 
-    /// Samples about a place at which what is the reason for a delay there may stand.
-    fn near(&self, k: usize) -> Range<usize> {
-        k.saturating_sub(self.side / 2)..(k + self.side / 2 + 1).min(self.told.len())
-    }
-
-    /// What is told at a sample, and by how many standard deviations, if no corner of the drive near it is as likely. Where the
-    /// place is `known`, it is dear that a corner may stand anywhere and have any order.
-    pub(crate) fn at(&self, k: usize, known: bool) -> Option<(Delay, f64)> {
-        let (told, noise, near) = (self.told[k], self.noise(k), self.near(k));
-        let paid = if known {
-            2.0 * (3.0 * near.len() as f64).ln()
-        } else {
-            0.0
-        };
-        let corner = self.corner[near].iter().copied().fold(0.0, f64::max);
-        if told == 0.0 || corner >= told * told + paid * noise.powi(2) {
+    /// What is told at a sample, and by how many standard deviations, if the likeliest corner of the drive near it, whose square is
+    /// given, is less likely. Where the place is `known`, it is dear that a corner may stand anywhere and have any order.
+    fn told(&self, k: usize, corner: f64, known: bool) -> Option<(Delay, f64)> {
+        let told = self.told[k];
+        let square = told * told;
+        if square == 0.0 || !known && corner >= square {
+            return None;
+        }
+        let noise = self.noise(k);
+        let places = 3 * (self.side + 1);
+        let paid = 2.0 * (places as f64).ln() * noise.powi(2);
+        if known && corner >= square + paid {
             return None;
         }
         let samples = self.samples[k];
@@ -149,17 +146,24 @@ impl Delays {
         Some((delay, told.abs() / noise))
     }
 
+    /// What is told at a sample that is known, and by how many standard deviations.
+    pub(crate) fn at(&self, k: usize) -> Option<(Delay, f64)> {
+        let reach = self.side / 2;
+        let near = k.saturating_sub(reach)..(k + reach + 1).min(self.told.len());
+        let corner = self.corner[near].iter().copied().fold(0.0, f64::max);
+        self.told(k, corner, true)
+    }
+
     /// Delays of more than `sure` standard deviations.
     pub(crate) fn far(&self, sure: f64) -> Vec<Delay> {
-        let least = sure * self.typical;
-        let highest = |k: &usize| {
-            let near = &self.told[self.near(*k)];
-            near.iter().all(|t| t.abs() <= self.told[*k].abs())
-        };
-        (0..self.told.len())
-            .filter(|k| self.told[*k].abs() > least)
-            .filter(highest)
-            .filter_map(|k| self.at(k, false))
+        let sizes = magnitudes(&self.told);
+        if sizes.iter().all(|size| *size <= sure * self.typical) {
+            return vec![];
+        }
+        let [highest, corner] = [&sizes, &self.corner].map(|of| largest_near(of, self.side / 2));
+        (0..sizes.len())
+            .filter(|k| sizes[*k] > sure * self.typical && sizes[*k] >= highest[*k])
+            .filter_map(|k| self.told(k, corner[k], false))
             .filter(|(_, told)| *told > sure)
             .map(|(delay, _)| delay)
             .collect()
@@ -169,6 +173,31 @@ impl Delays {
     pub(crate) fn side(&self) -> usize {
         self.side
     }
+}
+
+/// The largest of the values at most `reach` away from each.
+fn largest_near(values: &[f64], reach: usize) -> Vec<f64> {
+    // Those that no later one exceeds, largest first.
+    let mut falling = VecDeque::new();
+    let mut next = 0;
+    (0..values.len())
+        .map(|k| {
+            while next < values.len().min(k + reach + 1) {
+                while falling
+                    .back()
+                    .is_some_and(|last| values[*last] <= values[next])
+                {
+                    falling.pop_back();
+                }
+                falling.push_back(next);
+                next += 1;
+            }
+            while falling.front().is_some_and(|first| first + reach < k) {
+                falling.pop_front();
+            }
+            falling.front().map_or(0.0, |first| values[*first])
+        })
+        .collect()
 }
 
 /// Of a normal distribution about 0, from its ninth decile.
@@ -227,7 +256,7 @@ mod tests {
             more.insert(LOST, more[LOST]);
             let put_in = delays(&more)
                 .iter()
-                .filter_map(|look| look.at(LOST + 1, true))
+                .filter_map(|look| look.at(LOST + 1))
                 .next_back();
             let (one, told) = put_in.expect("a delay");
             assert!(

@@ -20,7 +20,7 @@ pub(crate) fn late(recording: &Recording, checked: &Checked, of: &[usize]) -> Ve
     };
     let all = delays(&angle);
     let is_late = |k: &usize| {
-        let looks = all.iter().filter_map(|look| look.at(*k, true));
+        let looks = all.iter().filter_map(|look| look.at(*k));
         let best = looks.max_by(|a, b| a.1.total_cmp(&b.1));
         best.is_some_and(|(delay, told)| {
             told > SURE && (delay.samples + 1.0).abs() < WHOLE + 3.0 * delay.sigma
