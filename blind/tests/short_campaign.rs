@@ -284,3 +284,24 @@ fn a_name_of_another_order_or_frequency_is_wrong() {
         }
     }
 }
+
+/// Samples lost on slow axes that shake, or near where they turn back, which were silent once.
+#[test]
+fn lost_samples_show() {
+    let seeds = [
+        130_000_844u64,
+        130_002_915,
+        130_000_512,
+        130_001_092,
+        130_001_258,
+        127_000_090,
+        127_001_415,
+    ];
+    seeds.into_par_iter().for_each(|seed| {
+        let case = Case::draw(seed, 20_000).expect("a case can be drawn");
+        let verdict = verdict(&case.csv()).unwrap_or_else(|why| panic!("{seed}: {why}"));
+        let of_sensor = verdict.named.iter().filter(|one| !one.motion);
+        let names: Vec<&str> = of_sensor.map(|one| one.cause.as_str()).collect();
+        assert_eq!(names, ["dropped_samples"], "{seed}");
+    });
+}
