@@ -5,6 +5,7 @@
 
 use std::collections::VecDeque;
 use std::ops::Range;
+use std::rc::Rc;
 
 use crate::checks::{magnitudes, ninth};
 use crate::matched::{Curve, Seen, Templates, fade};
@@ -15,7 +16,7 @@ const CURVES: [(usize, i32); 4] = [(64, 5), (200, 5), (600, 5), (2000, 9)];
 const LONGEST: usize = 2;
 /// So many times the samples on a side are needed.
 const ENOUGH: usize = 6;
-/// Of the ends of a recording so many sides show nothing.
+/// Of the ends of a recording so many sides show nothing; as far again they show less than is there, by a tenth.
 const EDGE: f64 = 1.5;
 /// Samples that are transformed together.
 const BLOCK: usize = 1 << 16;
@@ -25,6 +26,8 @@ const AROUND: usize = 8;
 /// How an angle is seen to be early behind each of its samples, with curves of one length.
 pub(crate) struct Delays {
     side: usize,
+    /// Radians per sample.
+    speed: Rc<Vec<f64>>,
     /// Standard deviations of stationary noise by which it is early before each sample.
     told: Vec<f64>,
     /// Samples that seem to be missing there; negative: put in.
@@ -44,6 +47,8 @@ pub(crate) struct Delay {
     pub(crate) samples: f64,
     /// Standard deviation of that.
     pub(crate) sigma: f64,
+    /// What the angle moves in a sample there, radians.
+    pub(crate) speed: f64,
 }
 
 /// By the longest curves that the angle has samples enough for, the shorter ones first; these give the speed.
@@ -54,13 +59,14 @@ pub(crate) fn delays(angle: &[f64]) -> Vec<Delays> {
     let Some(shortest) = curves.first() else {
         return vec![];
     };
-    let moves = [1, 2].map(|i| shortest.at_each(angle, i));
-    let look = |curve: &Curve| Delays::new(angle, curve, &moves);
+    let [speed, bend] = [1, 2].map(|i| shortest.at_each(angle, i));
+    let speed = Rc::new(speed);
+    let look = |curve: &Curve| Delays::new(angle, curve, (&speed, &bend));
     curves.iter().map(look).collect()
 }
 
 impl Delays {
-    fn new(angle: &[f64], curve: &Curve, [speed, bend]: &[Vec<f64>; 2]) -> Self {
+    fn new(angle: &[f64], curve: &Curve, (speed, bend): (&Rc<Vec<f64>>, &[f64])) -> Self {
         let (n, side) = (angle.len(), curve.side);
         let middle = curve.at_each(angle, 0);
         let mut left = vec![0.0; n];
@@ -72,6 +78,7 @@ impl Delays {
         let templates = Templates::new(curve, length);
         let mut this = Self {
             side,
+            speed: Rc::clone(speed),
             told: vec![0.0; n],
             samples: vec![0.0; n],
             corner: vec![0.0; n],
@@ -79,12 +86,14 @@ impl Delays {
         };
         let edge = (EDGE * side as f64) as usize;
         let inside = if n <= length { n } else { length - 2 * edge };
-        for from in (0..n.saturating_sub(2 * edge)).step_by(inside) {
+        for begin in (0..n.saturating_sub(2 * edge)).step_by(inside) {
+            // The last one is as long as the others, for its spectrum.
+            let from = begin.min(n.saturating_sub(length));
             let to = n.min(from + length);
             let Some(seen) = templates.seen(&left[from..to]) else {
                 continue;
             };
-            for k in from + edge..to - edge {
+            for k in begin + edge..to - edge {
                 this.take(k, &seen, k - from, (speed[k], bend[k]));
             }
         }
@@ -142,6 +151,7 @@ impl Delays {
             before: k,
             samples,
             sigma: noise * (samples / told).abs(),
+            speed: self.speed[k],
         };
         Some((delay, told.abs() / noise))
     }

@@ -283,16 +283,17 @@ pub(crate) fn jumps(recording: &Recording, checked: &Checked) -> Vec<(usize, usi
         shorter[0].push(look);
     }
     for look in delays(&angle) {
-        found.extend(through_noise(&look, checked, &found));
+        found.extend(through_noise(&look, &shorter[0], checked, &found));
     }
     found.sort_unstable();
     found
 }
 
-/// Places that all noise together shows where no sample nearby is bad and none was found before; none where the angle is early
-/// by anything.
+/// Places that all noise together shows, and shorter curves too, where no sample nearby is bad and none was found before; none where the
+/// angle is early by anything.
 fn through_noise(
     look: &Delays,
+    shorter: &[Look],
     checked: &Checked,
     found: &[(usize, usize)],
 ) -> Vec<(usize, usize)> {
@@ -305,12 +306,18 @@ fn through_noise(
         if bad || found.iter().any(|f| known(f.0)) || checked.extra.iter().any(|j| known(*j)) {
             continue;
         }
+        let jump = Jump {
+            before: k,
+            size: delay.samples * delay.speed,
+            sigma: delay.sigma * delay.speed.abs(),
+        };
+        let shown = shorter.iter().all(|look| look.shows(&jump));
         let whole = delay.samples.round();
         let known = delay.sigma < ERROR;
         let off = (delay.samples - whole).abs() > WHOLE + 3.0 * delay.sigma;
-        if known && !off && (1.0..MOST).contains(&whole) {
+        if shown && known && !off && (1.0..MOST).contains(&whole) {
             list.push((k, whole as usize));
-        } else if !known || off || whole != -1.0 {
+        } else if !(shown && known) || off || whole != -1.0 {
             others += 1;
         }
     }
@@ -325,6 +332,8 @@ fn through_noise(
 fn together(apart: &[f64], reference: &Jump) -> bool {
     /// What is between them has no motion that long curves would have to follow.
     const STILL: [(usize, i32); 2] = [(600, 3), (2000, 3)];
+    /// So many times the samples on a side tell how large the noise is.
+    const ENOUGH: usize = 6;
     let k = reference.before;
     let jumps = |(side, order): (usize, i32)| {
         let reach = (AROUND + 1) * side;
@@ -335,7 +344,7 @@ fn together(apart: &[f64], reference: &Jump) -> bool {
     };
     let still = STILL
         .into_iter()
-        .filter(|(side, _)| apart.len() >= 2 * side);
+        .filter(|(side, _)| apart.len() >= ENOUGH * side);
     let inside = still.filter(|(side, _)| (*side..apart.len() - side).contains(&k));
     let looks = sides(apart.len()).chain(inside).map(jumps);
     let surest = looks.min_by(|a, b| a.1.total_cmp(&b.1));

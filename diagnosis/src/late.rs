@@ -10,7 +10,8 @@ use crate::jumps::{WHOLE, angle};
 const SURE: f64 = 5.0;
 
 /// Those of some samples behind which the angle is late by what it moves in a sample: they were put in. One of them is looked
-/// for, not the farthest of all, so a smaller delay tells; curves are as long as tells the most there.
+/// for, not the farthest of all, so a smaller delay tells, by the curves that show the largest there. The first and the last 900
+/// samples show none; of short recordings, fewer.
 pub(crate) fn late(recording: &Recording, checked: &Checked, of: &[usize]) -> Vec<usize> {
     if of.is_empty() {
         return vec![];

@@ -32,7 +32,7 @@ static GEARS: Formula = Formula {
 pub struct Gears<S: Signal> {
     /// γ gear.
     pub gear: S,
-    /// Quiet periods of travel in this gear.
+    /// Quiet periods of travel in this gear, without those that were dropped.
     pub periods: S,
     /// Periods of travel held.
     pub held_periods: S,
@@ -165,7 +165,7 @@ fn calm<S: Signal>(state: &State<S>, k: &Coefficients<S>, structure: &Structure)
 
 /// The signal is lost before the search has begun: nothing is known, and the parameters are nominal. With recall what is proven is
 /// better in all of the first gear: it may have followed a fade. Bends that swing widely on their way can come to their bounds, where the
-/// loop does not lock any more: without lock they are nominal, too.
+/// loop does not lock any more: without lock these begin again in the same way.
 #[inline(always)]
 pub fn nominal<S: Signal>(state: &State<S>, k: &Coefficients<S>, structure: &Structure) -> S::Bool {
     let lost = if structure.calibration.swings() {
@@ -186,7 +186,7 @@ pub fn nominal<S: Signal>(state: &State<S>, k: &Coefficients<S>, structure: &Str
     lost.and(unknown).named("nominal")
 }
 
-/// A period of travel has passed without a large residual since γ was as large as it begins; in the first gear a loss of lock does not take
+/// A period of travel has passed without a large residual, and was not dropped, since γ was as large as it begins; in the first gear a loss of lock does not take
 /// that back.
 #[inline(always)]
 pub fn begun<S: Signal>(state: &State<S>, k: &Coefficients<S>) -> S::Bool {

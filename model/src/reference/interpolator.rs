@@ -322,10 +322,12 @@ impl Reference {
         seen.ends_so &= self.config.gamma.waits.is_some();
         if seen.ends_so {
             self.drop_period();
-            // It counts for no gear either.
-            let alpha_hat = self.tracking.alpha_hat();
-            self.geared.1 += TAU.copysign(alpha_hat - self.geared.1);
-            self.recall.dropped(alpha_hat);
+            // It counts for no gear either. Without lock all of them begin anew.
+            if locked {
+                let alpha_hat = self.tracking.alpha_hat();
+                self.geared.1 += TAU.copysign(alpha_hat - self.geared.1);
+                self.recall.dropped(alpha_hat);
+            }
         }
         seen
     }
