@@ -115,30 +115,31 @@ impl<'a> Writer<'a> {
             && (self.uses[id.index()] == 1 || matches!(node.op, Op::Not(_)))
     }
 
-    /// The value that is only read with another point where nameless node `id` stands: it has no wire of its own.
-    pub(crate) fn moved(&self, id: NodeId) -> Option<NodeId> {
+    /// The value that node `id` is with another point only.
+    fn rescaled(&self, id: NodeId) -> Option<NodeId> {
         let node = self.graph.node(id);
         let Op::Scale(value, _) = node.op else {
             return None;
         };
         let alike = width(self.graph, id) == width(self.graph, value)
             && node.range == self.graph.node(value).range;
-        let wire = node.name.is_some() || self.kept(id) || self.is_next(id);
-        (alike && !wire).then(|| self.moved(value).unwrap_or(value))
+        alike.then_some(value)
     }
 
-    /// The nameless value that nothing but named node `id` reads, with another point: it has that name.
+    /// The value that is only read with another point where nameless node `id` stands: it has no wire of its own.
+    pub(crate) fn moved(&self, id: NodeId) -> Option<NodeId> {
+        let value = self.rescaled(id)?;
+        let wire = self.graph.node(id).name.is_some() || self.kept(id) || self.is_next(id);
+        (!wire).then(|| self.moved(value).unwrap_or(value))
+    }
+
+    /// The nameless value that nothing but node `id`, which has a wire, reads, with another point: it is computed there.
     pub(crate) fn pointed(&self, id: NodeId) -> Option<NodeId> {
-        let node = self.graph.node(id);
-        let Op::Scale(value, _) = node.op else {
-            return None;
-        };
+        let value = self.rescaled(id).filter(|_| self.moved(id).is_none())?;
         let of = self.graph.node(value);
-        let alike = width(self.graph, id) == width(self.graph, value) && node.range == of.range;
         // The name of a product says of what it is.
         let computed = matches!(of.op, Op::Add(..) | Op::Sub(..) | Op::Quantise(..));
-        let named = of.name.is_none() && self.moved(id).is_none();
-        (alike && computed && named && self.only_for(value, id)).then_some(value)
+        (computed && of.name.is_none() && self.only_for(value, id)).then_some(value)
     }
 
     fn is_next(&self, id: NodeId) -> bool {

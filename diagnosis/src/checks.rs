@@ -221,6 +221,9 @@ pub(crate) fn magnitudes(values: &[f64]) -> Vec<f64> {
     values.iter().map(|v| v.abs()).collect()
 }
 
+/// Ninth decile of the sizes of normal values about 0, in their standard deviation.
+pub(crate) const NINTH: f64 = 1.645;
+
 /// Ninth decile of sizes.
 pub(crate) fn ninth(sizes: &[f64]) -> f64 {
     let mut sizes = sizes.to_vec();

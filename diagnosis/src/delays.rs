@@ -4,11 +4,11 @@
 //! frequency by how quiet it is there.
 
 use std::collections::VecDeque;
-use std::ops::Range;
 use std::rc::Rc;
 
-use crate::checks::{magnitudes, ninth};
+use crate::checks::{NINTH, magnitudes, ninth};
 use crate::matched::{Curve, Seen, Templates, fade};
+use crate::sides::beside;
 
 /// Samples on either side through which a curve is laid that takes the motion, and its order; the longest that there are samples
 /// enough for.
@@ -20,8 +20,6 @@ const ENOUGH: usize = 6;
 const EDGE: f64 = 1.5;
 /// Samples that are transformed together.
 const BLOCK: usize = 1 << 16;
-/// So many times the samples on a side, to either side, tell how large the noise is just there.
-const AROUND: usize = 8;
 
 /// How an angle is seen to be early behind each of its samples, with curves of one length.
 pub(crate) struct Delays {
@@ -119,52 +117,36 @@ impl Delays {
 
     /// The noise of `told` there.
     fn noise(&self, k: usize) -> f64 {
-        let (n, side) = (self.told.len(), self.side);
-        let before = k.saturating_sub(AROUND * side)..k.saturating_sub(side);
-        let after = (k + side).min(n)..(k + AROUND * side).min(n);
-        let of = |range: Range<usize>| {
-            let enough = range.len() > side;
-            enough.then(|| deviation(&self.told[range]))
-        };
-        [before, after]
-            .into_iter()
-            .filter_map(of)
+        let near = beside(k, self.side, self.told.len());
+        let enough = near.into_iter().filter(|range| range.len() > self.side);
+        enough
+            .map(|range| deviation(&self.told[range]))
             .fold(self.typical, f64::max)
     }
 
-    /// What is told at a sample, and by how many standard deviations, if the likeliest corner of the drive near it, whose square is
-    /// given, is less likely. Where the place is `known`, it is dear that a corner may stand anywhere and have any order.
-    fn told(&self, k: usize, corner: f64, known: bool) -> Option<(Delay, f64)> {
-        let told = self.told[k];
-        let square = told * told;
-        if square == 0.0 || !known && corner >= square {
-            return None;
+    /// What is told at a sample, by that noise.
+    fn delay(&self, k: usize, noise: f64) -> Delay {
+        Delay {
+            before: k,
+            samples: self.samples[k],
+            sigma: noise * (self.samples[k] / self.told[k]).abs(),
+            speed: self.speed[k],
         }
-        let noise = self.noise(k);
+    }
+
+    /// What is told at a sample that is known, and by how many standard deviations, if no corner of the drive near it is likelier: that
+    /// one may stand anywhere and have any order is dear.
+    pub(crate) fn at(&self, k: usize) -> Option<(Delay, f64)> {
+        let (told, noise, reach) = (self.told[k], self.noise(k), self.side / 2);
+        let near = k.saturating_sub(reach)..(k + reach + 1).min(self.told.len());
         let places = 3 * (self.side + 1);
         let paid = 2.0 * (places as f64).ln() * noise.powi(2);
-        if known && corner >= square + paid {
-            return None;
-        }
-        let samples = self.samples[k];
-        let delay = Delay {
-            before: k,
-            samples,
-            sigma: noise * (samples / told).abs(),
-            speed: self.speed[k],
-        };
-        Some((delay, told.abs() / noise))
-    }
-
-    /// What is told at a sample that is known, and by how many standard deviations.
-    pub(crate) fn at(&self, k: usize) -> Option<(Delay, f64)> {
-        let reach = self.side / 2;
-        let near = k.saturating_sub(reach)..(k + reach + 1).min(self.told.len());
         let corner = self.corner[near].iter().copied().fold(0.0, f64::max);
-        self.told(k, corner, true)
+        let likelier = told != 0.0 && corner < told * told + paid;
+        likelier.then(|| (self.delay(k, noise), told.abs() / noise))
     }
 
-    /// Delays of more than `sure` standard deviations.
+    /// Delays of more than `sure` standard deviations that are likelier than every corner of the drive near them.
     pub(crate) fn far(&self, sure: f64) -> Vec<Delay> {
         let sizes = magnitudes(&self.told);
         if sizes.iter().all(|size| *size <= sure * self.typical) {
@@ -173,9 +155,10 @@ impl Delays {
         let [highest, corner] = [&sizes, &self.corner].map(|of| largest_near(of, self.side / 2));
         (0..sizes.len())
             .filter(|k| sizes[*k] > sure * self.typical && sizes[*k] >= highest[*k])
-            .filter_map(|k| self.told(k, corner[k], false))
-            .filter(|(_, told)| *told > sure)
-            .map(|(delay, _)| delay)
+            .filter(|k| corner[*k] < sizes[*k].powi(2))
+            .map(|k| (k, self.noise(k)))
+            .filter(|(k, noise)| sizes[*k] > sure * noise)
+            .map(|(k, noise)| self.delay(k, noise))
             .collect()
     }
 
@@ -212,7 +195,7 @@ fn largest_near(values: &[f64], reach: usize) -> Vec<f64> {
 
 /// Of a normal distribution about 0, from its ninth decile.
 fn deviation(values: &[f64]) -> f64 {
-    ninth(&magnitudes(values)) / 1.645
+    ninth(&magnitudes(values)) / NINTH
 }
 
 #[cfg(test)]

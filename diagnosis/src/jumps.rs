@@ -2,11 +2,12 @@
 
 use nonius_recording::Recording;
 
-use crate::checks::{Checked, magnitudes, ninth, repeats};
+use crate::checks::{Checked, NINTH, magnitudes, ninth, repeats};
 use crate::context::{against, unwrapped};
 use crate::correlate::sums;
-use crate::delays::{Delays, delays};
+use crate::delays::{Delay, Delays, delays};
 use crate::first;
+use crate::sides::{AROUND, beside, column, is_about, powers};
 use crate::solve::{dot, weights_of};
 
 /// Samples on either side of a jump that are compared, and the order of the curve through them; on slow axes more of them
@@ -14,20 +15,23 @@ use crate::solve::{dot, weights_of};
 const SIDES: [(usize, i32); 6] = [(4, 3), (8, 3), (8, 5), (24, 3), (64, 5), (200, 5)];
 /// So many times the ninth decile of what the curve leaves is a jump: eight standard deviations.
 const FAR: f64 = 4.9;
-/// A jump is so near a whole number of samples, beside what noise makes of it.
-pub(crate) const WHOLE: f64 = 0.15;
 /// Most samples lost at one place that are believed without a clock.
 const MOST: f64 = 32.0;
-/// So many times the samples on a side, to either side, tell how large the noise is just there.
-const AROUND: usize = 8;
 /// Standard deviations by which the sensor has to be seen to jump with its reference.
 const TOGETHER: f64 = 3.0;
 /// Standard deviations by which fewer samples may show another jump than more of them do.
 const ALIKE: f64 = 3.5;
 /// Standard deviations from which on all noise together shows a delay.
 const SURE: f64 = 6.5;
-/// Standard deviation of a number of samples below which it is a number.
-const ERROR: f64 = 0.2;
+/// Standard deviation of a number of samples below which it is a number: by one look, and by all noise together.
+const ERROR: f64 = 0.15;
+const ERROR_IN_NOISE: f64 = 0.2;
+
+/// How many samples are missing, if that is a whole number.
+fn whole_number(samples: f64, sigma: f64, known: f64) -> Option<usize> {
+    let lost = samples > 0.5 && samples < MOST && sigma < known;
+    (lost && is_about(samples, samples.round(), sigma)).then(|| samples.round() as usize)
+}
 
 /// A place where an angle jumps: before which sample, how far, and how large the noise is there.
 struct Jump {
@@ -36,28 +40,13 @@ struct Jump {
     sigma: f64,
 }
 
-/// A function of the place among `side` samples on either side, which are the places from −1 to 1.
-fn column(side: usize, f: impl Fn(f64) -> f64) -> Vec<f64> {
-    let middle = side as f64 - 0.5;
-    (0..2 * side)
-        .map(|i| f((i as f64 - middle) / middle))
-        .collect()
-}
-
-/// What a curve of that order through `side` samples on either side is made of.
-fn powers(side: usize, order: i32) -> Vec<Vec<f64>> {
-    (0..=order)
-        .map(|degree| column(side, |x| x.powi(degree)))
-        .collect()
-}
-
 /// What a step between two samples in the middle adds to a curve of that order through `side` samples on either side: the
 /// weights of the samples that give its size, free of that curve, and of one of the samples.
 fn step_weights(side: usize, order: i32, but: Option<usize>) -> Vec<f64> {
     let single = |one: usize| (0..2 * side).map(|i| f64::from(i == one)).collect();
-    let mut curve = powers(side, order);
+    let mut curve = powers(2 * side, order);
     curve.extend(but.map(single));
-    let step = column(side, |x| 0.5 * x.signum());
+    let step = column(2 * side, |x| 0.5 * x.signum());
     weights_of(&step, &curve)
 }
 
@@ -70,10 +59,10 @@ impl Corners {
     fn new(side: usize, order: i32) -> Self {
         /// Steps of a sixteenth of a side by which they may stand beside the middle.
         const BESIDE: i32 = 4;
-        let curve = powers(side, order);
+        let curve = powers(2 * side, order);
         let corner = |(degree, place): (i32, i32)| -> Vec<f64> {
             let from = f64::from(place) / 16.0;
-            let bent = column(side, |x| (x - from).max(0.0).powi(degree));
+            let bent = column(2 * side, |x| (x - from).max(0.0).powi(degree));
             let free = crate::solve::without(&bent, &curve);
             let size = free.iter().map(|v| v * v).sum::<f64>().sqrt();
             free.iter().map(|v| v / size).collect()
@@ -180,18 +169,16 @@ impl<'a> Look<'a> {
         &self.angle[jump.before - self.side..jump.before + self.side]
     }
 
-    /// Ninth decile of the sizes on either side of a place; a jump shows itself up to a side away from it.
+    /// Ninth decile of the sizes on either side of a place.
     fn noise(&self, k: usize, typical: f64) -> f64 {
-        let (n, side) = (self.sizes.len(), self.side);
-        let before = k.saturating_sub(AROUND * side)..k.saturating_sub(side);
-        let after = (k + side).min(n)..(k + AROUND * side).min(n);
-        let ninth = |range| ninth(&magnitudes(&self.sizes[range]));
-        typical.max(ninth(before)).max(ninth(after))
+        let near = beside(k, self.side, self.sizes.len());
+        let ninths = near.map(|range| ninth(&magnitudes(&self.sizes[range])));
+        ninths.into_iter().fold(typical, f64::max)
     }
 
     /// Standard deviation of the sizes there.
     fn sigma(&self, k: usize) -> f64 {
-        self.noise(k, 0.0) / 1.645
+        self.noise(k, 0.0) / NINTH
     }
 
     /// Where it jumps farther than noise does.
@@ -211,7 +198,7 @@ impl<'a> Look<'a> {
                 far.push(Jump {
                     before: k,
                     size: self.sizes[k],
-                    sigma: noise / 1.645,
+                    sigma: noise / NINTH,
                 });
             }
         }
@@ -240,10 +227,7 @@ impl<'a> Look<'a> {
         let way = self.angle[k + side - 1] - self.angle[k - side];
         let moves = (way - jump.size) / (2 * side - 1) as f64;
         let samples = jump.size / moves;
-        let error = jump.sigma / moves.abs();
-        let off = (samples - samples.round()).abs();
-        let whole = samples > 0.5 && samples < MOST && error < 0.15 && off < WHOLE + 3.0 * error;
-        whole.then(|| samples.round() as usize)
+        whole_number(samples, jump.sigma / moves.abs(), ERROR)
     }
 }
 
@@ -289,43 +273,31 @@ pub(crate) fn jumps(recording: &Recording, checked: &Checked) -> Vec<(usize, usi
     found
 }
 
-/// Places that all noise together shows, and shorter curves too, where no sample nearby is bad and none was found before; none where the
-/// angle is early by anything.
+/// Places that all noise together shows, and shorter curves too.
 fn through_noise(
     look: &Delays,
     shorter: &[Look],
     checked: &Checked,
     found: &[(usize, usize)],
 ) -> Vec<(usize, usize)> {
-    let mut list = vec![];
-    let mut others = 0;
-    for delay in look.far(SURE) {
-        let k = delay.before;
-        let known = |j: usize| k.abs_diff(j) <= look.side();
-        let bad = (k - 2..k + 2).any(|j| checked.weight[j] == 0.0);
-        if bad || found.iter().any(|f| known(f.0)) || checked.extra.iter().any(|j| known(*j)) {
-            continue;
-        }
+    let shown = |delay: &Delay| {
         let jump = Jump {
-            before: k,
+            before: delay.before,
             size: delay.samples * delay.speed,
             sigma: delay.sigma * delay.speed.abs(),
         };
-        let shown = shorter.iter().all(|look| look.shows(&jump));
-        let whole = delay.samples.round();
-        let known = delay.sigma < ERROR;
-        let off = (delay.samples - whole).abs() > WHOLE + 3.0 * delay.sigma;
-        if shown && known && !off && (1.0..MOST).contains(&whole) {
-            list.push((k, whole as usize));
-        } else if !(shown && known) || off || whole != -1.0 {
-            others += 1;
-        }
-    }
-    if list.len() > 4 * others {
-        list
-    } else {
-        vec![]
-    }
+        shorter.iter().all(|look| look.shows(&jump))
+    };
+    let put_in = |delay: &Delay| {
+        let known = delay.sigma < ERROR_IN_NOISE && is_about(delay.samples, -1.0, delay.sigma);
+        known && delay.samples.round() == -1.0 && shown(delay)
+    };
+    let far = look.far(SURE).into_iter().filter(|delay| !put_in(delay));
+    let seen = far.map(|delay| {
+        let missing = whole_number(delay.samples, delay.sigma, ERROR_IN_NOISE);
+        (delay.before, missing.filter(|_| shown(&delay)))
+    });
+    believed(seen, look.side(), checked, found)
 }
 
 /// Whether the sensor jumps with its reference: what is between them does not jump, and would if the reference alone did.
@@ -351,8 +323,7 @@ fn together(apart: &[f64], reference: &Jump) -> bool {
     surest.is_some_and(|(size, sigma)| size + TOGETHER * sigma < reference.size.abs())
 }
 
-/// Those of the jumps that are of whole samples, and that shorter curves show, where no sample nearby is bad and none was found
-/// before; none where the angle jumps by anything, for a whole number is chance there.
+/// Those of the jumps that are of whole samples, and that shorter curves show.
 fn whole(
     look: &Look,
     shorter: &[Look],
@@ -360,18 +331,32 @@ fn whole(
     checked: &Checked,
     found: &[(usize, usize)],
 ) -> Vec<(usize, usize)> {
+    let seen = far.into_iter().map(|jump| {
+        let missing = look.missing(&jump);
+        let shown = missing.filter(|_| shorter.iter().all(|look| look.shows(&jump)));
+        (jump.before, shown)
+    });
+    believed(seen, look.side, checked, found)
+}
+
+/// Places, and how many samples are missing there if that is a whole number, where no sample nearby is bad and none was found before;
+/// none where the angle jumps by anything, for a whole number is chance there.
+fn believed(
+    seen: impl Iterator<Item = (usize, Option<usize>)>,
+    side: usize,
+    checked: &Checked,
+    found: &[(usize, usize)],
+) -> Vec<(usize, usize)> {
     let mut list = vec![];
     let mut others = 0;
-    for jump in far {
-        let k = jump.before;
-        let known = |j: usize| k.abs_diff(j) <= look.side;
+    for (k, missing) in seen {
+        let known = |j: usize| k.abs_diff(j) <= side;
         let bad = (k - 2..k + 2).any(|j| checked.weight[j] == 0.0);
         let bad = bad || checked.extra.iter().any(|j| known(*j));
         if bad || found.iter().any(|f| known(f.0)) {
             continue;
         }
-        let missing = look.missing(&jump);
-        match missing.filter(|_| shorter.iter().all(|look| look.shows(&jump))) {
+        match missing {
             Some(samples) => list.push((k, samples)),
             None => others += 1,
         }

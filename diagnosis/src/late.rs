@@ -4,7 +4,8 @@ use nonius_recording::Recording;
 
 use crate::checks::Checked;
 use crate::delays::delays;
-use crate::jumps::{WHOLE, angle};
+use crate::jumps::angle;
+use crate::sides::is_about;
 
 /// Standard deviations from which on a delay counts.
 const SURE: f64 = 5.0;
@@ -23,9 +24,7 @@ pub(crate) fn late(recording: &Recording, checked: &Checked, of: &[usize]) -> Ve
     let is_late = |k: &usize| {
         let looks = all.iter().filter_map(|look| look.at(*k));
         let best = looks.max_by(|a, b| a.1.total_cmp(&b.1));
-        best.is_some_and(|(delay, told)| {
-            told > SURE && (delay.samples + 1.0).abs() < WHOLE + 3.0 * delay.sigma
-        })
+        best.is_some_and(|(delay, told)| told > SURE && is_about(delay.samples, -1.0, delay.sigma))
     };
     of.iter().copied().filter(is_late).collect()
 }

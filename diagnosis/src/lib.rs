@@ -54,6 +54,7 @@ mod score;
 mod select;
 mod selection;
 mod sensor;
+mod sides;
 mod silent;
 mod simpler;
 mod simulation;

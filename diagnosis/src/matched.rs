@@ -1,12 +1,13 @@
 //! Matched filters for what a delay makes of an angle: a step and a ramp, and what corners of a drive do, each frequency by how
 //! quiet it is.
 
-use std::f64::consts::{LN_2, PI};
+use std::f64::consts::LN_2;
 
 use nonius_fourier::{Complex, forward, inverse};
 
 use crate::correlate::sums;
-use crate::lines::median;
+use crate::lines::{median, window};
+use crate::sides::powers;
 use crate::solve::{dot, weights_of};
 
 /// Bins of a spectrum over which it is about as high: at least so many, and so large a part of a frequency.
@@ -21,13 +22,7 @@ pub(crate) struct Curve {
 impl Curve {
     pub(crate) fn new((side, order): (usize, i32)) -> Self {
         let reach = side as f64;
-        let powers: Vec<Vec<f64>> = (0..=order)
-            .map(|degree| {
-                (0..=2 * side)
-                    .map(|i| (i as f64 / reach - 1.0).powi(degree))
-                    .collect()
-            })
-            .collect();
+        let powers = powers(2 * side + 1, order);
         let weights = |degree: usize, by: f64| -> Vec<f64> {
             let others = powers.iter().enumerate().filter(|(i, _)| *i != degree);
             let others: Vec<Vec<f64>> = others.map(|(_, power)| power.clone()).collect();
@@ -75,7 +70,7 @@ impl Curve {
 pub(crate) fn fade(values: &mut [f64], over: usize) {
     let n = values.len();
     for i in 0..over.min(n / 2) {
-        let by = 0.5 - 0.5 * (PI * (i as f64 + 0.5) / over as f64).cos();
+        let by = window(i, 2 * over);
         values[i] *= by;
         values[n - 1 - i] *= by;
     }

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use nonius_quantity::{agree, counted};
 use nonius_recording::Recording;
 
-use crate::checks::{Checked, TimeBase, ninth, repeats};
+use crate::checks::{Checked, NINTH, TimeBase, ninth, repeats};
 use crate::finding::{Finding, Parameter, Place};
 use crate::jumps::jumps;
 use crate::late::late;
@@ -62,7 +62,7 @@ fn uneven(values: &[f64]) -> Vec<f64> {
     let range = LINE..values.len().saturating_sub(LINE);
     let off = range.map(|k| (values[k] - values[k - 1] - slope(values, k)).abs());
     let off: Vec<f64> = off.collect();
-    let rms = |block: &[f64]| ninth(block) / 1.645 / 2f64.sqrt();
+    let rms = |block: &[f64]| ninth(block) / NINTH / 2f64.sqrt();
     off.chunks(BLOCK).map(rms).collect()
 }
 

@@ -123,7 +123,8 @@ fn worse_by(spec: &Spec) -> f64 {
 }
 
 /// Once a period of travel has passed in which no residual was large, a loss leaves what was known: the parameters are hardly worse
-/// than they would be at their worst in the four periods after it without it. Once a gear has ended calm, a loss of any length moves next to nothing.
+/// than they would be at their worst in the four periods after it without it. Once a gear has ended calm, a loss of any length moves next
+/// to nothing.
 #[test]
 fn a_loss_soon_after_lock() {
     const PLACES: u32 = 8;

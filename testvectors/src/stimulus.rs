@@ -143,8 +143,9 @@ pub fn named(design: &Design, rows: usize) -> Vec<Stimulus> {
             };
             faded(pair(0.02 * k as f64 * (top / 0.1), 1.0, 0.0), gain)
         }),
-        // At top speed, soon after lock, each second period has a part that is too large. The signal fades slowly once gamma has settled, and stays so until the search begins again; where there is recall it
-        // changes for some periods once gamma has settled on it, is then back, and grows until the radius is far too large.
+        // At top speed, soon after lock, each second period has a part that is too large. The signal fades slowly once gamma has settled,
+        // and stays so until the search begins again; where there is recall it changes for some periods once gamma has settled on it,
+        // is then back, and grows until the radius is far too large.
         motion("fade", &|k| {
             let travelled = k as f64 * top;
             let fading = (k as f64 - n / 3.0) * top;

@@ -186,8 +186,8 @@ pub fn nominal<S: Signal>(state: &State<S>, k: &Coefficients<S>, structure: &Str
     lost.and(unknown).named("nominal")
 }
 
-/// A period of travel has passed without a large residual, and was not dropped, since γ was as large as it begins; in the first gear a loss of lock does not take
-/// that back.
+/// A period of travel has passed without a large residual, and was not dropped, since γ was as large as it begins; in the first gear a
+/// loss of lock does not take that back.
 #[inline(always)]
 pub fn begun<S: Signal>(state: &State<S>, k: &Coefficients<S>) -> S::Bool {
     let any = state.gear_periods.less_than(k.one).not();

@@ -143,6 +143,11 @@ impl Hold {
     }
 }
 
+/// An angle a period further on towards α̂, radians: a period that is travelled and does not count.
+pub(super) fn a_period_on(since: f64, alpha_hat: f64) -> f64 {
+    since + TAU.copysign(alpha_hat - since)
+}
+
 /// Θ of better days: where it begins to be held, a fade has already taken it along for some periods.
 ///
 /// Where the residual stays, γ begins again, and Θ follows a signal that fades more slowly than that; where the radius is then far
@@ -214,7 +219,7 @@ impl Recall {
 
     /// A period of travel, up to α̂, has taught nothing.
     pub fn dropped(&mut self, alpha_hat: f64) {
-        self.since += TAU.copysign(alpha_hat - self.since);
+        self.since = a_period_on(self.since, alpha_hat);
     }
 
     /// Takes Θ of a sample, to be remembered after `periods` of travel, with the last γ after twice as many.

@@ -325,7 +325,7 @@ impl Reference {
             // It counts for no gear either. Without lock all of them begin anew.
             if locked {
                 let alpha_hat = self.tracking.alpha_hat();
-                self.geared.1 += TAU.copysign(alpha_hat - self.geared.1);
+                self.geared.1 = hold::a_period_on(self.geared.1, alpha_hat);
                 self.recall.dropped(alpha_hat);
             }
         }
