@@ -136,6 +136,7 @@ pub fn registers(structure: &Structure) -> (Vec<&'static str>, Vec<&'static str>
         "theta_6_deviation" | "theta_7_deviation" | "theta_8_deviation" => c.has_bend(),
         "gamma_gear" | "gear_periods" | "held_periods" | "travel_origin" | "travel_low"
         | "travel_high" | "disturbed" | "risen" | "held" => c.is_on(),
+        "unlocked_samples" | "failed_periods" => c.may_stray(),
         "astray" | "astray_before" | "astray_long" => structure.catches_up(),
         "rough" | "calm" => c.is_on() && c.settles(),
         "ahead_used" | "behind_used" => c.is_on() && !c.is_batch(),
@@ -287,6 +288,8 @@ pub fn register_format(name: &str, structure: &Structure) -> crate::format::Form
         "gamma_gear" => f.gamma_gear.format,
         "gear_periods" => f.gear_periods.format,
         "held_periods" => f.held_periods.format,
+        "unlocked_samples" => f.unlocked_samples.format,
+        "failed_periods" => f.failed_periods.format,
         "travel_samples" => f.travel_samples.format,
         "gathered_9" => f.deviation[8].format,
         "start_periods" => f.start_periods.format,

@@ -131,7 +131,8 @@ fn a_period_that_is_dropped_counts_for_no_gear() {
 }
 
 /// Whatever happens within forty periods of power-up, gains that jump, channels that go, jolts and stops, of any length: all searches
-/// along the radius find back. Of sums of squares and batches one in two hundred does not: it has learnt what it does not lock to, or another ellipse.
+/// along the radius find back. Sums of squares and batches learn what they do not lock to, or another ellipse, on one of two hundred courses, and
+/// give it up; on one of 3200 they do not.
 #[test]
 fn what_happens_early_is_forgotten() {
     let cases = if long() { 400 } else { 12 };
@@ -159,11 +160,11 @@ fn what_happens_early_is_forgotten() {
         of_squares.len(),
         squares.len() as u64 * cases
     );
-    assert!(of_squares.len() as u64 <= squares.len() as u64 * cases / 50);
+    assert!(of_squares.len() as u64 <= squares.len() as u64 * cases / 3000);
     assert_eq!(lost(&along), [""; 0]);
 }
 
-/// Whether one search is calibrated again, in lock, 400 periods after forty with whatever can happen.
+/// Whether one search is calibrated again, in lock, 400 to 1600 periods after forty with whatever can happen.
 fn finds_back(variant: &Variant, case: u64) -> bool {
     let mut spec = variant.spec.clone();
     if spec.calibration.recalls() {
@@ -191,10 +192,16 @@ fn finds_back(variant: &Variant, case: u64) -> bool {
             bench.step((gain[0] * c, gain[1] * s));
         }
     }
-    for _ in 0..400 * PERIOD {
-        turns += 1.0 / f64::from(PERIOD);
-        bench.step(signals(TAU * turns));
+    // What strays is given up after some time, and found then.
+    for _ in 0..4 {
+        for _ in 0..400 * PERIOD {
+            turns += 1.0 / f64::from(PERIOD);
+            bench.step(signals(TAU * turns));
+        }
+        let after = largest(&bench.miscalibration_at(72, &signals));
+        if bench.chip.state.locked && after < 0.05 * first {
+            return true;
+        }
     }
-    let after = largest(&bench.miscalibration_at(72, &signals));
-    bench.chip.state.locked && after < 0.05 * first
+    false
 }

@@ -163,8 +163,18 @@ const REASONS: &[(&[&str], &str, &[&str])] = &[
     ),
     (
         &["held_periods"],
-        "counts the periods of travel that the parameters are held",
+        "counts the periods of travel with a large residual",
         &["calibration.hold_periods"],
+    ),
+    (
+        &["unlocked_samples"],
+        "counts samples without lock, up to 256 times the full lock level",
+        &["formats.lock_level_bits"],
+    ),
+    (
+        &["failed_periods"],
+        "counts the periods of travel after each of which the search began again",
+        &[],
     ),
     (
         &["start_periods"],

@@ -163,8 +163,8 @@ module optical (
     reg signed [6:0] lock_level; // Confidence of the lock detector.
     reg signed [2:0] loop_gear; // Loop gear: 0 widest, the last is the designed bandwidth.
     reg signed [3:0] gamma_gear; // γ gear: 0 largest.
-    reg signed [6:0] gear_periods; // Quiet periods of travel in this γ gear, or since a recall.
-    reg signed [8:0] held_periods; // Periods of travel held, where better parameters are known less the free ones.
+    reg signed [6:0] gear_periods; // Quiet periods kept in this γ gear, or since a recall.
+    reg signed [8:0] held_periods; // Periods with a large residual, with better parameters known less free ones.
     reg signed [7:0] travel_origin; // Position, modulo 4 periods, where the map of sectors was last cleared.
     reg signed [7:0] travel_low; // Lowest sector seen since, relative to the origin.
     reg signed [7:0] travel_high; // Highest sector seen since, relative to the origin.
@@ -840,7 +840,7 @@ module optical (
     wire holding = (disturbed_period & ~gamma_restart) | still_held; // step 12
     wire signed [3:0] gamma_gear_searched_now = gamma_restart ? 4'sd0 : gamma_gear_counted; // u3.0, step 12
     wire signed [6:0] gear_periods_next_now = gear_periods_again ? 7'sd0 : gear_periods_next_bits; // u6.0, step 12
-    wire first_gear_period = quiet_period_ends & gamma_gear_below_one; // step 12
+    wire first_gear_period = quiet_period_kept & gamma_gear_below_one; // step 12
     wire disturbed_next_now = residual_large | (disturbed & within_period); // step 12
     wire rough_next_now = residual_rough | (rough & within_period); // step 12
     wire risen_next_now = radius_large | (risen & within_period); // step 12

@@ -220,6 +220,11 @@ pub(super) fn structure(
             };
             counting_to(known.max(Calibration::HELD) - 1)
         },
+        unlocked_samples: {
+            let w = unlocked_bits(follow.lock_level_bits);
+            Quantiser::wrapping(Format::unsigned(w, w))
+        },
+        failed_periods: counting_to(Calibration::FAILED),
     };
     Ok(Structure {
         method: match spec.tracking.method {
@@ -329,6 +334,7 @@ pub(super) fn constants(
         ranges(spec).nominal,
         structure.formats.theta[0].format.fraction,
     );
+    let unlocked = unlocked_bits(follow.lock_level_bits);
     let full = (1i64 << follow.lock_level_bits) - 1;
     Coefficients {
         adc_middle: Constant::rounded(0.5, 1),
@@ -374,6 +380,9 @@ pub(super) fn constants(
         gamma_gear_last: whole(structure.calibration.gears().into()),
         gear_periods_last: whole(i64::from(spec.calibration.gear_periods()) - 1),
         held_periods_last: whole(i64::from(Calibration::HELD) - 1),
+        unlocked_sample: Constant::rounded(exp2(-i64::from(unlocked)), unlocked),
+        unlocked_samples_last: Constant::rounded(1.0 - exp2(-i64::from(unlocked)), unlocked),
+        failed_periods_last: whole(Calibration::FAILED.into()),
         returning_periods: whole(spec.calibration.returning_periods().into()),
         hold_periods_last: whole(i64::from(spec.calibration.hold_periods()) - 1),
         start_periods_last: whole(START_PERIODS.into()),
@@ -384,6 +393,11 @@ pub(super) fn constants(
         half: Constant::rounded(0.5, 1),
         quarter: Constant::rounded(0.25, 2),
     }
+}
+
+/// 256 times the full lock level: a signal that can be locked to is by then, many times over, and one that is stuck for less costs nothing.
+fn unlocked_bits(lock_level_bits: u32) -> u32 {
+    lock_level_bits + 8
 }
 
 /// Fifteen sixteenths of what a parameter may be away from its nominal value.

@@ -154,6 +154,12 @@ coefficients! {
     held_periods_last,
     /// The same where better ones are known.
     hold_periods_last,
+    /// One sample without lock, of all that the counter of samples without lock can hold.
+    unlocked_sample,
+    /// Samples without lock from which on the search has strayed.
+    unlocked_samples_last,
+    /// Periods that failed from which on it has.
+    failed_periods_last,
     /// Quiet periods of travel after a recall that move nothing.
     returning_periods,
     /// Periods of travel that the start solves.

@@ -13,6 +13,7 @@
 
 use super::calibration::Gate;
 use super::detector::within;
+use super::strays::strays;
 use super::{Coefficients, State, Structure};
 use crate::signal::{Formula, Logic, Signal};
 
@@ -34,11 +35,11 @@ pub struct Gears<S: Signal> {
     pub gear: S,
     /// Quiet periods of travel in this gear, without those that were dropped.
     pub periods: S,
-    /// Periods of travel held.
+    /// Periods of travel with a large residual.
     pub held_periods: S,
     /// The periods of this gear have passed without a large residual.
     pub passed: S::Bool,
-    /// A period of the first gear has passed without a large residual.
+    /// A period of the first gear has passed without a large residual, and was not dropped.
     pub first: S::Bool,
     /// The search begins again.
     pub restart: S::Bool,
@@ -165,7 +166,7 @@ fn calm<S: Signal>(state: &State<S>, k: &Coefficients<S>, structure: &Structure)
 
 /// The signal is lost before the search has begun: nothing is known, and the parameters are nominal. With recall what is proven is
 /// better in all of the first gear: it may have followed a fade. Bends that swing widely on their way can come to their bounds, where the
-/// loop does not lock any more: without lock these begin again in the same way.
+/// loop does not lock any more: without lock these begin again in the same way. A search that [`strays`] begins again wherever it is.
 #[inline(always)]
 pub fn nominal<S: Signal>(state: &State<S>, k: &Coefficients<S>, structure: &Structure) -> S::Bool {
     let lost = if structure.calibration.swings() {
@@ -183,7 +184,10 @@ pub fn nominal<S: Signal>(state: &State<S>, k: &Coefficients<S>, structure: &Str
     } else {
         unknown
     };
-    lost.and(unknown).named("nominal")
+    let lost = lost.and(unknown);
+    strays(state, k, structure)
+        .map_or(lost, |strays| lost.named("lost_and_unknown").or(strays))
+        .named("nominal")
 }
 
 /// A period of travel has passed without a large residual, and was not dropped, since γ was as large as it begins; in the first gear a
@@ -196,7 +200,7 @@ pub fn begun<S: Signal>(state: &State<S>, k: &Coefficients<S>) -> S::Bool {
 
 /// γ is as large as it begins.
 #[inline(always)]
-fn first_gear<S: Signal>(state: &State<S>, k: &Coefficients<S>) -> S::Bool {
+pub fn first_gear<S: Signal>(state: &State<S>, k: &Coefficients<S>) -> S::Bool {
     state.gamma_gear.less_than(k.one)
 }
 
@@ -328,8 +332,8 @@ pub fn gears<S: Signal>(
         .quantise(&structure.formats.gamma_gear)
         .named("gamma_gear_counted");
     let quiet_ends = tick.and(quiet).named("quiet_period_ends");
-    let one_more = learned.and(quiet).named("quiet_period_kept");
-    let one_more = S::select(one_more, k.one, k.zero).named("gear_periods_up");
+    let kept = learned.and(quiet).named("quiet_period_kept");
+    let one_more = S::select(kept, k.one, k.zero).named("gear_periods_up");
     let counted = (state.gear_periods + one_more).quantise(&structure.formats.gear_periods);
     // Periods before one that was not quiet, or before a loss of lock, were not quiet. In the first gear they say that there is
     // something to keep.
@@ -363,10 +367,7 @@ pub fn gears<S: Signal>(
         periods: S::select(again, k.zero, counted).quantise(&structure.formats.gear_periods),
         held_periods,
         passed,
-        first: tick
-            .and(quiet)
-            .and(first_gear(state, k))
-            .named("first_gear_period"),
+        first: kept.and(first_gear(state, k)).named("first_gear_period"),
         restart,
         stayed: restart.and(long(state, k, structure)),
         // Where nothing counts, a new period begins without suspicion.

@@ -25,6 +25,7 @@ pub mod skew;
 pub mod start;
 pub mod state;
 pub mod step;
+pub mod strays;
 pub mod sum_of_squares;
 pub mod travel;
 pub mod waits;
@@ -154,8 +155,12 @@ pub struct Formats {
     pub loop_gear: Quantiser,
     /// γ gear.
     pub gamma_gear: Quantiser,
-    /// Periods travelled in this γ gear.
+    /// Quiet periods of travel in this γ gear.
     pub gear_periods: Quantiser,
-    /// Periods of travel held.
+    /// Periods of travel with a large residual.
     pub held_periods: Quantiser,
+    /// Samples without lock.
+    pub unlocked_samples: Quantiser,
+    /// Periods of travel in which the search failed.
+    pub failed_periods: Quantiser,
 }

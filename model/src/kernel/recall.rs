@@ -16,6 +16,7 @@
 use super::calibration::Update;
 use super::detector::within;
 use super::gears::{Gears, last_gear, nominal};
+use super::strays::strays;
 use super::{Coefficients, State, Structure};
 use crate::signal::{Formula, Logic, Signal};
 use crate::spec::CalibrationMethod;
@@ -65,7 +66,12 @@ pub fn recall<S: Signal>(
     let again = back.or(lost).and(state.known).named("recall_again");
     let all = recall.or(again).or(lost).named("recall_any");
     if !all.is_known_false() {
-        let proven = proven(state);
+        let mut proven = proven(state);
+        if let Some(strays) = strays(state, k, structure) {
+            // The best of a search that has strayed is of where it strayed to.
+            let worthless = strays.and(state.known.not()).named("strays_unproven");
+            proven = proven.map(|theta| S::select(worthless, k.zero, theta));
+        }
         updated.theta = std::array::from_fn(|i| S::select(all, proven[i], updated.theta[i]));
     }
     if structure.calibration.method == CalibrationMethod::SumOfSquares {

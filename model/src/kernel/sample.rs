@@ -3,7 +3,8 @@
 use super::{Coefficients, Input, Method, Probes, State, Structure};
 use super::{
     bend, calibration, catch_up, completion, correction, detector, gears, gradient, harmonics,
-    lock, loop_filter, position, recall, sine, skew, start, step, sum_of_squares, travel, waits,
+    lock, loop_filter, position, recall, sine, skew, start, step, strays, sum_of_squares, travel,
+    waits,
 };
 use crate::signal::{Formula, Logic, Signal};
 
@@ -183,7 +184,8 @@ fn advance_of<S: Signal, const PLAIN: bool>(
         )
     });
     if let Some(completed) = &completed {
-        let (old, nominal) = (state.theta_9_deviation, gears::nominal(state, k, structure));
+        let nominal = gears::nominal(state, k, structure);
+        let old = state.theta_9_deviation;
         updated.theta[8] = step::moved(old, completed.step, 8, nominal, k, structure);
     }
     let mut gears = gears::gears(hold, gate, (counting, starting), state, k, structure);
@@ -192,6 +194,7 @@ fn advance_of<S: Signal, const PLAIN: bool>(
         .map(|recall| recall::recall(&mut updated, recall, &mut gears, state, k, structure));
     let recalled = memory.as_ref().map(|memory| memory.recalled);
     let astray = catch_up.map(|catch_up| catch_up.after(gate, counting, state));
+    let failures = strays::failures((gate, weak), state, k, structure);
     let applied = waits::apply(updated.theta, waits, gate, recalled, state);
 
     rate.begin(&FLAGS);
@@ -222,6 +225,8 @@ fn advance_of<S: Signal, const PLAIN: bool>(
     registers.gamma_gear = gears.gear;
     registers.gear_periods = gears.periods;
     registers.held_periods = gears.held_periods;
+    registers.unlocked_samples = failures.unlocked_samples;
+    registers.failed_periods = failures.failed_periods;
     registers.travel_origin = travel.origin;
     registers.travel_low = travel.low;
     registers.travel_high = travel.high;

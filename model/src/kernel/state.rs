@@ -39,10 +39,14 @@ bundle! {
         loop_gear,
         /// γ gear: 0 largest.
         gamma_gear,
-        /// Quiet periods of travel in this γ gear, or since a recall.
+        /// Quiet periods kept in this γ gear, or since a recall.
         gear_periods,
-        /// Periods of travel held, where better parameters are known less the free ones.
+        /// Periods with a large residual, with better parameters known less free ones.
         held_periods,
+        /// Samples with signal since lock was lost, until γ has settled; of its range.
+        unlocked_samples,
+        /// Periods in the first γ gear after which the search began again.
+        failed_periods,
         /// Position, modulo 4 periods, where the map of sectors was last cleared.
         travel_origin,
         /// Lowest sector seen since, relative to the origin.

@@ -127,6 +127,8 @@ impl Calibration {
     pub const SETTLED: u32 = 4;
     /// Periods of travel that parameters are held of which nothing better is known, before the search begins again.
     pub const HELD: u32 = 32;
+    /// Periods of travel after which a search that began again with each gives up what it has learnt.
+    pub const FAILED: u32 = 31;
     /// The same of those of which something is known, where the design does not say.
     pub const HELD_KNOWN: u32 = 256;
     /// Halvings of the phase's step then, in the final form of five parameters.
@@ -184,6 +186,12 @@ impl Calibration {
     #[must_use]
     pub fn swings(&self) -> bool {
         self.squares() && self.has_bend()
+    }
+
+    /// Sums of squares do not need the estimate, and can learn what the loop does not lock to.
+    #[must_use]
+    pub fn may_stray(&self) -> bool {
+        self.squares() && self.settles()
     }
 
     /// The step of the phase becomes smaller once γ has settled ([`Self::PHASE_HALVINGS`]): until then it is twice as fast as what it
