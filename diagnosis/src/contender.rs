@@ -119,6 +119,7 @@ pub(crate) fn contender(
             rivals.extend(rivals::hidden(system, &beside, &own, catalogue));
         }
         let wider = rivals::wider(&beside, &own, &rest);
+        let other_order = rivals::other_order(&beside, &own, &rest);
         if own.candidate.as_drift {
             rivals.retain(|name| name != DRIFT);
             rivals.push(DRIFT.to_owned());
@@ -150,6 +151,7 @@ pub(crate) fn contender(
             }
             system.retain(|i| i < mark);
             cause.confounded = rivals;
+            cause.other_order = other_order;
             match &named {
                 None => named = Some(Box::new(cause)),
                 Some(_) => others.push(cause),

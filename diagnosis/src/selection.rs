@@ -1,8 +1,10 @@
 //! The end of the search: what was accepted, as findings.
 
+use nonius_quantity::ordinal;
+
 use crate::cause::{Candidate, Estimate};
 use crate::exact::Start;
-use crate::finding::{Finding, Gain};
+use crate::finding::{Finding, Gain, Parameter};
 use crate::generic::HOLDS;
 use crate::model::{Fit, Halves, System, amounts};
 use crate::score::{KINDS, SHOWN};
@@ -15,6 +17,8 @@ pub(crate) struct Accepted {
     pub(crate) candidate: Candidate,
     pub(crate) first: usize,
     pub(crate) confounded: Vec<String>,
+    /// Of a harmonic, the order that it may have as well.
+    pub(crate) other_order: Option<f64>,
     /// The amounts at which its shapes are tangents; what is known of them is off the signals.
     pub(crate) x: Vec<f64>,
     /// Standard errors of inner numbers, where they were fitted.
@@ -42,6 +46,7 @@ impl Accepted {
         Self {
             first: 0,
             confounded: vec![],
+            other_order: None,
             x: vec![0.0; candidate.shapes.len()],
             inner_error: None,
             inflation: 1.0,
@@ -156,7 +161,7 @@ impl Selection {
                 .inner_error
                 .as_ref()
                 .map(|all| all.iter().map(|e| wider * e).collect());
-            let parameters = (accepted.candidate.parameters)(&Estimate {
+            let mut parameters = (accepted.candidate.parameters)(&Estimate {
                 x: &fit.solution.x[range.clone()],
                 error: &error,
                 inner: accepted.candidate.exact.as_ref().map_or(&[], |e| &e.inner),
@@ -168,6 +173,13 @@ impl Selection {
             let mut seen = (accepted.candidate.evidence)(&parameters);
             if accepted.candidate.motion && accepted.confounded.is_empty() {
                 seen += ", so the motion is real";
+            }
+            if let Some(order) = accepted.other_order {
+                parameters.push(Parameter::exact("other_order", order, "1"));
+                seen += &format!(
+                    "; a {} one, which errs the other way along the circle, explains it as well",
+                    ordinal(order as usize)
+                );
             }
             let finding = Finding {
                 cause: accepted.candidate.name.into(),

@@ -6,6 +6,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use nonius_diagnosis::{Diagnosis, Finding};
 use nonius_model::design::ORDER_MAX;
 use nonius_model::spec::Harmonic;
+use nonius_quantity::ordinal;
 
 /// Phase by which a harmonic may miss that of a bend, radians.
 const PHASE: f64 = 0.3;
@@ -19,6 +20,9 @@ const UNSURE: f64 = 1.0 / 3.0;
 /// Real and imaginary part of amplitude · exp(i phase), of the cosine and of the sine channel.
 type Pair = [[f64; 2]; 2];
 
+/// The parameter of a harmonic whose order is not sure: corrected by the wrong one, the angle would be twice as wrong.
+const OTHER_ORDER: &str = "other_order";
+
 /// Amplitude and phase.
 type Wave = (f64, f64);
 
@@ -26,6 +30,9 @@ type Wave = (f64, f64);
 /// harmonic of order 2 or 3 is one where its phase is that of the channel's power: the chip mends both alike.
 pub(super) fn bend(finding: &Finding, beta: f64) -> Option<f64> {
     let of = |name: &str| finding.parameter(name);
+    if of(OTHER_ORDER).is_some() {
+        return None;
+    }
     let largest = |a: Option<f64>, b: Option<f64>| Some(a?.abs().max(b?.abs()));
     match finding.cause.as_str() {
         // u² = (1 + T2)/2 and u³ = (3 u + T3)/4.
@@ -114,6 +121,14 @@ pub(super) fn table(found: &Diagnosis, bends: bool) -> (Vec<Harmonic>, Vec<Strin
     for finding in &found.findings {
         let waves = waves(finding, beta, whole);
         if waves.is_empty() || (bends && bend(finding, beta).is_some()) {
+            continue;
+        }
+        if let Some(other) = finding.parameter(OTHER_ORDER) {
+            left_out.push(format!(
+                "{} is not in the table of harmonics: it may be the {} harmonic as well, which errs the other way",
+                finding.cause,
+                ordinal(other as usize)
+            ));
             continue;
         }
         if unsure(finding) {

@@ -128,3 +128,41 @@ fn large() {
     );
     within_errors(&found, "threshold", 0.77);
 }
+
+/// Motion of its own at each sample, 20 mrad rms: nothing is seen along the circle.
+fn shaken(t: f64, _: f64) -> f64 {
+    let sample = (t * 50e3).round() as i64 as u64;
+    let mixed = sample.wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    let mixed = (mixed ^ (mixed >> 29)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    0.07 * ((mixed >> 11) as f64 / (1u64 << 53) as f64 - 0.5)
+}
+
+/// A third harmonic that turns backwards does to the radius what a fifth does that turns forwards: the motion tells them, and where it
+/// hides both, either order is said.
+#[test]
+fn an_order_that_may_be_another() {
+    let backwards = Case {
+        channels: |c, s, _, a, _| {
+            let third = 3.0 * a + 1.2;
+            (c + 4e-4 * third.cos(), s - 4e-4 * third.sin())
+        },
+        ..PLAIN
+    };
+    let seen = finds("spatial_harmonic", &backwards);
+    assert_eq!(seen.findings[0].parameter("order"), Some(3.0));
+    assert_eq!(seen.findings[0].parameter("other_order"), None);
+    let hidden = Case {
+        motion: shaken,
+        ..backwards
+    };
+    let hidden = finds("spatial_harmonic", &hidden);
+    let finding = &hidden.findings[0];
+    let mut orders = ["order", "other_order"].map(|name| finding.parameter(name));
+    orders.sort_by(|a, b| a.partial_cmp(b).expect("numbers"));
+    assert_eq!(orders, [Some(3.0), Some(5.0)], "{}", finding.evidence);
+    assert!(
+        finding.evidence.contains("explains it as well"),
+        "{}",
+        finding.evidence
+    );
+}
