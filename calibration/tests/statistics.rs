@@ -2,7 +2,7 @@
 //!
 //! The long form is `cargo run --release -p nonius-calibration --example statistics`.
 
-use crate::support::campaign::{Case, Tally};
+use crate::support::campaign::{Case, SENSOR, Tally};
 use nonius_calibration::Method;
 
 const NAMES: [&str; 5] = ["a_c", "b_c", "a_s", "b_s", "beta"];
@@ -10,6 +10,7 @@ const NAMES: [&str; 5] = ["a_c", "b_c", "a_s", "b_s", "beta"];
 fn run(method: Method, noise: [f64; 2], seeds: u64) -> Tally {
     let case = Case {
         method,
+        sensor: SENSOR,
         noise,
         periods: 7.0,
     };

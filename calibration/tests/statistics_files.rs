@@ -37,7 +37,7 @@ fn the_numbers_are_those_of_this_program() {
     for ((case, _), kept) in cases.iter().zip(rows) {
         let probe = case.run(0..table::PROBE, &|| ());
         let now = table::row(case, &probe, &probe);
-        for name in ["method", "noise", "periods"] {
+        for name in ["method", "sensor", "noise", "periods"] {
             assert_eq!(now[name], kept[name], "{stale}");
         }
         for name in ["bias", "spread", "stated"] {
@@ -62,7 +62,7 @@ fn what_is_promised_is_in_the_file() {
         .iter()
         .filter(|row| row["method"] == "unbiased" && row["periods"] == 7.0)
         .collect();
-    assert_eq!(promised.len(), 7);
+    assert_eq!(promised.len(), 7 + 9);
     for row in promised {
         assert_eq!((&row["seeds"], &row["refused"]), (&2000.into(), &0.into()));
         for bias in list(row, "bias") {

@@ -12,8 +12,11 @@ use nonius_calibration::{Method, Options, calibrate};
 use rand::{Rng, SeedableRng, rngs::StdRng};
 use rand_distr::{Distribution, StandardNormal};
 
-/// The sensor: offsets 10 % and −8 %, gain ratio 1.2, β = 5°.
-pub(crate) const TRUTH: [f64; 5] = [1.0, 0.1, 0.83, -0.08, 0.087_266_462_599_716_47];
+/// a_c, b_c, a_s, b_s and β (radians).
+pub(crate) type Sensor = [f64; 5];
+
+/// Offsets 10 % and −8 %, gain ratio 1.2, β = 5°.
+pub(crate) const SENSOR: Sensor = [1.0, 0.1, 0.83, -0.08, 0.087_266_462_599_716_47];
 /// In each recording.
 pub(crate) const SAMPLES: usize = 4000;
 
@@ -23,6 +26,7 @@ type Vector = SVector<f64, 5>;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Case {
     pub(crate) method: Method,
+    pub(crate) sensor: Sensor,
     /// Rms of the white noise of cosine and sine; amplitudes are about 1.
     pub(crate) noise: [f64; 2],
     /// Scale periods that the samples are spread over.
@@ -67,7 +71,7 @@ impl Case {
     }
 
     fn one(&self, seed: u64, tally: &mut Tally) {
-        let [a_c, b_c, a_s, b_s, beta] = TRUTH;
+        let [a_c, b_c, a_s, b_s, beta] = self.sensor;
         let [sigma_c, sigma_s] = self.noise;
         let mut random = StdRng::seed_from_u64(seed);
         let mut information = SMatrix::<f64, 5, 5>::zeros();
@@ -128,7 +132,7 @@ impl Case {
     /// Error and stated standard error, in units of the bound.
     fn error(&self, cos: &[f64], sin: &[f64], unit: &Vector) -> Option<(Vector, Vector)> {
         let found = calibrate(cos, sin, self.method, &Options::default()).ok()?;
-        let values = Vector::from_fn(|i, _| found.parameters[i].value - TRUTH[i]);
+        let values = Vector::from_fn(|i, _| found.parameters[i].value - self.sensor[i]);
         let mut stated = Vector::zeros();
         for i in 0..5 {
             // β where the method holds it fixed.

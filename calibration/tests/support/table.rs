@@ -5,7 +5,7 @@ use std::fmt::Write;
 use nonius_calibration::Method;
 use serde_json::{Value, json};
 
-use super::campaign::{Case, SAMPLES, TRUTH, Tally};
+use super::campaign::{Case, SAMPLES, SENSOR, Sensor, Tally};
 
 /// Seeds that a test runs again, to see whether the file is fresh.
 pub(crate) const PROBE: u64 = 2;
@@ -19,6 +19,13 @@ pub(crate) const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/offl
 /// What writes both.
 pub(crate) const COMMAND: &str = "cargo run --release -p nonius-calibration --example statistics";
 
+/// Without errors, with the opposite ones, and with a sine of half the amplitude.
+const OTHERS: [Sensor; 3] = [
+    [1.0, 0.0, 1.0, 0.0, 0.0],
+    [0.9, -0.09, 1.08, 0.108, -0.087_266_462_599_716_47],
+    [1.0, -0.1, 0.5, 0.05, 0.1],
+];
+
 /// Noise of 1.7 : 1 between the channels, either way.
 const UNEQUAL: f64 = 0.05 / 1.7;
 
@@ -29,6 +36,7 @@ pub(crate) fn cases() -> Vec<(Case, f64)> {
         out.push((
             Case {
                 method,
+                sensor: SENSOR,
                 noise,
                 periods,
             },
@@ -53,6 +61,16 @@ pub(crate) fn cases() -> Vec<(Case, f64)> {
             add(method, noise, 7.0, 0.1);
         }
     }
+    let others = OTHERS.iter().flat_map(|sensor| {
+        // Of the amplitude of each channel.
+        [0.001, 0.01, 0.05].map(|noise| Case {
+            method: Method::Unbiased,
+            sensor: *sensor,
+            noise: [noise * sensor[0], noise * sensor[2]],
+            periods: 7.0,
+        })
+    });
+    out.extend(others.map(|case| (case, 1.0)));
     out
 }
 
@@ -61,6 +79,7 @@ pub(crate) fn row(case: &Case, tally: &Tally, probe: &Tally) -> Value {
     let list = |v: nalgebra::SVector<f64, 5>| v.iter().copied().collect::<Vec<f64>>();
     json!({
         "method": case.method.name(),
+        "sensor": case.sensor,
         "noise": case.noise,
         "periods": case.periods,
         "seeds": tally.seeds,
@@ -77,18 +96,16 @@ pub(crate) fn row(case: &Case, tally: &Tally, probe: &Tally) -> Value {
 
 /// The page, from the file of numbers alone.
 pub(crate) fn page(numbers: &Value) -> String {
-    let [a_c, b_c, a_s, b_s, beta] = TRUTH;
     let mut out = format!(
         "# Off-line estimators against the Cramér–Rao bound\n\n\
          Written by `{COMMAND}`; do not edit. The numbers behind it are in\n\
          [offline-statistics.json](offline-statistics.json).\n\n\
-         Each seed is a recording of {SAMPLES} samples of a sensor with a_c = {a_c}, b_c = {b_c}, a_s = {a_s}, b_s = {b_s} and β = {:.0}°,\n\
+         Each seed is a recording of {SAMPLES} samples of a sensor (a_c, b_c, a_s, b_s, β),\n\
          used with its white noise and with the negative of it, so that bias shows apart from scatter. Of the five\n\
          parameters each column has the worst. Bias and spread (standard deviation) are in units of the bound; *stated* is\n\
          the standard error that the method gives, in units of the true spread; *coverage* is the share of its 95 %\n\
          intervals that hold the truth.\n\n\
-         | method | periods | noise (cos, sin) | seeds | bias | spread | stated | coverage |\n|---|---|---|---|---|---|---|---|\n",
-        beta.to_degrees()
+         | method | sensor | periods | noise (cos, sin) | seeds | bias | spread | stated | coverage |\n|---|---|---|---|---|---|---|---|---|\n"
     );
     for row in numbers["rows"].as_array().into_iter().flatten() {
         let list = |name: &str| -> Vec<f64> {
@@ -124,10 +141,16 @@ pub(crate) fn page(numbers: &Value) -> String {
         let (low, high) = ends(&of("coverage"));
         let (least, largest) = ends(&stated);
         let noise = list("noise");
+        let sensor = list("sensor");
         let _ = writeln!(
             out,
-            "| {} | {} | {:.2} %, {:.2} % | {} | {:.3} | {:.3} | {least:.2} … {largest:.2} | {:.1} … {:.1} % |",
+            "| {} | {}, {}, {}, {}, {:.1}° | {} | {:.2} %, {:.2} % | {} | {:.3} | {:.3} | {least:.2} … {largest:.2} | {:.1} … {:.1} % |",
             row["method"].as_str().unwrap_or_default(),
+            sensor[0],
+            sensor[1],
+            sensor[2],
+            sensor[3],
+            sensor[4].to_degrees(),
             row["periods"],
             noise[0] * 100.0,
             noise[1] * 100.0,
