@@ -136,7 +136,8 @@ pub fn registers(structure: &Structure) -> (Vec<&'static str>, Vec<&'static str>
         "theta_6_deviation" | "theta_7_deviation" | "theta_8_deviation" => c.has_bend(),
         "gamma_gear" | "gear_periods" | "held_periods" | "travel_origin" | "travel_low"
         | "travel_high" | "disturbed" | "risen" | "held" => c.is_on(),
-        "unlocked_samples" | "failed_periods" => c.may_stray(),
+        "unlocked_samples" => c.may_stray(),
+        "failed_periods" => c.may_stray() && c.swings(),
         "astray" | "astray_before" | "astray_long" => structure.catches_up(),
         "rough" | "calm" => c.is_on() && c.settles(),
         "ahead_used" | "behind_used" => c.is_on() && !c.is_batch(),

@@ -166,7 +166,7 @@ fn calm<S: Signal>(state: &State<S>, k: &Coefficients<S>, structure: &Structure)
 
 /// The signal is lost before the search has begun: nothing is known, and the parameters are nominal. With recall what is proven is
 /// better in all of the first gear: it may have followed a fade. Bends that swing widely on their way can come to their bounds, where the
-/// loop does not lock any more: without lock these begin again in the same way. A search that [`strays`] begins again wherever it is.
+/// loop does not lock any more: without lock these begin again in the same way. A search that [`strays`] begins again from nothing.
 #[inline(always)]
 pub fn nominal<S: Signal>(state: &State<S>, k: &Coefficients<S>, structure: &Structure) -> S::Bool {
     let lost = if structure.calibration.swings() {
@@ -351,19 +351,22 @@ pub fn gears<S: Signal>(
     } else {
         (counted, passed)
     };
-    let again = passed_again.or(restart).named("gear_ends").or(breaks);
+    // One that has strayed begins in the first gear, too.
+    let begins = strays(state, k, structure)
+        .map_or(restart, |strays| restart.or(strays).named("search_begins"));
+    let again = passed_again.or(begins).named("gear_ends").or(breaks);
     let again = again.named("gear_periods_again");
     let held_periods = held_periods((gate, quiet_ends), restart, counting, state, k, structure);
     let within = tick.not().and(counting).named("within_period");
     let smooth = passed.and(state.rough.not()).named("gear_ends_calm");
-    let calm = smooth.or(state.calm).and(restart.not()).named("stays_calm");
+    let calm = smooth.or(state.calm).and(begins.not()).named("stays_calm");
     let still_held = state.held.and(tick.not()).named("still_held");
     let held = disturbed_period(gate, state)
         .and(restart.not())
         .or(still_held)
         .named("holding");
     Gears {
-        gear: S::select(restart, k.zero, gear).quantise(&structure.formats.gamma_gear),
+        gear: S::select(begins, k.zero, gear).quantise(&structure.formats.gamma_gear),
         periods: S::select(again, k.zero, counted).quantise(&structure.formats.gear_periods),
         held_periods,
         passed,

@@ -69,8 +69,7 @@ pub fn recall<S: Signal>(
         let mut proven = proven(state);
         if let Some(strays) = strays(state, k, structure) {
             // The best of a search that has strayed is of where it strayed to.
-            let worthless = strays.and(state.known.not()).named("strays_unproven");
-            proven = proven.map(|theta| S::select(worthless, k.zero, theta));
+            proven = proven.map(|theta| S::select(strays, k.zero, theta));
         }
         updated.theta = std::array::from_fn(|i| S::select(all, proven[i], updated.theta[i]));
     }

@@ -194,7 +194,7 @@ fn advance_of<S: Signal, const PLAIN: bool>(
         .map(|recall| recall::recall(&mut updated, recall, &mut gears, state, k, structure));
     let recalled = memory.as_ref().map(|memory| memory.recalled);
     let astray = catch_up.map(|catch_up| catch_up.after(gate, counting, state));
-    let failures = strays::failures((gate, weak), state, k, structure);
+    let failures = strays::failures((input.calibrate, weak, gears.restart), state, k, structure);
     let applied = waits::apply(updated.theta, waits, gate, recalled, state);
 
     rate.begin(&FLAGS);

@@ -45,7 +45,7 @@ bundle! {
         held_periods,
         /// Samples with signal since lock was lost, until γ has settled; of its range.
         unlocked_samples,
-        /// Periods in the first γ gear after which the search began again.
+        /// Periods in the first γ gear that failed with bends near their bounds.
         failed_periods,
         /// Position, modulo 4 periods, where the map of sectors was last cleared.
         travel_origin,

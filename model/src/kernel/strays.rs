@@ -1,14 +1,14 @@
 //! A search by sums of squares can learn what the loop does not lock to, or swing between bends at their bounds, and nothing in the
-//! gradient leads back from there. Where that lasts, and γ has not settled, it gives up what it has learnt.
+//! gradient leads back from there. Where that lasts, γ has not settled, and nothing is proven, it gives up what it has learnt.
 
-use super::calibration::Gate;
-use super::gears::{first_gear, restart, settled};
+use super::detector::within;
+use super::gears::{first_gear, settled};
 use super::{Coefficients, State, Structure};
 use crate::signal::{Formula, Logic, Signal};
 
 static STRAYS: Formula = Formula {
     title: "Search that has strayed",
-    equation: "until gamma has settled: many samples without lock though there is a signal, or periods of travel that fail, one after the other",
+    equation: "until gamma has settled, with nothing proven: many samples without lock though there is a signal, or in the first gear periods of travel that fail with theta_8 near its bound",
     source: "",
 };
 
@@ -16,14 +16,15 @@ static STRAYS: Formula = Formula {
 pub struct Failures<S: Signal> {
     /// Samples without lock though there is a signal.
     pub unlocked_samples: S,
-    /// Periods of travel after each of which the search began again.
+    /// Periods of travel of the first gear after each of which the search began again, with bends near their bounds.
     pub failed_periods: S,
 }
 
-/// What speaks against the search after this sample; nothing where it finds back by itself.
+/// What speaks against the search after this sample; nothing where it finds back by itself. `calibrate`: the pin; `weak`: there is no
+/// signal; `restart`: the search begins again.
 #[inline(always)]
 pub fn failures<S: Signal>(
-    (gate, weak): (Gate<S>, S::Bool),
+    (calibrate, weak, restart): (S::Bool, S::Bool, S::Bool),
     state: &State<S>,
     k: &Coefficients<S>,
     structure: &Structure,
@@ -35,35 +36,54 @@ pub fn failures<S: Signal>(
         };
     }
     state.gamma_gear.begin(&STRAYS);
-    let searching = settled(state, k, structure)
-        .or(strays_at_last(state, k))
-        .not()
-        .named("search_goes_on");
+    let goes_on = searching(state, k, structure);
+    let goes_on = goes_on.and(enough(state, k, structure).not());
+    let goes_on = goes_on.named("search_goes_on");
     let samples = &structure.formats.unlocked_samples;
     let up = S::select(weak, k.zero, k.unlocked_sample).named("unlocked_samples_up");
     let one_more = (state.unlocked_samples + up).quantise(samples);
-    let counted = searching
-        .and(state.locked.not())
-        .named("unlocked_samples_go_on");
-    let counts = searching
-        .and(first_gear(state, k))
-        .named("failed_periods_go_on");
-    let periods = &structure.formats.failed_periods;
-    let fails = restart(gate, state, k, structure);
-    let up = S::select(fails, k.one, k.zero).named("failed_periods_up");
-    let failed = (state.failed_periods + up).quantise(periods);
+    let unlocked = calibrate.and(state.locked.not()).named("free_without_lock");
+    let counted = goes_on.and(unlocked).named("unlocked_samples_go_on");
+    let failed_periods = if structure.calibration.swings() {
+        let periods = &structure.formats.failed_periods;
+        let near = within(state.theta_8_deviation, k.bend_near_bound).not();
+        let fails = restart.and(near.named("bend_near_bound_reached"));
+        let up = S::select(fails.named("fails_at_bound"), k.one, k.zero);
+        let up = up.named("failed_periods_up");
+        let failed = (state.failed_periods + up).quantise(periods);
+        let counts = goes_on.and(first_gear(state, k));
+        S::select(counts.named("failed_periods_go_on"), failed, k.zero).quantise(periods)
+    } else {
+        k.zero
+    };
     Failures {
         unlocked_samples: S::select(counted, one_more, k.zero).quantise(samples),
-        failed_periods: S::select(counts, failed, k.zero).quantise(periods),
+        failed_periods,
     }
 }
 
-/// It will not find its way.
+/// γ has not settled, and nothing is proven.
 #[inline(always)]
-fn strays_at_last<S: Signal>(state: &State<S>, k: &Coefficients<S>) -> S::Bool {
+fn searching<S: Signal>(state: &State<S>, k: &Coefficients<S>, structure: &Structure) -> S::Bool {
+    let late = settled(state, k, structure);
+    let late = if structure.calibration.recalls() {
+        late.or(state.known).named("settled_or_proven")
+    } else {
+        late
+    };
+    late.not().named("searching_still")
+}
+
+/// So much speaks against it that it will not find its way.
+#[inline(always)]
+fn enough<S: Signal>(state: &State<S>, k: &Coefficients<S>, structure: &Structure) -> S::Bool {
     let few = state.unlocked_samples.less_than(k.unlocked_samples_last);
+    if !structure.calibration.swings() {
+        return few.not().named("unlocked_for_long");
+    }
     let short = state.failed_periods.less_than(k.failed_periods_last);
-    few.and(short).not().named("lost_its_way")
+    let may = few.and(short).named("may_find_its_way");
+    may.not().named("lost_its_way")
 }
 
 /// Whether the search gives up what it has learnt; `None` where it finds back by itself.
@@ -77,6 +97,6 @@ pub fn strays<S: Signal>(
         return None;
     }
     state.gamma_gear.begin(&STRAYS);
-    let searching = settled(state, k, structure).not();
-    Some(searching.and(strays_at_last(state, k)).named("strays"))
+    let searching = searching(state, k, structure);
+    Some(searching.and(enough(state, k, structure)).named("strays"))
 }

@@ -127,7 +127,7 @@ impl Calibration {
     pub const SETTLED: u32 = 4;
     /// Periods of travel that parameters are held of which nothing better is known, before the search begins again.
     pub const HELD: u32 = 32;
-    /// Periods of travel after which a search that began again with each gives up what it has learnt.
+    /// Periods of travel in the first gear, with bends near their bounds, after which a search that began again with each gives up.
     pub const FAILED: u32 = 31;
     /// The same of those of which something is known, where the design does not say.
     pub const HELD_KNOWN: u32 = 256;
