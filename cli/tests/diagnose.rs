@@ -2,7 +2,8 @@
 
 use std::fs;
 
-use crate::support::{nonius, refused};
+use crate::support::calibration::noise;
+use crate::support::{done, nonius, refused};
 
 #[test]
 fn diagnose_writes_the_contract() {
@@ -96,5 +97,47 @@ fn diagnose_writes_the_contract() {
     refused(
         &nonius(dir.path(), &["diagnose", "none.csv", "-o", "out"]),
         &["none.csv"],
+    );
+}
+
+/// A harmonic whose order the axis hides: the design corrects neither order, and says why; the sensor that is written is read back.
+#[test]
+fn a_harmonic_of_either_order_is_not_corrected() {
+    let dir = tempfile::tempdir().expect("scratch");
+    let mut noise = noise();
+    let mut text = String::from("# adc_bits: 14\n# full_scale: 1\ntime_s,cos,sin\n");
+    for k in 0..20_000 {
+        let t = f64::from(k) * 2e-5;
+        // Shaken at each sample.
+        let alpha = 90.0 * (30.0 * t).sin() + 200.0 * t + 0.03 * noise();
+        let third = 3.0 * alpha + 1.2;
+        let cos = 0.8 * (alpha.cos() + 4e-4 * third.cos() + 1e-3 * noise());
+        let sin = 0.8 * (alpha.sin() - 4e-4 * third.sin() + 1e-3 * noise());
+        let code = |v: f64| (v * 8192.0).round() / 8192.0;
+        text += &format!("{t:.6},{},{}\n", code(cos), code(sin));
+    }
+    fs::write(dir.path().join("r.csv"), text).expect("recording");
+    let said = done(dir.path(), &["diagnose", "r.csv", "-o", "out"]);
+    let read = |file: &str| fs::read_to_string(dir.path().join(file)).expect("written");
+    assert!(read("out/findings.json").contains("other_order"), "{said}");
+    let design = read("out/design.toml");
+    let table = |line: &str| line.starts_with("amplitude_cos");
+    assert!(!design.lines().any(table), "{said}");
+    assert!(
+        said.contains("harmonic as well, which errs the other way"),
+        "{said}"
+    );
+    let report = read("out/report.html");
+    assert!(!report.contains("300 %") && !report.contains("500 %"));
+    done(
+        dir.path(),
+        &[
+            "simulate",
+            "out/design.toml",
+            "--sensor",
+            "out/sensor.toml",
+            "-o",
+            "chip",
+        ],
     );
 }

@@ -98,6 +98,9 @@ impl Gain {
     }
 }
 
+/// The parameter of a harmonic whose order is not sure: the other one that it may have.
+pub const OTHER_ORDER: &str = "other_order";
+
 /// What the chip can do about a cause.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub enum Chip {

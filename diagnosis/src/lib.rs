@@ -77,7 +77,7 @@ mod whiten;
 
 pub use context::{Context, ContextError};
 pub use diagnose::{Diagnosis, Extended, diagnose};
-pub use finding::{Chip, Effect, Finding, Gain, Parameter, Place};
+pub use finding::{Chip, Effect, Finding, Gain, OTHER_ORDER, Parameter, Place};
 pub use motion::motion_csv;
 pub use report::{plots, report};
 pub use sensor::{MOTION, sensor_toml};

@@ -4,7 +4,7 @@ use nonius_quantity::ordinal;
 
 use crate::cause::{Candidate, Estimate};
 use crate::exact::Start;
-use crate::finding::{Finding, Gain, Parameter};
+use crate::finding::{Finding, Gain, OTHER_ORDER, Parameter};
 use crate::generic::HOLDS;
 use crate::model::{Fit, Halves, System, amounts};
 use crate::score::{KINDS, SHOWN};
@@ -175,7 +175,7 @@ impl Selection {
                 seen += ", so the motion is real";
             }
             if let Some(order) = accepted.other_order {
-                parameters.push(Parameter::exact("other_order", order, "1"));
+                parameters.push(Parameter::exact(OTHER_ORDER, order, "1"));
                 seen += &format!(
                     "; a {} one, which errs the other way along the circle, explains it as well",
                     ordinal(order as usize)

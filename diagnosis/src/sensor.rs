@@ -7,7 +7,7 @@ use nonius_recording::Recording;
 use crate::causes::AC_COUPLING;
 use crate::contender::is_drift;
 use crate::diagnose::Diagnosis;
-use crate::finding::{Finding, Parameter, Place};
+use crate::finding::{Finding, OTHER_ORDER, Parameter, Place};
 
 /// Name of the file beside it that the sensor is moved along: what [`crate::motion_csv`] says.
 pub const MOTION: &str = "motion.csv";
@@ -106,6 +106,8 @@ fn parameters(finding: &Finding, recording: &Recording) -> Vec<Parameter> {
             let doubled = finding.parameter("count").unwrap_or(0.0);
             all = vec![Parameter::exact("share", doubled / samples, "1")];
         }
+        // One sensor is simulated, not both that it may be.
+        ("spatial_harmonic", _) => all.retain(|p| p.name != OTHER_ORDER),
         (name, Some(Place::Code { channel, .. })) => {
             let adc = recording.metadata.adc;
             let bits = [adc.cos.bits, adc.sin.bits][channel];

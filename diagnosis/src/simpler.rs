@@ -61,6 +61,7 @@ fn replace(found: &mut Selection, i: usize, candidate: Candidate, fit: Fit) {
         wide.first,
         wide.candidate.shapes.len() - candidate.shapes.len(),
     );
+    // Of an order that may be another, it is the one that a bend with fewer numbers has.
     let confounded = vec![wide.candidate.name.to_owned()];
     for other in &mut found.accepted {
         if other.first > first {

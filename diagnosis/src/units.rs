@@ -2,6 +2,8 @@
 
 use nonius_quantity::Unit;
 
+use crate::finding::OTHER_ORDER;
+
 /// What a value in the amplitude's unit is a part of.
 const OF_THE_AMPLITUDE: &str = "% of the amplitude";
 
@@ -14,7 +16,7 @@ pub(crate) fn shown<'a>(name: &str, unit: &'a str) -> Unit<'a> {
         "rad" if ["phase", "place"].iter().any(|n| name.starts_with(n)) => Unit::Plain("rad"),
         "rad" => Unit::Small("rad"),
         "amplitude" | "amplitude/sqrt(Hz)" => Unit::Percent,
-        "1" if ["order", "bit", "level"].contains(&name) => Unit::Plain(""),
+        "1" if ["order", OTHER_ORDER, "bit", "level"].contains(&name) => Unit::Plain(""),
         "1" => Unit::Percent,
         other => Unit::Plain(other),
     }

@@ -240,7 +240,7 @@ fn the_steady_state_of_every_search() {
     });
     let largest = worst.reduce(|| 0.0, f64::max);
     figure_of_short(
-        "the same of every other search and set, once found at 126 samples a period",
+        "steady state, quiet 16-bit input, every other search and set, found at 126 samples a period, then 64 and 10 000: largest error of α̂, % of a period",
         &format!("{:.5}", 100.0 * largest),
         TEST,
     );

@@ -3,7 +3,7 @@
 
 mod support;
 
-use nonius_diagnosis::{diagnose, sensor_toml};
+use nonius_diagnosis::{OTHER_ORDER, Parameter, diagnose, sensor_toml};
 use nonius_sensor::{Motion, Sensor};
 use support::{PLAIN, recording};
 
@@ -87,6 +87,23 @@ fn static_causes() {
     round_trip(
         "name = \"spatial_harmonic\"\norder = 3.0\namplitude_cos = 0.004\nphase_cos = 0.7\namplitude_sin = 0.003\nphase_sin = -2.0\n",
     );
+}
+
+/// Of a harmonic whose order is not sure, the one that was named is simulated.
+#[test]
+fn an_order_that_may_be_another() {
+    let third = "name = \"spatial_harmonic\"\norder = 3.0\namplitude_cos = 0.004\nphase_cos = 0.7\namplitude_sin = 0.003\nphase_sin = -2.0\n";
+    let sensor = Sensor::from_toml(&format!("{PLAIN}[[cause]]\n{third}"), "sensor.toml");
+    let sensor = sensor.expect("a sensor");
+    let recording = recording(&sensor, sensor.simulate(&Motion::to_and_fro(&sensor), 5));
+    let mut found = diagnose(&recording).expect("an ellipse");
+    let as_found = sensor_toml(&found, &recording);
+    let other = Parameter {
+        name: OTHER_ORDER.into(),
+        ..found.findings[0].parameters[0].clone()
+    };
+    found.findings[0].parameters.push(other);
+    assert_eq!(sensor_toml(&found, &recording), as_found);
 }
 
 #[test]

@@ -27,7 +27,7 @@ type Vector = SVector<f64, 5>;
 pub(crate) struct Case {
     pub(crate) method: Method,
     pub(crate) sensor: Sensor,
-    /// Rms of the white noise of cosine and sine; amplitudes are about 1.
+    /// Rms of the white noise of cosine and sine, in the unit of the amplitudes.
     pub(crate) noise: [f64; 2],
     /// Scale periods that the samples are spread over.
     pub(crate) periods: f64,

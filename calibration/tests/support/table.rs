@@ -100,7 +100,7 @@ pub(crate) fn page(numbers: &Value) -> String {
         "# Off-line estimators against the Cramér–Rao bound\n\n\
          Written by `{COMMAND}`; do not edit. The numbers behind it are in\n\
          [offline-statistics.json](offline-statistics.json).\n\n\
-         Each seed is a recording of {SAMPLES} samples of a sensor (a_c, b_c, a_s, b_s, β),\n\
+         Each seed is a recording of {SAMPLES} samples of a sensor (a_c, b_c, a_s, b_s, β), noise in the same unit,\n\
          used with its white noise and with the negative of it, so that bias shows apart from scatter. Of the five\n\
          parameters each column has the worst. Bias and spread (standard deviation) are in units of the bound; *stated* is\n\
          the standard error that the method gives, in units of the true spread; *coverage* is the share of its 95 %\n\

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use nonius_diagnosis::{Diagnosis, Finding};
+use nonius_diagnosis::{Diagnosis, Finding, OTHER_ORDER};
 use nonius_model::design::ORDER_MAX;
 use nonius_model::spec::Harmonic;
 use nonius_quantity::ordinal;
@@ -19,9 +19,6 @@ const UNSURE: f64 = 1.0 / 3.0;
 
 /// Real and imaginary part of amplitude · exp(i phase), of the cosine and of the sine channel.
 type Pair = [[f64; 2]; 2];
-
-/// The parameter of a harmonic whose order is not sure: corrected by the wrong one, the angle would be twice as wrong.
-const OTHER_ORDER: &str = "other_order";
 
 /// Amplitude and phase.
 type Wave = (f64, f64);
@@ -123,6 +120,7 @@ pub(super) fn table(found: &Diagnosis, bends: bool) -> (Vec<Harmonic>, Vec<Strin
         if waves.is_empty() || (bends && bend(finding, beta).is_some()) {
             continue;
         }
+        // By the wrong one the angle would be twice as wrong.
         if let Some(other) = finding.parameter(OTHER_ORDER) {
             left_out.push(format!(
                 "{} is not in the table of harmonics: it may be the {} harmonic as well, which errs the other way",

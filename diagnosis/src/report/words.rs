@@ -1,6 +1,6 @@
 //! Titles, what the chip can do, how likely chance is.
 
-use crate::finding::{Chip, Finding};
+use crate::finding::{Chip, Finding, OTHER_ORDER};
 
 /// The title of a finding: its name and what tells it from others of that name.
 pub(super) fn title(finding: &Finding) -> String {
@@ -26,7 +26,7 @@ pub(super) fn chip(finding: &Finding) -> &'static str {
         (Chip::Corrects, "even_nonlinearity" | "odd_nonlinearity") => {
             "The chip corrects it with nine parameters on line, or from its table of harmonics where a scale period is a revolution; design.toml switches them on where it can."
         }
-        (Chip::Corrects, "spatial_harmonic") if finding.parameter("other_order").is_some() => {
+        (Chip::Corrects, "spatial_harmonic") if finding.parameter(OTHER_ORDER).is_some() => {
             "The chip can correct it from its table of harmonics once its order is known; by the wrong one the angle would be twice as wrong, so design.toml leaves it out. A reference tells, or a speed at which the motion is smoother than this."
         }
         (Chip::Corrects, "spatial_harmonic") if order == Some(2.0) || order == Some(3.0) => {
