@@ -82,6 +82,8 @@ pub(crate) struct Candidate {
     pub shapes: Vec<Shape>,
     /// Its number in the catalogue.
     pub id: usize,
+    /// Of a harmonic of the scale period, its order.
+    pub order: Option<usize>,
     /// The shapes are real motion: they do not come from the sensor.
     pub motion: bool,
     /// What the amounts can be.
@@ -114,6 +116,7 @@ impl Candidate {
             by_radius: 1.0,
             shapes,
             id: 0,
+            order: None,
             motion: false,
             sign: Sign::Any,
             as_drift: false,

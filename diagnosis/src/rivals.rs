@@ -1,7 +1,7 @@
 //! Which other causes a name cannot be told from: those to which it adds nothing, decided from the data.
 
 use crate::beside::Beside;
-use crate::cause::{Candidate, Domain, Estimate};
+use crate::cause::{Candidate, Domain};
 use crate::causes::{self, Catalogue};
 use crate::library::Shape;
 use crate::model::{Fit, System};
@@ -57,34 +57,16 @@ pub(crate) fn among(
 
 /// The order of the scale period that a harmonic may have as well. Of order n, turning backwards, it does to the radius what one of order
 /// n + 2 does that turns forwards: along the circle they are opposite, and the motion may hide that.
-pub(crate) fn other_order(beside: &Beside, best: &Scored, others: &[&Scored]) -> Option<f64> {
+pub(crate) fn other_order(beside: &Beside, best: &Scored, others: &[&Scored]) -> Option<usize> {
     let own = &best.candidate;
-    order(own)?;
-    let same = |other: &&&Scored| {
-        let c = &other.candidate;
-        let as_much = best.gain - other.gain < BEATEN;
-        as_much && c.name == own.name && c.domain == Domain::Angle
-    };
-    let alike = others.iter().filter(same).filter(|other| {
+    own.order?;
+    let alike = others.iter().filter(|other| {
+        let as_much = other.candidate.order.is_some() && best.gain - other.gain < BEATEN;
         let known = (other.gain, other.freedom);
-        nothing_new(beside, own, &other.candidate.shapes, known).is_some()
+        as_much && nothing_new(beside, own, &other.candidate.shapes, known).is_some()
     });
     let nearest = alike.max_by(|a, b| a.gain.total_cmp(&b.gain))?;
-    order(&nearest.candidate)
-}
-
-/// The order of the scale period of a candidate; `None` where it has none.
-fn order(candidate: &Candidate) -> Option<f64> {
-    let none = vec![0.0; candidate.shapes.len()];
-    let of = (candidate.domain == Domain::Angle && candidate.exact.is_none()).then(|| {
-        (candidate.parameters)(&Estimate {
-            x: &none,
-            error: &none,
-            inner: &[],
-            inner_error: None,
-        })
-    })?;
-    of.iter().find(|p| p.name == "order").map(|p| p.value)
+    nearest.candidate.order
 }
 
 /// How much a cause adds to shapes that explain so much with so many numbers, where that says nothing new.

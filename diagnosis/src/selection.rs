@@ -18,7 +18,7 @@ pub(crate) struct Accepted {
     pub(crate) first: usize,
     pub(crate) confounded: Vec<String>,
     /// Of a harmonic, the order that it may have as well.
-    pub(crate) other_order: Option<f64>,
+    pub(crate) other_order: Option<usize>,
     /// The amounts at which its shapes are tangents; what is known of them is off the signals.
     pub(crate) x: Vec<f64>,
     /// Standard errors of inner numbers, where they were fitted.
@@ -175,10 +175,10 @@ impl Selection {
                 seen += ", so the motion is real";
             }
             if let Some(order) = accepted.other_order {
-                parameters.push(Parameter::exact(OTHER_ORDER, order, "1"));
+                parameters.push(Parameter::exact(OTHER_ORDER, order as f64, "1"));
                 seen += &format!(
                     "; a {} one, which errs the other way along the circle, explains it as well",
-                    ordinal(order as usize)
+                    ordinal(order)
                 );
             }
             let finding = Finding {

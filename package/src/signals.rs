@@ -173,7 +173,7 @@ const REASONS: &[(&[&str], &str, &[&str])] = &[
     ),
     (
         &["failed_periods"],
-        "counts the periods of travel after each of which the search began again",
+        "counts the periods of travel that failed with bends near their bounds",
         &[],
     ),
     (

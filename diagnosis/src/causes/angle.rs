@@ -88,6 +88,7 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
             .collect();
         list.push(Candidate {
             trials: 6.0,
+            order: Some(order),
             chip: Chip::Corrects,
             parameters: Rc::new(move |e| {
                 let (a_c, d_c, p_c, e_c) = polar(&e.x[..2], &e.error[..2]);

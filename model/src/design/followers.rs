@@ -3,7 +3,8 @@
 use std::f64::consts::TAU;
 
 use super::budget::{dead_band, rounding};
-use super::formats::{held, lock_window, multiplied, skew_top, speed_top};
+use super::constants::lock_window;
+use super::formats::{held, multiplied, skew_top, speed_top};
 use super::lengths::{Followers, Words};
 use super::limits::absent;
 use super::ranges::ranges;

@@ -2,6 +2,7 @@
 
 mod budget;
 mod check;
+mod constants;
 mod followers;
 mod formats;
 mod harmonics;
@@ -129,7 +130,7 @@ impl Design {
         let Lengths { words, followers } = lengths;
         let all = (&words, &followers);
         let mut structure = formats::structure(spec, &acquisition, all)?;
-        let constants = formats::constants(spec, &tracking, &acquisition, all, &structure);
+        let constants = constants::constants(spec, &tracking, &acquisition, all, &structure);
         let skew = skew::settle(spec, &budget, &mut structure, &constants);
         let harmonics = harmonics::settle(spec, &mut budget, &mut structure, &constants);
         let graph = record(&structure, &constants, chip_kernel)?;

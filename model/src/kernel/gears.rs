@@ -13,7 +13,7 @@
 
 use super::calibration::Gate;
 use super::detector::within;
-use super::strays::strays;
+use super::strays::{bend_near_bound, strays};
 use super::{Coefficients, State, Structure};
 use crate::signal::{Formula, Logic, Signal};
 
@@ -170,9 +170,10 @@ fn calm<S: Signal>(state: &State<S>, k: &Coefficients<S>, structure: &Structure)
 #[inline(always)]
 pub fn nominal<S: Signal>(state: &State<S>, k: &Coefficients<S>, structure: &Structure) -> S::Bool {
     let lost = if structure.calibration.swings() {
-        let bend = within(state.theta_8_deviation, k.bend_near_bound);
-        let gone = bend.not().named("bend_near_bound_reached");
-        state.signal_lost.or(gone).named("signal_or_bend_lost")
+        state
+            .signal_lost
+            .or(bend_near_bound(state, k))
+            .named("signal_or_bend_lost")
     } else {
         state.signal_lost
     };

@@ -184,8 +184,7 @@ fn advance_of<S: Signal, const PLAIN: bool>(
         )
     });
     if let Some(completed) = &completed {
-        let nominal = gears::nominal(state, k, structure);
-        let old = state.theta_9_deviation;
+        let (old, nominal) = (state.theta_9_deviation, gears::nominal(state, k, structure));
         updated.theta[8] = step::moved(old, completed.step, 8, nominal, k, structure);
     }
     let mut gears = gears::gears(hold, gate, (counting, starting), state, k, structure);

@@ -46,8 +46,7 @@ pub fn failures<S: Signal>(
     let counted = goes_on.and(unlocked).named("unlocked_samples_go_on");
     let failed_periods = if structure.calibration.swings() {
         let periods = &structure.formats.failed_periods;
-        let near = within(state.theta_8_deviation, k.bend_near_bound).not();
-        let fails = restart.and(near.named("bend_near_bound_reached"));
+        let fails = restart.and(bend_near_bound(state, k));
         let up = S::select(fails.named("fails_at_bound"), k.one, k.zero);
         let up = up.named("failed_periods_up");
         let failed = (state.failed_periods + up).quantise(periods);
@@ -72,6 +71,13 @@ fn searching<S: Signal>(state: &State<S>, k: &Coefficients<S>, structure: &Struc
         late
     };
     late.not().named("searching_still")
+}
+
+/// The bends stand near their bounds.
+#[inline(always)]
+pub fn bend_near_bound<S: Signal>(state: &State<S>, k: &Coefficients<S>) -> S::Bool {
+    let inside = within(state.theta_8_deviation, k.bend_near_bound);
+    inside.not().named("bend_near_bound_reached")
 }
 
 /// So much speaks against it that it will not find its way.
