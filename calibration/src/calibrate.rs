@@ -1,9 +1,9 @@
 //! One calibration from beginning to end.
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, SMatrix};
 use nonius_recording::Ellipse;
 
-use crate::cramer_rao::{self, Bound};
+use crate::cramer_rao;
 use crate::curve::{Curve, Parameters};
 use crate::estimate::{Estimate, estimate};
 use crate::method::{Error, Method, Options};
@@ -161,6 +161,13 @@ pub fn calibrate(
         .covariance
         .as_ref()
         .zip(estimate.theta_covariance.as_ref());
+    let bounds = match method.set() {
+        Set::Five => bound.as_ref().map(|b| {
+            let dynamic = |c: &SMatrix<f64, 5, 5>| DMatrix::from_fn(5, 5, |i, j| c[(i, j)]);
+            (dynamic(&b.covariance), dynamic(&b.theta))
+        }),
+        _ => estimate.bound.and_then(|b| Some((b.physical?, b.theta))),
+    };
     Ok(Calibration {
         method,
         samples: cos.len(),
@@ -171,7 +178,7 @@ pub fn calibrate(
             &estimate.ellipse,
             &estimate.theta,
             errors,
-            bound.as_ref(),
+            bounds.as_ref().map(|(physical, theta)| (physical, theta)),
             &told,
         ),
         correlations: estimate
@@ -282,16 +289,15 @@ fn check(cos: &[f64], sin: &[f64], options: &Options) -> Result<(), Error> {
     Ok(())
 }
 
-/// Physical parameters, then Θ; `errors` are the covariances of both.
+/// Physical parameters, then Θ; `errors` are the covariances of both, `bounds` the least that they can be.
 fn parameters(
     method: Method,
     ellipse: &Ellipse,
     theta: &[f64],
     errors: Option<(&DMatrix<f64>, &DMatrix<f64>)>,
-    bound: Option<&Bound>,
+    bounds: Option<(&DMatrix<f64>, &DMatrix<f64>)>,
     told: &Told,
 ) -> Vec<Parameter> {
-    let root = |v: f64| v.sqrt();
     let own =
         |c: &DMatrix<f64>, i: usize| Some(c[(i, i)].sqrt()).filter(|e| e.is_finite() && *e > 0.0);
     let physical = words::NAMES.iter().enumerate().map(|(i, name)| Parameter {
@@ -301,7 +307,7 @@ fn parameters(
             .filter(|_| told.physical[i])
             .and_then(|(c, _)| own(c, i)),
         unit: if i == 4 { "rad" } else { "column" }.into(),
-        bound: bound.map(|b| root(b.covariance[(i, i)])),
+        bound: bounds.and_then(|(c, _)| own(c, i)),
     });
     let powers = method.set().powers();
     let thetas = theta
@@ -319,10 +325,7 @@ fn parameters(
                 1 => "1/column".into(),
                 n => format!("1/column^{n}"),
             },
-            // The bound is that of five parameters.
-            bound: bound
-                .filter(|_| theta.len() == 5)
-                .map(|b| root(b.theta[(i, i)])),
+            bound: bounds.and_then(|(_, c)| own(c, i)),
         });
     physical.chain(thetas).collect()
 }

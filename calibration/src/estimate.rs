@@ -5,6 +5,8 @@ use nonius_recording::Ellipse;
 
 use crate::curve::{Curve, theta_covariance};
 use crate::method::Method;
+use crate::set::Set;
+use crate::set_bound::{self, SetBound};
 use crate::unbiased::Fit;
 use crate::{conic, extremes, gradient, words};
 
@@ -19,6 +21,8 @@ pub(crate) struct Estimate {
     pub(crate) adrift: bool,
     /// Of the amplitudes by the noise, in amplitudes.
     pub(crate) bias: Option<[f64; 2]>,
+    /// The bound, where the method's set is not that of five parameters.
+    pub(crate) bound: Option<SetBound>,
 }
 
 impl Estimate {
@@ -34,6 +38,7 @@ impl Estimate {
             cannot_tell: vec![],
             adrift: false,
             bias: None,
+            bound: None,
         }
     }
 }
@@ -63,7 +68,10 @@ pub(crate) fn estimate(method: Method, cos: &[f64], sin: &[f64], fit: &Fit) -> O
             Some(estimate)
         }
         Method::Sumsq4 | Method::Sumsq5 | Method::Poly8 | Method::Poly9 => {
-            let minimum = gradient::minimise(method.set(), cos, sin, &fit.ellipse);
+            let set = method.set();
+            let minimum = gradient::minimise(set, cos, sin, &fit.ellipse);
+            let bound = (set != Set::Five)
+                .then(|| set_bound::of_minimum(set, &minimum, (cos, sin), fit.noise));
             Some(Estimate {
                 cannot_tell: words::of_minimum(method, &minimum),
                 adrift: minimum.faint > 0 || !minimum.converged,
@@ -72,6 +80,7 @@ pub(crate) fn estimate(method: Method, cos: &[f64], sin: &[f64], fit: &Fit) -> O
                 theta: minimum.theta,
                 theta_covariance: minimum.covariance,
                 bias: None,
+                bound: bound.flatten(),
             })
         }
     }

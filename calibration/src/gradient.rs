@@ -22,6 +22,10 @@ const ITERATIONS: usize = 200;
 pub struct Minimum {
     /// Θ for the signals in their own unit.
     pub theta: Vec<f64>,
+    /// Θ for signals normalised by [`frame`](Self::frame).
+    pub(crate) normal: DVector<f64>,
+    /// About which it was searched.
+    pub(crate) frame: Ellipse,
     /// Its covariance; `None` where the samples do not determine it. The blind direction has none.
     pub covariance: Option<DMatrix<f64>>,
     /// The nearest parameters of equation (4): amplitude and mean of each channel's first harmonic over the period, and
@@ -38,15 +42,7 @@ pub struct Minimum {
 /// The minimum of J nearest to the ellipse `frame`, which also normalises the signals.
 #[must_use]
 pub fn minimise(set: Set, cos: &[f64], sin: &[f64], frame: &Ellipse) -> Minimum {
-    let frame = Ellipse {
-        // Sets without phase search about signals without it.
-        beta: if matches!(set, Set::Five | Set::Nine) {
-            frame.beta
-        } else {
-            0.0
-        },
-        ..*frame
-    };
+    let frame = set.frame(frame);
     let normal = |(c, s): (&f64, &f64)| ((c - frame.b_c) / frame.a_c, (s - frame.b_s) / frame.a_s);
     let pairs: Vec<(f64, f64)> = cos.iter().zip(sin).map(normal).collect();
     let search = Search {
@@ -58,8 +54,7 @@ pub fn minimise(set: Set, cos: &[f64], sin: &[f64], frame: &Ellipse) -> Minimum 
     let inner = search.covariance(&theta);
     let to_raw = set.to_raw(&frame);
     let physical = physical(set, theta.as_slice());
-    let by = physical.and_then(|p| physical_slopes(set, &theta, &p));
-    let size = [frame.a_c, frame.a_c, frame.a_s, frame.a_s, 1.0];
+    let size = sizes(&frame);
     let middle = [0.0, frame.b_c, 0.0, frame.b_s, 0.0];
     Minimum {
         theta: (&to_raw * &theta).as_slice().to_vec(),
@@ -69,13 +64,33 @@ pub fn minimise(set: Set, cos: &[f64], sin: &[f64], frame: &Ellipse) -> Minimum 
                 p.parameters()[i] * size[i] + middle[i]
             }))
         }),
-        ellipse_covariance: inner.zip(by).map(|(c, by)| {
-            let plain = &by * c * by.transpose();
-            DMatrix::from_fn(5, 5, |i, j| plain[(i, j)] * size[i] * size[j])
-        }),
+        ellipse_covariance: inner.and_then(|c| physical_covariance(set, &theta, &frame, &c)),
         faint,
         converged,
+        normal: theta,
+        frame,
     }
+}
+
+/// What normalising by `frame` divides a_c, b_c, a_s, b_s, β by.
+fn sizes(frame: &Ellipse) -> [f64; 5] {
+    [frame.a_c, frame.a_c, frame.a_s, frame.a_s, 1.0]
+}
+
+/// Covariance of the nearest a_c, b_c, a_s, b_s, β, by that of Θ of normalised signals.
+pub(crate) fn physical_covariance(
+    set: Set,
+    theta: &DVector<f64>,
+    frame: &Ellipse,
+    of_theta: &DMatrix<f64>,
+) -> Option<DMatrix<f64>> {
+    let at = physical(set, theta.as_slice())?;
+    let by = physical_slopes(set, theta, &at)?;
+    let size = sizes(frame);
+    let plain = &by * of_theta * by.transpose();
+    Some(DMatrix::from_fn(5, 5, |i, j| {
+        plain[(i, j)] * size[i] * size[j]
+    }))
 }
 
 struct Search {
@@ -212,32 +227,34 @@ fn physical_slopes(set: Set, theta: &DVector<f64>, at: &Ellipse) -> Option<DMatr
 /// does not rise all the way.
 fn first_harmonic(cubic: &[f64], size: f64) -> Option<(f64, f64)> {
     const POINTS: u32 = 64;
-    let [one, two, three, zero] = [cubic[0], cubic[1], cubic[2], cubic[3]];
     let (mut sum, mut first) = (0.0, 0.0);
     let mut u = 0.0;
     // Half a period: the other half is its mirror image.
     for k in 0..POINTS {
         let cos = ((f64::from(k) + 0.5) * std::f64::consts::PI / f64::from(POINTS)).cos();
-        let mut still = false;
-        for _ in 0..50 {
-            let value = ((three * u + two) * u + one) * u + zero - size * cos;
-            let slope = (3.0 * three * u + 2.0 * two) * u + one;
-            let step = (value / slope).clamp(-0.5, 0.5);
-            if slope.is_nan() || slope <= 0.0 || step.is_nan() {
-                return None;
-            }
-            u -= step;
-            if step.abs() < 1e-13 {
-                still = true;
-                break;
-            }
-        }
-        if !still {
-            return None;
-        }
+        u = invert(cubic, size * cos, u)?;
         sum += u;
         first += u * cos;
     }
     let n = f64::from(POINTS);
     Some((2.0 * first / n, sum / n))
+}
+
+/// The u near `guess` that this cubic brings to `value`. `None` where the cubic falls on the way there.
+pub(crate) fn invert(cubic: &[f64], value: f64, guess: f64) -> Option<f64> {
+    let [one, two, three, zero] = [cubic[0], cubic[1], cubic[2], cubic[3]];
+    let mut u = guess;
+    for _ in 0..50 {
+        let off = ((three * u + two) * u + one) * u + zero - value;
+        let slope = (3.0 * three * u + 2.0 * two) * u + one;
+        let step = (off / slope).clamp(-0.5, 0.5);
+        if slope.is_nan() || slope <= 0.0 || step.is_nan() {
+            return None;
+        }
+        u -= step;
+        if step.abs() < 1e-13 {
+            return Some(u);
+        }
+    }
+    None
 }

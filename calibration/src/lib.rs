@@ -20,6 +20,7 @@ mod result;
 mod samples;
 mod sandwich;
 pub mod set;
+pub mod set_bound;
 pub mod unbiased;
 mod words;
 

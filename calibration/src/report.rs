@@ -1,8 +1,8 @@
-//! A calibration to be read: statistics, parameters ± error, correlations, remarks.
+//! A calibration to be read: statistics, parameters ± error, correlations of both kinds, remarks.
 
 use std::fmt::Write;
 
-use crate::result::{Calibration, Parameter};
+use crate::result::{Calibration, Correlations, Parameter};
 
 /// Correlations below this are not worth a line.
 const CORRELATED: f64 = 0.1;
@@ -18,7 +18,10 @@ pub fn report(found: &Calibration, lsb: Option<[f64; 2]>) -> String {
     for p in &found.parameters {
         parameter(&mut out, p);
     }
-    correlations(&mut out, found);
+    correlations(&mut out, found, "Correlations", (&found.correlations, 0));
+    let first = found.parameters.len() - found.theta.len();
+    let of_theta = (&found.theta_correlations, first);
+    correlations(&mut out, found, "Correlations of Theta", of_theta);
     sentences(&mut out, "What the data cannot tell", &found.cannot_tell);
     sentences(&mut out, "Remarks", &found.remarks);
     out
@@ -115,8 +118,14 @@ fn number(value: f64) -> String {
     }
 }
 
-fn correlations(out: &mut String, found: &Calibration) {
-    let Some(all) = &found.correlations else {
+/// Those of the parameters from `first` on.
+fn correlations(
+    out: &mut String,
+    found: &Calibration,
+    title: &str,
+    (all, first): (&Option<Correlations>, usize),
+) {
+    let Some(all) = all else {
         return;
     };
     if all.iter().flatten().all(Option::is_none) {
@@ -133,9 +142,9 @@ fn correlations(out: &mut String, found: &Calibration) {
     }
     pairs.retain(|(value, ..)| value.abs() > CORRELATED);
     pairs.sort_by(|a, b| b.0.abs().total_cmp(&a.0.abs()));
-    let _ = writeln!(out, "[[Correlations]] (beyond {CORRELATED})");
+    let _ = writeln!(out, "[[{title}]] (beyond {CORRELATED})");
     for (value, j, i) in pairs {
-        let [first, second] = [j, i].map(|k| &found.parameters[k].name);
+        let [first, second] = [j, i].map(|k| &found.parameters[first + k].name);
         let _ = writeln!(out, "    C({first}, {second}) = {value:+.3}");
     }
 }

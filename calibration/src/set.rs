@@ -1,6 +1,6 @@
 //! The parameter sets of sections 5.2 to 5.4 as polynomials of the channels.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, Matrix2};
 use nonius_recording::Ellipse;
 
 /// Which parameters.
@@ -62,6 +62,68 @@ impl Set {
         }
     }
 
+    /// What of the cosine stands in the sine: of the signal with five parameters, of the corrected cosine with nine; else 0.
+    pub(crate) fn cross(self, theta: &[f64]) -> f64 {
+        match self {
+            Self::Four | Self::Eight => 0.0,
+            Self::Five => theta[4],
+            Self::Nine => theta[8],
+        }
+    }
+
+    /// Derivative of (c, s) by Θ: M, two rows.
+    pub(crate) fn jacobian(self, theta: &[f64], y_c: f64, y_s: f64) -> DMatrix<f64> {
+        let cross = self.cross(theta);
+        let mut m = DMatrix::zeros(2, self.len());
+        match self {
+            Self::Four | Self::Five => {
+                (m[(0, 0)], m[(0, 1)]) = (y_c, 1.0);
+                (m[(1, 2)], m[(1, 3)]) = (y_s, 1.0);
+                if self == Self::Five {
+                    m[(1, 4)] = y_c;
+                }
+            }
+            Self::Eight | Self::Nine => {
+                for (row, y) in [(0, y_c), (1, y_s)] {
+                    for (i, entry) in [y, y * y, y * y * y, 1.0].into_iter().enumerate() {
+                        m[(row, 4 * row + i)] = entry;
+                    }
+                }
+                if self == Self::Nine {
+                    for i in 0..4 {
+                        m[(1, i)] = cross * m[(0, i)];
+                    }
+                    m[(1, 8)] = self.correct(theta, y_c, y_s).0;
+                }
+            }
+        }
+        m
+    }
+
+    /// Derivative of (c, s) by the signals.
+    pub(crate) fn slope_by_signals(self, theta: &[f64], y_c: f64, y_s: f64) -> Matrix2<f64> {
+        let cross = self.cross(theta);
+        let cubic = |t: &[f64], y: f64| (3.0 * t[2] * y + 2.0 * t[1]) * y + t[0];
+        match self {
+            Self::Four | Self::Five => Matrix2::new(theta[0], 0.0, cross, theta[2]),
+            Self::Eight | Self::Nine => {
+                let own = cubic(&theta[..4], y_c);
+                Matrix2::new(own, 0.0, cross * own, cubic(&theta[4..8], y_s))
+            }
+        }
+    }
+
+    /// The ellipse about which the set searches: one without phase, where it has none.
+    pub(crate) fn frame(self, ellipse: &Ellipse) -> Ellipse {
+        Ellipse {
+            beta: match self {
+                Self::Five | Self::Nine => ellipse.beta,
+                Self::Four | Self::Eight => 0.0,
+            },
+            ..*ellipse
+        }
+    }
+
     /// Derivative of ‖(c, s)‖² by Θ.
     pub(crate) fn slope(self, theta: &[f64], y_c: f64, y_s: f64, out: &mut [f64]) {
         let (c, s) = self.correct(theta, y_c, y_s);
@@ -74,7 +136,7 @@ impl Set {
             }
             Self::Eight | Self::Nine => {
                 // The corrected cosine acts in both rows of the nine.
-                let cross = theta.get(8).copied().unwrap_or(0.0);
+                let cross = self.cross(theta);
                 let by_c = 2.0 * (c + cross * s);
                 let by_s = 2.0 * s;
                 for (i, (y, by)) in [(y_c, by_c), (y_s, by_s)].into_iter().enumerate() {

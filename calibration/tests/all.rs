@@ -7,6 +7,7 @@ mod places;
 mod properties;
 mod recordings;
 mod report;
+mod set_bound;
 mod standstill;
 mod statistics;
 mod statistics_files;

@@ -7,14 +7,21 @@ use nonius_model::reference::gate::Gate;
 use nonius_model::reference::gradient::Form;
 use nonius_model::reference::interpolator::{Gamma, Search};
 use nonius_model::reference::start::Start;
+use nonius_model::reference::sum_of_squares::Smoothing;
 use nonius_model::reference::{Config, Parameters, Reference, Steps};
 
-const COMPLETED: Search = Search::Completed(CompletedConfig {
+/// A search, and what completes it.
+type Calibrating = (Search, Option<CompletedConfig>);
+
+const COMPLETION: CompletedConfig = CompletedConfig {
     gamma_v: 0.02,
     slowest: 0.01,
-});
-const FINAL: Search = Search::Residual(Form::Final);
-const EXACT: Search = Search::Residual(Form::Exact);
+};
+const COMPLETED: Calibrating = (Search::Residual(Form::Final), Some(COMPLETION));
+const FINAL: Calibrating = (Search::Residual(Form::Final), None);
+const EXACT: Calibrating = (Search::Residual(Form::Exact), None);
+const SQUARES: Search = Search::SumOfSquares(Smoothing::Forgetting { lambda: 0.9 });
+const BATCH: Search = Search::SumOfSquares(Smoothing::Batch { samples: 64 });
 
 /// Signal frequency, radians per sample: 126 samples per period.
 const SPEED: f64 = 0.05;
@@ -33,11 +40,18 @@ fn cubic(alpha: f64) -> [f64; 2] {
     [c + 0.03 * c.powi(3), s - 0.03 * s.powi(3)]
 }
 
-fn config(set: Parameters, search: Search, bandwidth: f64) -> Config {
+fn config(set: Parameters, (search, completion): Calibrating, bandwidth: f64) -> Config {
+    // 4 MᵀMΘ ε is eight times Mᵀ n ρ for small ρ, and a forgetting factor of 0.9 multiplies by ten.
+    let scale = match search {
+        Search::SumOfSquares(Smoothing::Forgetting { .. }) => 1.0 / 80.0,
+        Search::SumOfSquares(Smoothing::Batch { .. }) => 1.0 / 16.0,
+        _ => 1.0,
+    };
     Config {
         search,
+        completion,
         gamma: Gamma {
-            first: Steps::identity() * 0.02,
+            first: Steps::identity() * (0.02 * scale),
             halvings: 3,
             periods: 100.0,
             settled: None,
@@ -56,7 +70,7 @@ fn config(set: Parameters, search: Search, bandwidth: f64) -> Config {
 /// the signal frequency; and the rms error of α̂ at the end, mrad.
 fn calibrate(
     set: Parameters,
-    search: Search,
+    search: Calibrating,
     bandwidth: f64,
     signals: fn(f64) -> [f64; 2],
 ) -> [f64; 3] {
@@ -129,6 +143,15 @@ fn cubic_terms_stand_without_completion_and_vanish_with_it() {
             let [before, stands, _] = calibrate(set, FINAL, bandwidth, cubic);
             let [_, completed, of_loop] = calibrate(set, COMPLETED, bandwidth, cubic);
             let [_, exact, _] = calibrate(set, EXACT, bandwidth, cubic);
+            for search in [SQUARES, BATCH] {
+                let [_, alone, _] = calibrate(set, (search, None), bandwidth, cubic);
+                let [_, with, _] = calibrate(set, (search, Some(COMPLETION)), bandwidth, cubic);
+                println!(
+                    "{set:?}, {search:?}, loop {bandwidth} f: order 2 {before:.1} -> {alone:.1}, completed {with:.3} mrad"
+                );
+                assert!(alone > 7.0, "{set:?} {search:?}: {alone}");
+                assert!(with <= 0.15, "{set:?} {search:?}: {with}");
+            }
             println!(
                 "{set:?}, loop {bandwidth} f: order 2 {before:.1} -> radial {stands:.1}, completed {completed:.3}, exact {exact:.3} mrad; alpha_hat {of_loop:.2} mrad rms"
             );
@@ -194,7 +217,7 @@ fn the_completion_learns_at_the_rate_stated() {
             gamma_v,
             slowest: 0.0,
         };
-        let mut settings = config(set, Search::Completed(completed), bandwidth);
+        let mut settings = config(set, (FINAL.0, Some(completed)), bandwidth);
         settings.gamma = Gamma::constant(0.0);
         let v = set.null_direction(&settings.theta).expect("a cubic set");
         settings.theta += v * 0.01;
@@ -281,7 +304,7 @@ fn what_cannot_converge_is_refused() {
             gamma_v,
             slowest: 0.0,
         };
-        let mut settings = config(set, Search::Completed(completed), 0.5);
+        let mut settings = config(set, (FINAL.0, Some(completed)), 0.5);
         settings.gate = gate;
         settings.gamma = Gamma::constant(0.02);
         Reference::new(settings)

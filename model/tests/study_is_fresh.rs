@@ -18,6 +18,8 @@ mod scenario;
 mod support;
 #[path = "../examples/study_convergence/table.rs"]
 mod table;
+#[path = "../examples/study_convergence/truth.rs"]
+mod truth;
 
 use support::shipped;
 

@@ -19,6 +19,7 @@ mod scenario;
 mod shipped;
 mod singular;
 mod table;
+mod truth;
 
 use std::path::Path;
 

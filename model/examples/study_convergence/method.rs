@@ -78,9 +78,13 @@ impl Method {
                 Self::OpenLoop(OpenLoop::new(extremes, TS)),
             ),
         ];
-        let mut add = |name: &str, set: Parameters, search, gate| {
+        let mut add = |name: &str, set: Parameters, (search, completion), gate| {
             let name = format!("{name} {}", set_name(set));
-            if let Ok(reference) = Reference::new(config(set, search, gate)) {
+            let settings = Config {
+                completion,
+                ..config(set, search, gate)
+            };
+            if let Ok(reference) = Reference::new(settings) {
                 list.push((name, Self::Paper(set, Box::new(reference))));
             }
         };
@@ -88,34 +92,27 @@ impl Method {
         let squares = Search::SumOfSquares(Smoothing::Forgetting { lambda: 0.9 });
         let batch = Search::SumOfSquares(Smoothing::Batch { samples: 64 });
         for set in Parameters::ALL {
-            add("sum of squares, lambda 0.9,", set, squares, travelled);
-            add("sum of squares, batch 64,", set, batch, travelled);
+            for completion in [None, Some(COMPLETION)] {
+                let with = completion.map_or("", |_| " completed,");
+                let name = |search: &str| format!("sum of squares, {search},{with}");
+                let add = &mut add;
+                add(&name("lambda 0.9"), set, (squares, completion), travelled);
+                add(&name("batch 64"), set, (batch, completion), travelled);
+            }
         }
         let five = Parameters::Five;
         add(
             "residual, as printed,",
             five,
-            Search::Residual(Form::Final),
+            (Search::Residual(Form::Final), None),
             Gate::EverySample,
         );
         for set in Parameters::ALL {
-            add(
-                "residual, final form,",
-                set,
-                Search::Residual(Form::Final),
-                travelled,
-            );
-            add(
-                "residual, exact,",
-                set,
-                Search::Residual(Form::Exact),
-                travelled,
-            );
-            let completed = Search::Completed(CompletedConfig {
-                gamma_v: 0.02,
-                slowest: 0.02,
-            });
-            add("completed,", set, completed, travelled);
+            let radius = Search::Residual(Form::Final);
+            let exact = Search::Residual(Form::Exact);
+            add("residual, final form,", set, (radius, None), travelled);
+            add("residual, exact,", set, (exact, None), travelled);
+            add("completed,", set, (radius, Some(COMPLETION)), travelled);
         }
         for (name, search, gamma) in [
             (
@@ -193,6 +190,11 @@ const WINDOW: Window = Window {
     e: 0.5,
     rho: 0.6,
     samples: 100,
+};
+
+pub(crate) const COMPLETION: CompletedConfig = CompletedConfig {
+    gamma_v: 0.02,
+    slowest: 0.02,
 };
 
 const STARTED: StartConfig = StartConfig {

@@ -7,7 +7,7 @@ const HEAD: &str = "\
 
 Written by the example `study_convergence` from the numbers of `methods.csv`; do not edit. What the rows and scenarios are:
 [convergence.md](../convergence.md). Miscalibration is the angle of the noise-free corrected pair less the true one at the
-end of the run; *periods* are those travelled until it stays within a tenth of its final value, or, where noise moves it out of
+end of the run, the *parameter error* the largest difference of a parameter from those that correct the sensor best as it is then; *periods* are those travelled until it stays within a tenth of its final value, or, where noise moves it out of
 that for ever, until it first is there. Products, clocks and LUT4 (one
 multiplier, iCE40) are the whole chip's; rows without are `f64`.
 

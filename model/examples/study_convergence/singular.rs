@@ -4,14 +4,13 @@
 use std::f64::consts::TAU;
 use std::path::Path;
 
-use nonius_model::reference::completed::CompletedConfig;
 use nonius_model::reference::gate::Gate;
 use nonius_model::reference::gradient::{Form, Observation};
 use nonius_model::reference::interpolator::Search;
-use nonius_model::reference::{Parameters, Reference, Sensor, Theta};
+use nonius_model::reference::{Config, Parameters, Reference, Sensor, Theta};
 use plotters::chart::SeriesLabelPosition;
 
-use crate::method::config;
+use crate::method::{COMPLETION, config};
 use crate::plot::{COLOURS, Line, lines};
 use crate::scenario::SPEED;
 
@@ -68,33 +67,31 @@ pub(crate) fn order_2(path: &Path) -> Result<(), Box<dyn std::error::Error>> {
             a.sin() + 0.03 * (3.0 * a).sin(),
         ]
     };
-    let completed = Search::Completed(CompletedConfig {
-        gamma_v: 0.02,
-        slowest: 0.02,
-    });
+    let radius = Search::Residual(Form::Final);
     let mut drawn = Vec::new();
-    for (i, (name, set, search)) in [
-        (
-            "five, radial",
-            Parameters::Five,
-            Search::Residual(Form::Final),
-        ),
-        (
-            "eight, radial",
-            Parameters::Eight,
-            Search::Residual(Form::Final),
-        ),
+    for (i, (name, set, search, completion)) in [
+        ("five, radial", Parameters::Five, radius, None),
+        ("eight, radial", Parameters::Eight, radius, None),
         (
             "eight, exact gradient (11)",
             Parameters::ChebyshevEight,
             Search::Residual(Form::Exact),
+            None,
         ),
-        ("eight, completed", Parameters::ChebyshevEight, completed),
+        (
+            "eight, completed",
+            Parameters::ChebyshevEight,
+            radius,
+            Some(COMPLETION),
+        ),
     ]
     .into_iter()
     .enumerate()
     {
-        let mut reference = Reference::new(config(set, search, Gate::EverySample))?;
+        let mut reference = Reference::new(Config {
+            completion,
+            ..config(set, search, Gate::EverySample)
+        })?;
         let mut points = Vec::new();
         for k in 0..25_000 {
             let alpha = SPEED * f64::from(k);

@@ -10,6 +10,7 @@ use super::costs::Costs;
 use super::limit;
 use super::method::{Method, Said};
 use super::scenario::{SAMPLES, Scenario, samples};
+use super::truth;
 
 /// Miscalibration of Θ at sample k, radians: (rms, largest), the constant part removed.
 fn miscalibration(scenario: Scenario, sensor: &Sensor, k: u32, said: &Said) -> (f64, f64) {
@@ -37,8 +38,8 @@ pub(crate) fn wrapped(x: f64) -> f64 {
 
 /// What a run comes to.
 struct Outcome {
-    /// Largest difference of a parameter from the sensor's own, where the set can express it.
-    parameter: Option<f64>,
+    /// Largest difference of a parameter from the one that corrects the sensor best.
+    parameter: f64,
     /// Miscalibration at the end, radians.
     rms: f64,
     largest: f64,
@@ -83,11 +84,8 @@ fn run(scenario: Scenario, method: &mut Method) -> Outcome {
         (_, first) => first.unwrap_or(0),
     };
     let (rms, largest) = miscalibration(scenario, &sensor, SAMPLES, &said);
-    let reachable = !matches!(scenario, Scenario::ThirdHarmonic | Scenario::Drift);
-    let calibrates = reachable && !method.is_baseline();
-    let parameter = calibrates.then(|| (said.theta - said.correction.of(&sensor)).amax());
     Outcome {
-        parameter,
+        parameter: (said.theta - truth::theta(said.correction, scenario, &sensor)).amax(),
         rms,
         largest,
         alpha_hat: f64::sqrt(square / counted),
@@ -110,7 +108,7 @@ pub(crate) fn methods(design: &Design, scenarios: &[Scenario], costs: &Costs) ->
             .into_iter()
             .for_each(|method| row(&mut csv, scenario, method, costs));
         for (name, bound) in limit::bounds(design, scenario) {
-            let theta = bound.theta.diagonal().map(f64::sqrt).amax();
+            let theta = bound.theta.diagonal().amax().sqrt();
             let rms = 1e3 * bound.angle_by_parameters;
             // The angle of a single sample: its own noise, and that of the parameters.
             let alpha_hat = 1e3 * bound.angle_by_parameters.hypot(bound.angle_by_noise);
@@ -129,9 +127,6 @@ pub(crate) fn methods(design: &Design, scenarios: &[Scenario], costs: &Costs) ->
 /// The row of a method in a scenario.
 fn row(csv: &mut String, scenario: Scenario, (name, mut method): (String, Method), costs: &Costs) {
     let found = run(scenario, &mut method);
-    let parameter = found
-        .parameter
-        .map_or(String::new(), |p| format!("{p:.2e}"));
     let [rms, largest, alpha_hat, furthest] = [
         found.rms,
         found.largest,
@@ -144,8 +139,9 @@ fn row(csv: &mut String, scenario: Scenario, (name, mut method): (String, Method
     let [clocks, luts] = chip.map(|d| costs.of(d)).unwrap_or_default();
     _ = writeln!(
         csv,
-        "\"{name}\",{},{parameter},{rms:.4},{largest:.4},{alpha_hat:.4},{furthest:.4},{:.1},{products},{clocks},{luts}",
+        "\"{name}\",{},{:.2e},{rms:.4},{largest:.4},{alpha_hat:.4},{furthest:.4},{:.1},{products},{clocks},{luts}",
         scenario.name(),
+        found.parameter,
         found.periods
     );
 }

@@ -23,8 +23,6 @@ pub enum Search {
     Residual(Form),
     /// Sections 5.2 to 5.4: δΘ = −γ ∇J.
     SumOfSquares(Smoothing),
-    /// Final form, and one scalar sensitivity for what it cannot see.
-    Completed(CompletedConfig),
     /// Final form, after a start by recursive least squares.
     Started(StartConfig),
 }
@@ -77,6 +75,8 @@ pub struct Config {
     pub harmonics: Harmonics,
     /// The search.
     pub search: Search,
+    /// One scalar sensitivity for what the radius does not show, beside a search along it; never in the paper.
+    pub completion: Option<CompletedConfig>,
     /// The residual along the radius is the radius less 1, not its projection on the estimate, which lags; never in the paper.
     pub allows_for_lag: bool,
     /// When a sample teaches nothing because the loop catches up; never in the paper.
@@ -106,6 +106,7 @@ impl Config {
             skew: 0.0,
             harmonics: Harmonics::NONE,
             search: Search::Residual(Form::Final),
+            completion: None,
             allows_for_lag: false,
             catch_up: None,
             gamma: Gamma::constant(gamma),

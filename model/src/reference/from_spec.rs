@@ -111,31 +111,32 @@ fn equaliser(spec: &Spec, parameters: Parameters) -> Steps {
     steps
 }
 
-/// With bends and completion, Θ is searched along the radius whatever the method: sum of squares and radial residual have
-/// one fixed point, and what tells the designs apart is the completion.
 fn search(spec: &Spec) -> Search {
     let k = &spec.calibration;
-    match (k.completed(), k.method) {
+    match k.method {
         _ if !k.is_on() => Search::None,
-        (Some(gamma), _) => Search::Completed(CompletedConfig {
-            // The chip's θ9 turns the pair four times as far as v does.
-            gamma_v: 4.0 * 0.5f64.powi(gamma as i32),
-            slowest: TAU * spec.tracking.bandwidth_hz / (5.0 * spec.adc.sample_rate_hz),
-        }),
-        (_, CalibrationMethod::Final) => Search::Residual(Form::Final),
-        (_, CalibrationMethod::Exact) => Search::Residual(Form::Exact),
-        (_, CalibrationMethod::SumOfSquares) => Search::SumOfSquares(Smoothing::Forgetting {
+        CalibrationMethod::Final => Search::Residual(Form::Final),
+        CalibrationMethod::Exact => Search::Residual(Form::Exact),
+        CalibrationMethod::SumOfSquares => Search::SumOfSquares(Smoothing::Forgetting {
             lambda: 1.0 - 0.5f64.powi(k.forgetting as i32),
         }),
-        (_, CalibrationMethod::Batch) => Search::SumOfSquares(Smoothing::Batch { samples: 64 }),
+        CalibrationMethod::Batch => Search::SumOfSquares(Smoothing::Batch { samples: 64 }),
     }
+}
+
+fn completion(spec: &Spec) -> Option<CompletedConfig> {
+    let gamma = spec.calibration.completed()?;
+    Some(CompletedConfig {
+        // The chip's θ9 turns the pair four times as far as v does.
+        gamma_v: 4.0 * 0.5f64.powi(gamma as i32),
+        slowest: TAU * spec.tracking.bandwidth_hz / (5.0 * spec.adc.sample_rate_hz),
+    })
 }
 
 /// What makes a step of the sum of squares as large as one of the residual: its gradient is eight times that along the
 /// radius, its sum under λ is the mean over 1 − λ, and a batch acts by a quarter.
 fn gathered(spec: &Spec) -> f64 {
     match spec.calibration.method {
-        _ if matches!(search(spec), Search::Completed(_)) => 1.0,
         CalibrationMethod::Final | CalibrationMethod::Exact => 1.0,
         CalibrationMethod::SumOfSquares => 0.5f64.powi(3 + spec.calibration.forgetting as i32),
         CalibrationMethod::Batch => 0.5f64.powi(5),
@@ -191,6 +192,7 @@ pub fn config(spec: &Spec) -> Result<Config, ReferenceError> {
         skew: spec.correction.channel_skew_s,
         harmonics: harmonics(spec),
         search: search(spec),
+        completion: completion(spec),
         allows_for_lag: k.allows_for_lag(),
         // A loop of type 1 always lags.
         catch_up: (k.is_on() && k.settles() && spec.tracking.filter_type == 2).then(|| CatchUp {

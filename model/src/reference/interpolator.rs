@@ -55,7 +55,6 @@ enum Searching {
     None,
     Residual(ResidualGradient),
     SumOfSquares(SumOfSquares),
-    Completed(Completion),
     Started(Box<LeastSquaresStart>),
 }
 
@@ -68,6 +67,7 @@ pub struct Reference {
     pending: Theta,
     tracking: Loop,
     searching: Searching,
+    completion: Option<Completion>,
     gate: GateState,
     solved: Solved,
     hold: Hold,
@@ -105,11 +105,12 @@ impl Reference {
                 }
                 Searching::SumOfSquares(SumOfSquares::new(smoothing))
             }
-            Search::Completed(completed) => {
-                Searching::Completed(Completion::new(completed, config.parameters, filter)?)
-            }
             Search::Started(start) => Searching::Started(Box::new(LeastSquaresStart::new(start)?)),
         };
+        let completion = config
+            .completion
+            .map(|completed| Completion::new(completed, config.parameters, filter))
+            .transpose()?;
         let (tracking, acquisition) = config.start.begin(config.tracking)?;
         Ok(Self {
             config,
@@ -117,6 +118,7 @@ impl Reference {
             pending: Theta::zeros(),
             tracking,
             searching,
+            completion,
             gate: GateState::new(config.gate),
             solved: Solved::new(config.solved),
             hold: Hold::default(),
@@ -266,18 +268,15 @@ impl Reference {
         let along = |gradient: Theta| gamma.map_or(Theta::zeros(), |g| -g * gradient);
         let parameters = self.config.parameters;
         let followed = self.followed(seen);
-        let mut missing = Theta::zeros();
+        let missing = self.completion.as_mut().map_or_else(Theta::zeros, |of| {
+            of.step(parameters, &theta, seen, estimate.alpha_hat, complete)
+        });
         let step = match &mut self.searching {
             Searching::None => Theta::zeros(),
             Searching::Residual(gradient) => along(gradient.step(&followed)),
             // A closed gate takes no sample into the sum.
             Searching::SumOfSquares(_) if gamma.is_none() => Theta::zeros(),
             Searching::SumOfSquares(sum) => along(sum.step_of(&seen.m, seen.corrected)),
-            Searching::Completed(completion) => {
-                let alpha_hat = estimate.alpha_hat;
-                missing = completion.step(parameters, &theta, seen, alpha_hat, complete);
-                along(followed.final_form())
-            }
             Searching::Started(_) if gamma.is_none() => Theta::zeros(),
             Searching::Started(start) => start
                 .step(seen, estimate.alpha_hat)
