@@ -31,6 +31,9 @@ struct Arguments {
     /// Only recordings of this drive: constant, sweeping, reversing or stopandgo; the others are drawn and left out.
     #[arg(long, value_parser = ["constant", "sweeping", "reversing", "stopandgo"])]
     drive: Option<String>,
+    /// Only seeds of which the first cause has this name; may be repeated.
+    #[arg(long, value_name = "NAME", value_parser = cause, conflicts_with = "docs")]
+    cause: Vec<String>,
     /// Only recordings of which the first cause has a smaller SNR; the others are drawn and left out.
     #[arg(long, value_name = "SNR", conflicts_with = "docs")]
     below: Option<f64>,
@@ -47,6 +50,14 @@ struct Arguments {
 
 fn kind(word: &str) -> Result<Kind, serde_json::Error> {
     serde_json::from_value(word.into())
+}
+
+fn cause(word: &str) -> Result<String, String> {
+    let mut all = nonius_blind::names().chain(nonius_blind::stranger_names());
+    match all.any(|name| name == word) {
+        true => Ok(word.into()),
+        false => Err("no cause that is ever hidden".into()),
+    }
 }
 
 fn main() -> ExitCode {
@@ -70,6 +81,7 @@ fn run(arguments: &Arguments) -> Result<()> {
         arguments
             .kind
             .is_none_or(|kind| kind == Kind::of_seed(*seed))
+            && (arguments.cause.is_empty() || hides(*seed, &arguments.cause))
     };
     let seeds: Vec<u64> = seeds.filter(wanted).collect();
     let bar = ProgressBar::new(seeds.len() as u64).with_style(ProgressStyle::with_template(
@@ -109,6 +121,11 @@ fn run(arguments: &Arguments) -> Result<()> {
     Ok(())
 }
 
+/// Whether a seed hides one of these first.
+fn hides(seed: u64, causes: &[String]) -> bool {
+    Case::first_of_seed(seed).is_some_and(|first| causes.iter().any(|name| name == first))
+}
+
 /// One case: sealed, judged, opened, scored; `None` if another drive is wanted.
 fn case(seed: u64, arguments: &Arguments, folder: &Path) -> Result<Option<Score>> {
     let case = Case::draw(seed, arguments.samples)?;
@@ -135,7 +152,12 @@ fn line(score: &Score) -> String {
         .truth
         .hidden
         .iter()
-        .map(|h| format!("{} (SNR {:.1})", h.name, h.snr))
+        .map(|h| {
+            let twin = h.twin.map_or(String::new(), |twin| {
+                format!(", {:.1} from its twin", twin.distance)
+            });
+            format!("{} (SNR {:.1}{twin})", h.name, h.snr)
+        })
         .collect();
     let mut text = format!(
         "{:?} {} [{}{}{}]: {:?}, first {}",

@@ -9,7 +9,8 @@ use crate::motion::Drive;
 use crate::rows::Rows;
 use crate::simulate::{Finish, simulate};
 use crate::strangers::STRANGERS;
-use crate::truth::{HiddenCause, Kind, TrueParameter, Truth};
+use crate::truth::{HiddenCause, Kind, TrueParameter, Truth, Twin};
+use crate::twin::distance;
 use crate::visible::Visible;
 use crate::world::{Wish, World};
 
@@ -23,6 +24,8 @@ const KINDS: [Kind; 20] = {
 };
 /// Experiments that are drawn until one shows the cause as asked.
 const ATTEMPTS: u32 = 30;
+/// Share of recordings with a reference, of causes that need none.
+const REFERENCE: f64 = 0.3;
 /// Where none does, half of the SNR is asked for: what is noise has no more than its samples can tell.
 const HALVINGS: u32 = 5;
 
@@ -65,12 +68,19 @@ impl Kind {
 }
 
 impl Case {
+    /// The cause that a seed hides first.
+    #[must_use]
+    pub fn first_of_seed(seed: u64) -> Option<&'static str> {
+        let (choices, _) = plan(seed, Kind::of_seed(seed), &mut source(seed));
+        choices.first().map(Choice::name)
+    }
+
     /// The case of a seed, with so many samples.
     ///
     /// # Errors
     /// Where no experiment shows the cause as asked.
     pub fn draw(seed: u64, samples: usize) -> Result<Self, Unreachable> {
-        let mut random = StdRng::seed_from_u64(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15));
+        let mut random = source(seed);
         let kind = Kind::of_seed(seed);
         let (choices, mut snrs) = plan(seed, kind, &mut random);
         for _ in 0..HALVINGS {
@@ -115,6 +125,11 @@ impl Choice {
     }
 }
 
+/// Source of everything random of a seed.
+fn source(seed: u64) -> StdRng {
+    StdRng::seed_from_u64(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15))
+}
+
 /// What to hide, and how large. Names go round, so that all come equally often.
 fn plan(seed: u64, kind: Kind, random: &mut StdRng) -> (Vec<Choice>, Vec<f64>) {
     let place = (seed % 20) as usize;
@@ -146,6 +161,18 @@ fn plan(seed: u64, kind: Kind, random: &mut StdRng) -> (Vec<Choice>, Vec<f64>) {
     }
 }
 
+/// How many times as often as another name of the catalogue one is hidden in recordings with a reference, or in those without; none
+/// where the other never is. The names come equally often.
+fn odds(name: &str, other: &str, reference: bool) -> Option<f64> {
+    let often = |name: &str| {
+        let entry = CATALOGUE.iter().find(|e| e.name == name)?;
+        let with = if entry.reference { 1.0 } else { REFERENCE };
+        Some(if reference { with } else { 1.0 - with })
+    };
+    let (own, other) = (often(name)?, often(other)?);
+    (other > 0.0).then_some(own / other)
+}
+
 /// An experiment that may show the choices.
 fn wish(choices: &[Choice], samples: usize, random: &mut StdRng) -> Wish {
     let needs = |what: fn(&Entry) -> bool| {
@@ -165,7 +192,7 @@ fn wish(choices: &[Choice], samples: usize, random: &mut StdRng) -> Wish {
     Wish {
         samples,
         drive: drives[random.random_range(0..drives.len())],
-        reference: random.random_bool(0.3) || needs(|e| e.reference),
+        reference: random.random_bool(REFERENCE) || needs(|e| e.reference),
         revolution: random.random_bool(0.5) || needs(|e| e.revolution),
         vibration: random.random(),
         temperature: random.random_bool(if slow { 0.3 } else { 0.05 }),
@@ -195,10 +222,18 @@ fn attempted(
         let known = wish.reference && !effect.takes_reference_along();
         let visible = Visible::new(&world, known, effect.moves_time())?;
         let (m, snr) = scaled(effect.as_ref(), &world, &visible, noise_seed, *asked)?;
+        let twins = effect.twins(known).filter(|_| kind == Kind::One);
+        let twin = twins.and_then(|twins| {
+            Some(Twin {
+                odds: odds(effect.name(), twins.other.name(), wish.reference)?,
+                distance: distance(&twins, (m, snr), &world, &visible),
+            })
+        });
         truths.push(HiddenCause {
             name: effect.name().into(),
             snr_asked: *asked,
             snr,
+            twin,
             magnitude: m,
             parameters: effect
                 .parameters(m, &world)

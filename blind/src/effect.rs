@@ -124,10 +124,27 @@ pub(crate) trait Effect: Send + Sync {
         false
     }
 
+    /// The low pass of a delay, or the delay of a low pass. `motion_known`: a reference shows which of the channels is late, not only
+    /// that one is later than the other.
+    fn twins(&self, _motion_known: bool) -> Option<Twins> {
+        None
+    }
+
     /// Whether it is real motion of the axis.
     fn is_motion(&self) -> bool {
         false
     }
+}
+
+/// A delay and the low pass that does nearly the same, or the other way round.
+pub(crate) struct Twins {
+    /// The hidden cause by its own magnitude. Where the motion is not known, late in the channel in which the other one is late: both
+    /// channels may come earlier then, which the tangents of the SNR would take for a change of the radius.
+    pub(crate) own: Box<dyn Effect>,
+    /// The one of another name.
+    pub(crate) other: Box<dyn Effect>,
+    /// Magnitude of the other over that of the hidden one where both delay slow signals alike.
+    pub(crate) alike: f64,
 }
 
 /// What depends on the time alone, as a hidden cause with its magnitude.

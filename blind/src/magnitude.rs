@@ -78,7 +78,7 @@ fn measure<'a>(
         } else if effect.delays_both() && !visible.knows_motion() {
             visible.across(world, &with)
         } else {
-            visible.difference(&with, &without)
+            visible.snr(&with.less(&without))
         }
     }
 }

@@ -34,6 +34,15 @@ impl Rows {
         self.time.is_empty()
     }
 
+    /// Change of the two channels from other rows to these, V.
+    #[must_use]
+    pub fn less(&self, other: &Self) -> [Vec<f64>; 2] {
+        [0, 1].map(|c: usize| {
+            let pairs = self.volts[c].iter().zip(&other.volts[c]);
+            pairs.map(|(a, b)| a - b).collect()
+        })
+    }
+
     /// Every column but the time.
     fn columns(&mut self) -> impl Iterator<Item = &mut Vec<f64>> {
         let [cos, sin] = &mut self.volts;

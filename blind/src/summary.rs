@@ -5,6 +5,7 @@ use std::fmt;
 
 use crate::score::{Outcome, ParameterScore, Score};
 use crate::truth::Kind;
+use crate::twin::mistaken;
 
 /// Above it a cause should be found.
 pub(crate) const VISIBLE: f64 = 8.0;
@@ -89,6 +90,19 @@ impl<'a> Summary<'a> {
     #[must_use]
     pub fn first(&self, kind: Kind) -> Share {
         Share::count(self.seen(kind), |s| s.outcomes == [Outcome::First])
+    }
+
+    /// Share of right names first that the best namer can expect, at most; NaN of nothing. A low pass far above the signals is a
+    /// delay to anybody: who knows how often each is hidden takes one for the other with a probability that the distance of the two
+    /// sets ([`crate::Twin`]). Every other cause counts as named rightly, so this bounds the share from above.
+    #[must_use]
+    pub fn first_at_most(&self, kind: Kind) -> f64 {
+        let right = self.seen(kind).map(|s| {
+            let twin = &s.truth.hidden[0].twin;
+            1.0 - twin.as_ref().map_or(0.0, mistaken)
+        });
+        let (sum, count) = right.fold((0.0, 0.0), |(sum, count), p| (sum + p, count + 1.0));
+        sum / count
     }
 
     /// Right name first, or in a declared group of two.
@@ -284,5 +298,68 @@ fn median(values: &mut [f64]) -> f64 {
         0 => f64::NAN,
         n if n % 2 == 1 => values[n / 2],
         n => (values[n / 2 - 1] + values[n / 2]) / 2.0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::truth::{HiddenCause, Truth, Twin};
+
+    fn score(name: &str, snr: f64, distance: Option<f64>) -> Score {
+        let twin = distance.map(|distance| Twin {
+            distance,
+            odds: 1.0,
+        });
+        Score {
+            truth: Truth {
+                seed: 1,
+                kind: Kind::One,
+                hidden: vec![HiddenCause {
+                    name: name.into(),
+                    snr_asked: snr,
+                    snr,
+                    twin,
+                    magnitude: 1e-6,
+                    parameters: vec![],
+                    motion: false,
+                    electrical: true,
+                }],
+                samples: 20_000,
+                drive: "reversing".into(),
+                vibration_rad: None,
+                reference: false,
+                noise: 1e-3,
+                bits: 14,
+                rate: 1e5,
+            },
+            outcomes: vec![Outcome::Group],
+            first: "channel_skew".into(),
+            wrong: vec![],
+            motions: vec![],
+            unexplained: false,
+            signature: String::new(),
+            parameters: vec![],
+            position: None,
+            seconds: 1.0,
+        }
+    }
+
+    #[test]
+    fn what_nobody_can_tell_apart_is_half_of_it_named_rightly() {
+        let at_most = |scores: &[Score]| Summary::new(scores.iter()).first_at_most(Kind::One);
+        let other = || score("saturation", 50.0, None);
+        let near = |distance| score("bandwidth_mismatch", 50.0, Some(distance));
+        assert!(at_most(&[]).is_nan());
+        assert!((at_most(&[other()]) - 1.0).abs() < 1e-12);
+        assert!((at_most(&[near(0.0)]) - 0.5).abs() < 1e-9);
+        assert!((at_most(&[near(40.0)]) - 1.0).abs() < 1e-12);
+        // What is too weak does not count.
+        let weak = score("latency", 5.0, Some(0.1));
+        let mean = at_most(&[other(), near(0.0), near(2.0), weak]);
+        assert!(
+            (mean - (1.0 + 0.5 + 0.841_345) / 3.0).abs() < 1e-6,
+            "{mean}"
+        );
     }
 }

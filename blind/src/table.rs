@@ -67,11 +67,19 @@ pub fn page(scores: &[Score]) -> String {
 
 type Question = (&'static str, &'static str, fn(&Summary) -> String);
 
-const QUESTIONS: [Question; 19] = [
+const QUESTIONS: [Question; 20] = [
     ("recordings", "", |s| s.scores.len().to_string()),
     ("right name first, SNR ≥ 8", "≥ 95 %", |s| {
         s.first(Kind::One).to_string()
     }),
+    (
+        "the most that any namer can expect of that: a low pass far above the signals is a delay",
+        "",
+        |s| match s.first_at_most(Kind::One) {
+            share if share.is_nan() => "none drawn".into(),
+            share => format!("at most {:.1} %", 100.0 * share),
+        },
+    ),
     (
         "right name, or in a declared group of two, SNR ≥ 8",
         "≥ 99 %",

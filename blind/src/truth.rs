@@ -29,6 +29,15 @@ pub struct TrueParameter {
     pub bounded: bool,
 }
 
+/// The cause of another name that does nearly the same: the low pass of a delay, the delay of a low pass.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Twin {
+    /// Distance to the nearest recording with it, in units of the noise, as the SNR is.
+    pub distance: f64,
+    /// How many times as often as the twin the cause is hidden in recordings with a reference, or without.
+    pub odds: f64,
+}
+
 /// One hidden cause.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct HiddenCause {
@@ -38,6 +47,9 @@ pub struct HiddenCause {
     pub snr_asked: f64,
     /// SNR that it has.
     pub snr: f64,
+    /// Of a delay or a low pass that is the only cause, as the textbook draws it: the other one. Where that is never hidden in such a
+    /// recording there is none.
+    pub twin: Option<Twin>,
     /// In the unit of its own.
     pub magnitude: f64,
     /// Parameters.

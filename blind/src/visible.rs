@@ -118,23 +118,24 @@ impl Visible {
     /// SNR of a change of the two channels, V.
     #[must_use]
     pub(crate) fn snr(&self, change: &[Vec<f64>; 2]) -> f64 {
+        self.left(change).norm() / self.sigma
+    }
+
+    /// What is seen of a change of the two channels, V, in units of the noise.
+    #[must_use]
+    pub(crate) fn seen(&self, change: &[Vec<f64>; 2]) -> DVector<f64> {
+        self.left(change) / self.sigma
+    }
+
+    /// Weighted, nuisances taken off, V.
+    fn left(&self, change: &[Vec<f64>; 2]) -> DVector<f64> {
         let mut left = self.rotated(change);
         // Twice, as the first time leaves what rounding leaves.
         for _ in 0..2 {
             let share = self.solver.solve(&self.nuisance.tr_mul(&left));
             left -= &self.nuisance * share;
         }
-        left.norm() / self.sigma
-    }
-
-    /// SNR of the difference between two simulations.
-    #[must_use]
-    pub(crate) fn difference(&self, with: &Rows, without: &Rows) -> f64 {
-        let change = [0, 1].map(|c: usize| {
-            let pairs = with.volts[c].iter().zip(&without.volts[c]);
-            pairs.map(|(a, b)| a - b).collect::<Vec<f64>>()
-        });
-        self.snr(&change)
+        left
     }
 
     /// SNR of motion that comes earlier or later from some moments on. However far that is: it is motion wherever it is

@@ -31,6 +31,8 @@ fn every_name_has_the_snr_asked_for() {
     } in &truths
     {
         *kinds.entry(*kind).or_default() += 1;
+        let first = hidden.first().map(|h| h.name.as_str());
+        assert_eq!(Case::first_of_seed(*seed), first);
         for hidden in hidden {
             seen.insert(hidden.name.clone());
             // A bit or a place can only be chosen, not scaled.
@@ -38,6 +40,16 @@ fn every_name_has_the_snr_asked_for() {
                 let off = (hidden.snr / hidden.snr_asked - 1.0).abs();
                 assert!(off < 0.01, "{seed}: {hidden:?}");
             }
+            // The nearest signal with the twin is no farther than that without any cause.
+            let twin = hidden.twin.map_or(0.0, |twin| twin.distance);
+            assert!((0.0..=hidden.snr).contains(&twin), "{seed}: {hidden:?}");
+            let delay = ["channel_skew", "bandwidth_mismatch", "latency"];
+            let delay = delay.contains(&hidden.name.as_str());
+            // A low pass in both channels has one against a reference.
+            let may = delay || hidden.name == "common_bandwidth";
+            let alone = *kind == Kind::One;
+            assert!(hidden.twin.is_none() || alone && may, "{hidden:?}");
+            assert!(hidden.twin.is_some() || !(alone && delay), "{hidden:?}");
             assert!(hidden.snr > 1.0 && hidden.magnitude > 0.0, "{hidden:?}");
         }
     }

@@ -3,7 +3,7 @@
 use rand::Rng;
 
 use super::Draw;
-use crate::effect::{At, Circuit, Echo, Effect};
+use crate::effect::{At, Circuit, Echo, Effect, Twins};
 use crate::world::World;
 
 /// First-order low pass, exact for inputs that are parabolas between the steps.
@@ -60,7 +60,13 @@ impl Circuit for LowPasses {
     }
 }
 
+const MISMATCH: &str = "bandwidth_mismatch";
+const COMMON: &str = "common_bandwidth";
+const SKEW: &str = "channel_skew";
+const LATENCY: &str = "latency";
+
 /// Bandwidth; time constants of the two channels as shares of the magnitude, s.
+#[derive(Clone)]
 struct Bandwidth {
     name: &'static str,
     shares: [Vec<f64>; 2],
@@ -85,6 +91,27 @@ impl Effect for Bandwidth {
     fn delays_both(&self) -> bool {
         self.shares[0] == self.shares[1]
     }
+    fn twins(&self, motion_known: bool) -> Option<Twins> {
+        // Low passes one after the other delay slow signals by the sum of their time constants.
+        let [cos, sin] = [0, 1].map(|c: usize| self.shares[c].iter().sum::<f64>());
+        let (name, shares, alike) = match (self.delays_both(), motion_known) {
+            (true, true) => (LATENCY, [-1.0, -1.0], cos),
+            // A delay of both is motion to who does not know the motion.
+            (true, false) => return None,
+            (false, true) => (SKEW, [0.0, -1.0], sin - cos),
+            (false, false) => (SKEW, [-cos, -sin], 1.0),
+        };
+        Some(Twins {
+            own: Box::new(self.clone()),
+            other: Box::new(Late {
+                name,
+                shares,
+                limit: self.limit,
+                sign: 1.0,
+            }),
+            alike,
+        })
+    }
     fn parameters(&self, m: f64, _world: &World) -> Vec<(&'static str, f64, bool)> {
         // A common pole shows as the square of its magnitude: value over SNR is no bound then.
         match (&*self.shares[0], &*self.shares[1]) {
@@ -107,7 +134,7 @@ pub(crate) fn mismatch(draw: &mut Draw) -> Box<dyn Effect> {
         shares.swap(0, 1);
     }
     Box::new(Bandwidth {
-        name: "bandwidth_mismatch",
+        name: MISMATCH,
         shares,
         limit: 4.0 / draw.world.rate,
     })
@@ -117,7 +144,7 @@ pub(crate) fn mismatch(draw: &mut Draw) -> Box<dyn Effect> {
 pub(crate) fn common(draw: &mut Draw) -> Box<dyn Effect> {
     let poles = if draw.wild { vec![0.8, 0.6] } else { vec![1.0] };
     Box::new(Bandwidth {
-        name: "common_bandwidth",
+        name: COMMON,
         shares: [poles.clone(), poles],
         limit: 8.0 / draw.world.rate,
     })
@@ -159,6 +186,7 @@ pub(crate) fn ac_coupling(_draw: &mut Draw) -> Box<dyn Effect> {
 }
 
 /// Sampling times; shares of the magnitude (s) in the two channels.
+#[derive(Clone)]
 struct Late {
     name: &'static str,
     shares: [f64; 2],
@@ -176,6 +204,33 @@ impl Effect for Late {
     fn late(&self, m: f64, channel: usize, _k: usize) -> f64 {
         m * self.shares[channel]
     }
+    fn twins(&self, motion_known: bool) -> Option<Twins> {
+        let [cos, sin] = self.shares;
+        let own = if motion_known {
+            self.shares
+        } else {
+            // Who does not know the motion sees only how much later one is than the other.
+            let later = cos.max(sin);
+            [cos - later, sin - later]
+        };
+        let pole = |late: bool| if late { vec![1.0] } else { vec![] };
+        let (name, shares) = match (cos < sin, sin < cos) {
+            (false, false) => (COMMON, [vec![1.0], vec![1.0]]),
+            (cos_late, sin_late) => (MISMATCH, [pole(cos_late), pole(sin_late)]),
+        };
+        Some(Twins {
+            own: Box::new(Self {
+                shares: own,
+                ..self.clone()
+            }),
+            other: Box::new(Bandwidth {
+                name,
+                shares,
+                limit: self.limit,
+            }),
+            alike: 1.0,
+        })
+    }
     fn parameters(&self, m: f64, _world: &World) -> Vec<(&'static str, f64, bool)> {
         vec![("delay_s", self.sign * m, true)]
     }
@@ -185,7 +240,7 @@ impl Effect for Late {
 pub(crate) fn skew(draw: &mut Draw) -> Box<dyn Effect> {
     let sign = if draw.random.random() { 1.0 } else { -1.0 };
     Box::new(Late {
-        name: "channel_skew",
+        name: SKEW,
         shares: [0.0, sign],
         limit: 2.0 / draw.world.rate,
         sign,
@@ -195,7 +250,7 @@ pub(crate) fn skew(draw: &mut Draw) -> Box<dyn Effect> {
 /// What both channels show is that old.
 pub(crate) fn latency(draw: &mut Draw) -> Box<dyn Effect> {
     Box::new(Late {
-        name: "latency",
+        name: LATENCY,
         shares: [-1.0, -1.0],
         limit: 4.0 / draw.world.rate,
         sign: 1.0,
