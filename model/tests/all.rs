@@ -12,6 +12,7 @@ mod flags;
 mod graph_support;
 mod harmonics;
 mod harmonics_refused;
+mod on_line_commensurate;
 mod on_line_figures;
 mod on_line_held;
 mod on_line_interrupted;
