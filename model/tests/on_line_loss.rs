@@ -86,7 +86,7 @@ const HOW: &str = "NONIUS_BLESS=1 cargo test -p nonius-model on_line_loss";
 /// A loss within a third of a period, or at standstill, leaves the parameters where they were, but for their own noise. Fades of
 /// three to five hundred periods, which for some of the way are small changes of amplitude like any, and of up to a thousand before the
 /// signal is back at once leave nothing either then, nor does a channel at a rail. Without recall they leave less than a tenth of a per cent of a period, and it goes away; after one of a hundred
-/// lock comes back and the calibration too. Every third search; in the long form all.
+/// lock comes back and the calibration too. Every third search, the five parameters of the final form among them; in the long form all.
 #[test]
 fn the_signal_goes_and_comes_back() {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/loss-of-signal.md");
@@ -96,7 +96,8 @@ fn the_signal_goes_and_comes_back() {
         let begin = begin(variant);
         let kept = kept.lines().find(|line| line.starts_with(&begin));
         match kept {
-            Some(kept) if i % 3 != 0 && !(long() || blessed()) => format!("{kept}\n"),
+            // The README quotes the second.
+            Some(kept) if i % 3 != 1 && !(long() || blessed()) => format!("{kept}\n"),
             _ => row(variant),
         }
     });
