@@ -93,6 +93,25 @@ fn structures() -> Vec<(String, Spec)> {
             format!("method {method} type {filter_type}, {search:?}, {parameters} parameters");
         list.push((name, spec));
     }
+    // Bends, which move what the radius shows of them, and with the completion what it does not. Loops of type 1 lag so far that bends
+    // come to their bounds, where words end a last bit below.
+    for (method, filter_type, parameters, completion) in [
+        (3, 2, 9, true),
+        (3, 2, 8, true),
+        (1, 2, 9, true),
+        (3, 2, 9, false),
+    ] {
+        let mut spec = with_loop(method, filter_type);
+        spec.calibration.parameters = parameters;
+        spec.calibration.completion = completion;
+        let with = if completion {
+            "completed"
+        } else {
+            "radius alone"
+        };
+        let name = format!("method {method} type {filter_type}, {parameters} parameters, {with}");
+        list.push((name, spec));
+    }
     let mut binary = optical();
     binary.adc.coding = Coding::OffsetBinary;
     binary.adc.bits = 14;
@@ -154,6 +173,11 @@ fn calibrated(spec: &Spec, found: &Difference) {
             found.gears,
             spec.calibration.gamma_last - spec.calibration.gamma_first
         );
+        assert_eq!(
+            found.completions > 20,
+            spec.calibration.completed().is_some(),
+            "{found:?}"
+        );
     }
 }
 
@@ -169,6 +193,9 @@ fn finest(spec: &mut Spec) {
     }
     if spec.calibration.is_on() {
         spec.formats.residual_fraction = Some(24);
+    }
+    if spec.calibration.has_bend() {
+        spec.formats.accumulator_fraction = Some(30);
     }
     if spec.calibration.has_phase() {
         spec.formats.cross_bits = Some(32);

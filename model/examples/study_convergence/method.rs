@@ -257,5 +257,7 @@ pub(crate) fn set_name(set: Parameters) -> &'static str {
         Parameters::Nine => "nine",
         Parameters::ChebyshevEight => "eight (Chebyshev)",
         Parameters::ChebyshevNine => "nine (Chebyshev)",
+        Parameters::SplitEight => "eight (split)",
+        Parameters::SplitNine => "nine (split)",
     }
 }

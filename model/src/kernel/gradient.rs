@@ -46,7 +46,7 @@ pub struct Seen<S: Signal> {
     pub frame: (S, S),
     /// Phase error, radians.
     pub e: S,
-    /// Radial residual, for the sum of squares half that of the squared radius.
+    /// Radial residual as it moves the parameters, for the sum of squares half that of the squared radius.
     pub rho: S,
     /// n ρ.
     pub along: (S, S),

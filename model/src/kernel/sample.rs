@@ -131,28 +131,29 @@ fn advance_of<S: Signal, const PLAIN: bool>(
     let estimate = (cos_hat, sin_hat);
     let mut polar = None;
     // What the gradient is made of: the residual, and the pair or its estimate.
-    let (mut residual, mut frame) = (rho, estimate);
-    let (rho_c, rho_s) = if !PLAIN && structure.calibration.squares() {
+    let (residual, frame, along) = if !PLAIN && structure.calibration.squares() {
         let epsilon = sum_of_squares::half_square(c, s, k.half, structure);
-        (residual, frame) = (gradient::limited(epsilon, None, structure), (c, s));
-        gradient::along(residual, frame, structure)
+        let limited = gradient::limited(epsilon, None, structure);
+        let along = gradient::along(limited, (c, s), structure);
+        (limited, (c, s), along)
     } else {
         let lags = structure.calibration.allows_for_lag().then_some(e);
         let limited = gradient::limited(rho, lags, structure);
         polar = starting
             .map(|running| start::polar((rho, limited, e), estimate, running, &travel, structure));
-        let (rho, along) = match &polar {
+        let (rho, direction) = match &polar {
             Some(polar) => (polar.residual, polar.direction),
             None => (limited, estimate),
         };
-        gradient::along(rho, along, structure)
+        let along = gradient::along(rho, direction, structure);
+        (limited, estimate, along)
     };
     let seen = gradient::Seen {
         y: (y_c, y_s),
         frame,
         e,
         rho: residual,
-        along: (rho_c, rho_s),
+        along,
         theta,
         start: polar,
     };
@@ -276,8 +277,8 @@ fn advance_of<S: Signal, const PLAIN: bool>(
         sin_hat,
         e,
         rho,
-        rho_c,
-        rho_s,
+        rho_c: along.0,
+        rho_s: along.1,
         speed,
         in_window,
         fresh,

@@ -27,10 +27,16 @@ pub enum Parameters {
     ChebyshevEight,
     /// As [`ChebyshevEight`](Self::ChebyshevEight), and s + θ9 c with c the *corrected* cosine: phase after bending.
     ChebyshevNine,
+    /// u = θ1 y_c + θ2, c = u + θ6 T2(u) + θ8 T3(u) + θ9 (T3(u) − u); v = θ3 y_s + θ4, s likewise with θ7, θ8 and −θ9: the
+    /// curves of Chebyshev eight, split into what the third orders have in common and what is opposite in them, which no
+    /// radius shows. M is taken at the estimate, without bends, as the chip does: see [`at_estimate`](Self::at_estimate).
+    SplitEight,
+    /// As [`SplitEight`](Self::SplitEight), and s + θ5 c.
+    SplitNine,
 }
 
 impl Parameters {
-    /// Every set.
+    /// Every set of the paper, and those in Chebyshev polynomials.
     pub const ALL: [Self; 6] = [
         Self::Four,
         Self::Five,
@@ -46,8 +52,8 @@ impl Parameters {
         match self {
             Self::Four => 4,
             Self::Five => 5,
-            Self::Eight | Self::ChebyshevEight => 8,
-            Self::Nine | Self::ChebyshevNine => 9,
+            Self::Eight | Self::ChebyshevEight | Self::SplitEight => 8,
+            Self::Nine | Self::ChebyshevNine | Self::SplitNine => 9,
         }
     }
 
@@ -55,7 +61,7 @@ impl Parameters {
     #[must_use]
     pub fn linear(self) -> [usize; 4] {
         match self {
-            Self::Four | Self::Five => [0, 1, 2, 3],
+            Self::Four | Self::Five | Self::SplitEight | Self::SplitNine => [0, 1, 2, 3],
             _ => [0, 3, 4, 7],
         }
     }
@@ -64,8 +70,9 @@ impl Parameters {
     #[must_use]
     pub fn phase(self) -> Option<usize> {
         match self {
-            Self::Five | Self::Nine | Self::ChebyshevNine => Some(self.count() - 1),
-            Self::Four | Self::Eight | Self::ChebyshevEight => None,
+            Self::Five | Self::SplitNine => Some(4),
+            Self::Nine | Self::ChebyshevNine => Some(8),
+            Self::Four | Self::Eight | Self::ChebyshevEight | Self::SplitEight => None,
         }
     }
 
@@ -93,9 +100,9 @@ impl Parameters {
         match self {
             Self::Five => theta[4] = t5,
             Self::Nine => theta[8] = t5,
-            Self::ChebyshevNine => {
+            Self::ChebyshevNine | Self::SplitNine => {
                 // θ5 y_c = (θ5/θ1) (c − θ2)
-                theta[8] = t5 / t1;
+                theta[if self == Self::SplitNine { 4 } else { 8 }] = t5 / t1;
                 theta[offset_s] = t4 - t5 / t1 * t2;
             }
             _ => {}
@@ -111,6 +118,15 @@ impl Parameters {
                 let c = bend(theta, 0, y[0]).value;
                 let s = bend(theta, 4, y[1]).value + theta[8] * c;
                 return [c, s];
+            }
+            Self::SplitEight | Self::SplitNine => {
+                let channel = |gain: usize, second: usize, opposite: f64| {
+                    let u = theta[gain] * y[gain / 2] + theta[gain + 1];
+                    let (t2, t3) = chebyshev(u);
+                    u + theta[second] * t2 + theta[7] * t3 + opposite * (t3 - u)
+                };
+                let c = channel(0, 5, theta[8]);
+                return [c, channel(2, 6, -theta[8]) + theta[4] * c];
             }
             _ => self.jacobian(theta, y) * theta,
         };
@@ -153,6 +169,31 @@ impl Parameters {
                     m[(1, 8)] = cos.value;
                 }
             }
+            Self::SplitEight | Self::SplitNine => {
+                let [c, s] = self.corrected(theta, y);
+                let radius = c.hypot(s);
+                return self.at_estimate(theta, y, (c / radius, s / radius));
+            }
+        }
+        m
+    }
+
+    /// The same where α̂ is known: of the split sets with (cos α̂, sin α̂) in the place of u, v and the corrected cosine, and without
+    /// the bends, which are small. T2 is cos 2α̂ and −cos 2α̂ then, T3 cos 3α̂ and −sin 3α̂.
+    #[must_use]
+    pub fn at_estimate(self, theta: &Theta, y: [f64; 2], (cos, sin): (f64, f64)) -> Jacobian {
+        if !matches!(self, Self::SplitEight | Self::SplitNine) {
+            return self.jacobian(theta, y);
+        }
+        let mut m = Jacobian::zeros();
+        for (row, u, sign) in [(0, cos, 1.0), (1, sin, -1.0)] {
+            let (t2, t3) = chebyshev(u);
+            (m[(row, 2 * row)], m[(row, 2 * row + 1)]) = (y[row], 1.0);
+            m[(row, 5 + row)] = t2;
+            (m[(row, 7)], m[(row, 8)]) = (t3, sign * (t3 - u));
+        }
+        if self == Self::SplitNine {
+            m[(1, 4)] = cos;
         }
         m
     }
@@ -166,10 +207,14 @@ impl Parameters {
     #[must_use]
     pub fn null_direction(self, theta: &Theta) -> Option<Theta> {
         let mut v = Theta::zeros();
+        if matches!(self, Self::SplitEight | Self::SplitNine) {
+            v[8] = 0.25;
+            return Some(v);
+        }
         for (first, sign) in [(0, 1.0), (4, -1.0)] {
             let (g, o) = (theta[first], theta[first + 3]);
             let channel = match self {
-                Self::Four | Self::Five => return None,
+                Self::Four | Self::Five | Self::SplitEight | Self::SplitNine => return None,
                 Self::Eight | Self::Nine => [
                     3.0 * g * o * o - g,
                     3.0 * g * g * o,
@@ -187,6 +232,11 @@ impl Parameters {
     }
 }
 
+/// T2 and T3.
+fn chebyshev(u: f64) -> (f64, f64) {
+    (2.0 * u * u - 1.0, 4.0 * u * u * u - 3.0 * u)
+}
+
 struct Bend {
     value: f64,
     /// With respect to gain, T2, T3 and offset.
@@ -197,7 +247,7 @@ struct Bend {
 fn bend(theta: &Theta, first: usize, y: f64) -> Bend {
     let [gain, second, third, offset] = [0, 1, 2, 3].map(|i| theta[first + i]);
     let u = gain * y + offset;
-    let (t2, t3) = (2.0 * u * u - 1.0, 4.0 * u * u * u - 3.0 * u);
+    let (t2, t3) = chebyshev(u);
     let slope = 1.0 + second * 4.0 * u + third * (12.0 * u * u - 3.0);
     Bend {
         value: u + second * t2 + third * t3,

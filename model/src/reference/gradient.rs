@@ -60,7 +60,7 @@ impl Observation {
             skew::together(late, kappa, tan_beta)
         };
         Self {
-            m: parameters.jacobian(theta, y),
+            m: parameters.at_estimate(theta, y, (cos_hat, sin_hat)),
             corrected: [c, s],
             cos_hat,
             sin_hat,

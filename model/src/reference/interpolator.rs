@@ -65,6 +65,8 @@ pub struct Reference {
     theta: Theta,
     /// Steps of the search in the running period of travel, which wait for its end.
     pending: Theta,
+    /// The same of the completion.
+    completing: Theta,
     tracking: Loop,
     searching: Searching,
     completion: Option<Completion>,
@@ -116,6 +118,7 @@ impl Reference {
             config,
             theta: config.theta,
             pending: Theta::zeros(),
+            completing: Theta::zeros(),
             tracking,
             searching,
             completion,
@@ -162,19 +165,19 @@ impl Reference {
             Theta::zeros()
         };
         let gamma = (open && !starting && !behind.ends_so).then_some(&gamma);
-        let complete = locked && !behind.catches_up;
+        let complete = (locked && !behind.catches_up, true);
         let estimate = self.go_on(&seen, (gamma, due), complete, solved);
         self.watch(&seen);
         Estimate { locked, ..estimate }
     }
 
-    /// One sample with the decisions made outside: the search steps by this γ, or not at all, and Θ is what it has found, or stays; the completion, where there is one,
-    /// may `complete` (and still has its own gate).
+    /// One sample with the decisions made outside: the search steps by this γ, or not at all, and Θ is what it has found, or stays; so with the
+    /// completion, where there is one, which still has its own gate.
     pub fn step_with(
         &mut self,
         y: [f64; 2],
         steps: (Option<&Steps>, bool),
-        complete: bool,
+        complete: (bool, bool),
     ) -> Estimate {
         let seen = self.observe(y);
         self.go_on(&seen, steps, complete, Theta::zeros())
@@ -183,6 +186,11 @@ impl Reference {
     /// What the search has found since the last period of travel ended is forgotten.
     pub fn drop_period(&mut self) {
         self.pending = Theta::zeros();
+    }
+
+    /// The same of the completion.
+    pub fn drop_completion(&mut self) {
+        self.completing = Theta::zeros();
     }
 
     /// What is known of the next sample before it comes: e and ρ are not, and are 0.
@@ -255,7 +263,7 @@ impl Reference {
         &mut self,
         seen: &Observation,
         (gamma, due): (Option<&Steps>, bool),
-        complete: bool,
+        (completes, completed): (bool, bool),
         solved: Theta,
     ) -> Estimate {
         let theta = self.theta;
@@ -268,9 +276,10 @@ impl Reference {
         let along = |gradient: Theta| gamma.map_or(Theta::zeros(), |g| -g * gradient);
         let parameters = self.config.parameters;
         let followed = self.followed(seen);
-        let missing = self.completion.as_mut().map_or_else(Theta::zeros, |of| {
-            of.step(parameters, &theta, seen, estimate.alpha_hat, complete)
-        });
+        if let Some(completion) = &mut self.completion {
+            self.completing +=
+                completion.step(parameters, &theta, seen, estimate.alpha_hat, completes);
+        }
         let step = match &mut self.searching {
             Searching::None => Theta::zeros(),
             Searching::Residual(gradient) => along(gradient.step(&followed)),
@@ -288,7 +297,11 @@ impl Reference {
             ..
         } = &self.config;
         self.pending += step;
-        let mut change = missing + solved;
+        let mut change = solved;
+        if completed {
+            change += self.completing;
+            self.completing = Theta::zeros();
+        }
         if due {
             change += self.pending;
             self.pending = Theta::zeros();

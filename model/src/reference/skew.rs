@@ -12,10 +12,14 @@ use super::{Parameters, Theta};
 #[must_use]
 pub fn tan_beta(parameters: Parameters, theta: &Theta) -> f64 {
     match parameters {
-        Parameters::Four | Parameters::Eight | Parameters::ChebyshevEight => 0.0,
+        Parameters::Four
+        | Parameters::Eight
+        | Parameters::ChebyshevEight
+        | Parameters::SplitEight => 0.0,
         Parameters::Five => theta[4] / theta[0],
         Parameters::Nine => theta[8] / theta[0],
         Parameters::ChebyshevNine => theta[8],
+        Parameters::SplitNine => theta[4],
     }
 }
 

@@ -10,6 +10,7 @@ use nonius_model::bits::Bits;
 use nonius_model::chip::Chip;
 use nonius_model::design::Design;
 use nonius_model::kernel::{Input, Method, State};
+use nonius_model::reference::completed::CompletedConfig;
 use nonius_model::reference::gradient::Form;
 use nonius_model::reference::interpolator::Search;
 use nonius_model::reference::start::Start;
@@ -17,6 +18,7 @@ use nonius_model::reference::sum_of_squares::Smoothing;
 use nonius_model::reference::{Config, Parameters, Reference, Steps, Theta, from_spec};
 use nonius_model::spec::{CalibrationMethod, Coding, Spec};
 
+use crate::support::shipped::variants::third_and_fifth;
 use crate::support::{Encoder, wrapped};
 
 /// What a sample shows: it teaches, a period of travel ends, e and ρ.
@@ -91,6 +93,10 @@ fn theta(design: &Design, registers: &State<f64>) -> Theta {
     theta[2] = design.constants.theta_3_nominal.ideal + registers.theta_3_deviation;
     theta[3] = registers.theta_4_deviation;
     theta[4] = registers.theta_5_deviation;
+    theta[5] = registers.theta_6_deviation;
+    theta[6] = registers.theta_7_deviation;
+    theta[7] = registers.theta_8_deviation;
+    theta[8] = registers.theta_9_deviation;
     theta
 }
 
@@ -104,6 +110,8 @@ fn reference(design: &Design, registers: &State<f64>, position: f64) -> Referenc
     };
     let parameters = match spec.calibration.parameters {
         4 => Parameters::Four,
+        8 => Parameters::SplitEight,
+        9 => Parameters::SplitNine,
         _ => Parameters::Five,
     };
     Reference::new(Config {
@@ -122,6 +130,11 @@ fn reference(design: &Design, registers: &State<f64>, position: f64) -> Referenc
             }
             _ => Search::Residual(Form::Final),
         },
+        completion: spec.calibration.completed().map(|gamma| CompletedConfig {
+            gamma_v: 4.0 * 0.5f64.powi(gamma as i32),
+            // It is told when.
+            slowest: 0.0,
+        }),
         // Of the final form only what stands along the radius; the other searches are compared without.
         allows_for_lag: spec.calibration.allows_for_lag(),
         start: Start::At {
@@ -144,6 +157,8 @@ pub(crate) struct Difference {
     pub(crate) e: f64,
     pub(crate) rho: f64,
     pub(crate) updates: u32,
+    /// Periods after which the completion moved θ9.
+    pub(crate) completions: u32,
     pub(crate) gears: u32,
     pub(crate) moved: f64,
 }
@@ -153,7 +168,7 @@ pub(crate) const SAMPLES: u32 = 60_000;
 
 /// What the chip equalises the modes of offsets, gains and phase with, gains and phase by a power of two near the inverse square of the
 /// amplitude as well. Final form: 1, 2 and 16, and without phase half of each gain's gradient off the other's. The exact gradient: 1/2, 1
-/// and 2. The sum of squares: 1, 1 and 4; its gradient is eight times that along the radius, and a sum of as many samples as are not
+/// and 2. With bends the final form has 2 and 4 for gains and phase, 1 for the common third order. The sum of squares: 1, 1 and 4; its gradient is eight times that along the radius, and a sum of as many samples as are not
 /// forgotten. The batch: 1/2, 3/4 less a third of it of the other gain's, and 2.
 pub(crate) fn equaliser(spec: &Spec) -> Steps {
     let mut amplitude: f64 = spec.sensor.amplitude / spec.adc.full_scale;
@@ -161,11 +176,18 @@ pub(crate) fn equaliser(spec: &Spec) -> Steps {
         amplitude *= 2.0;
     }
     let octaves = -2.0 * amplitude.log2();
+    let bends = spec.calibration.has_bend();
     let final_form = spec.calibration.method == CalibrationMethod::Final;
-    let inverse = if final_form { octaves - 0.3 } else { octaves }
-        .round()
-        .exp2();
+    let inverse = if final_form && !bends {
+        octaves - 0.3
+    } else {
+        octaves
+    }
+    .round()
+    .exp2();
     let [offset, gain, phase] = match spec.calibration.method {
+        // The phase is made of the estimate, whose amplitude is 1.
+        CalibrationMethod::Final if bends => [1.0, 2.0, 4.0 / inverse],
         CalibrationMethod::Final => [1.0, 2.0, 16.0],
         CalibrationMethod::Exact => [0.5, 1.0, 2.0],
         CalibrationMethod::SumOfSquares => [1.0, 1.0, 4.0]
@@ -183,6 +205,14 @@ pub(crate) fn equaliser(spec: &Spec) -> Steps {
         _ => 0.0,
     };
     (steps[(0, 2)], steps[(2, 0)]) = (across, across);
+    if bends {
+        // Offset and second order of a channel apart: the inverse of their normal equations.
+        for (offset, second) in [(1, 5), (3, 6)] {
+            (steps[(offset, offset)], steps[(second, second)]) = (2.0, 4.0);
+            (steps[(offset, second)], steps[(second, offset)]) = (-2.0, -2.0);
+        }
+        steps[(7, 7)] = 1.0;
+    }
     steps
 }
 
@@ -198,7 +228,10 @@ pub(crate) fn compare(
     equaliser: &Steps,
 ) -> Difference {
     let spec = &design.spec;
-    let encoder = Encoder::miscalibrated(spec);
+    let mut encoder = Encoder::miscalibrated(spec);
+    if spec.calibration.has_bend() {
+        encoder.harmonics.extend(third_and_fifth());
+    }
     let (half, middle) = {
         let half = 1i64 << (spec.adc.bits - 1);
         let binary = spec.adc.coding == Coding::OffsetBinary;
@@ -217,7 +250,8 @@ pub(crate) fn compare(
     let mut start = Theta::zeros();
     let mut compared = 0u32;
     let final_form = spec.calibration.method == CalibrationMethod::Final;
-    let still = if final_form { 0 } else { REMEMBERED };
+    let forgets = final_form && spec.calibration.completed().is_none();
+    let still = if forgets { 0 } else { REMEMBERED };
     for k in 0..SAMPLES {
         let k = f64::from(k);
         let codes = encoder.codes_of([motion(k), motion(k + late)]);
@@ -254,7 +288,18 @@ pub(crate) fn compare(
             && design.structure.catches_up()
             && spec.calibration.waits();
         let teaches = fresh && !dropped;
-        let seen = paper.step_with(y, (teaches.then_some(&gamma), due && !dropped), false);
+        // The completion gathers in some sectors of a period, acts where the period ends, or is dropped.
+        let gathers = after.gathered_9 != before.gathered_9;
+        let acts = after.theta_9_deviation != before.theta_9_deviation;
+        let seen = paper.step_with(
+            y,
+            (teaches.then_some(&gamma), due && !dropped),
+            (acts || gathers && after.gathered_9 != 0.0, acts),
+        );
+        if gathers && !acts && after.gathered_9 == 0.0 {
+            paper.drop_completion();
+        }
+        found.completions += u32::from(acts);
         if dropped {
             paper.drop_period();
         }
