@@ -14,7 +14,7 @@ use crate::sandwich::Sandwich;
 use crate::set::Set;
 
 /// Eigenvalues below this share of the largest are a direction that these samples do not show.
-const FAINT: f64 = 1e-9;
+pub(crate) const FAINT: f64 = 1e-9;
 const ITERATIONS: usize = 200;
 
 /// A minimum of J.

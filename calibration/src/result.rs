@@ -58,7 +58,7 @@ pub struct Calibration {
     pub scatter: Option<f64>,
     /// Share of the scale period in which there are samples, 0 to 1.
     pub arc: f64,
-    /// The Cramér–Rao bound for that noise and those angles.
+    /// The Cramér–Rao bound of the ellipse for that noise and those angles; that of the method's own set is beside its parameters.
     pub bound: Option<Bound>,
     /// What the data cannot tell.
     pub cannot_tell: Vec<String>,

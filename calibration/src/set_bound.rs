@@ -3,8 +3,8 @@
 //! A small error δΘ and a small change δα of the angle move the corrected pair by M δΘ and by t δα, t = (−sin α, cos α),
 //! and the noise of the signals by C = J Σ Jᵀ, J the slope of the correction. Where nothing is known of the motion, each
 //! sample has an angle of its own to be found, and what it tells of Θ lies along the normal n = (cos α, sin α):
-//! F = Σ Mᵀn nᵀM / (nᵀCn). The sets with a cubic have a direction in which nᵀMv = 0 everywhere, [`BLIND`]: it is left out,
-//! and no error is stated for it. Where the motion is known to be uniform, its phase and speed alone are to be found, and the
+//! F = Σ Mᵀn nᵀM / (nᵀCn). The sets with a cubic have a direction v, [`BLIND`], in which nᵀMv is 0 everywhere where β is 0 and the
+//! channels are straight, and small else: v is held, as the searches hold it, and no error is stated for it. Where the motion is known to be uniform, its phase and speed alone are to be found, and the
 //! angle tells of v too: F = Σ [M t tk]ᵀ C⁻¹ [M t tk], without those two.
 //!
 //! [`BLIND`]: crate::set::BLIND
@@ -14,7 +14,7 @@ use std::f64::consts::TAU;
 use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
 use nonius_recording::Ellipse;
 
-use crate::gradient::{Minimum, invert, physical_covariance};
+use crate::gradient::{FAINT, Minimum, invert, physical_covariance};
 use crate::set::Set;
 
 /// What is known of the motion.
@@ -163,7 +163,7 @@ impl At<'_> {
         information.fill_upper_triangle_with_lower_triangle();
         let directions = self.set.directions();
         let seen = directions.transpose() * information * &directions;
-        Some(&directions * seen.cholesky()?.inverse() * directions.transpose())
+        Some(&directions * inverse(seen)? * directions.transpose())
     }
 
     /// The same where phase and speed alone are.
@@ -181,7 +181,7 @@ impl At<'_> {
             by.column_mut(n + 1).copy_from(&(place.tangent * late));
             information += by.transpose() * place.noise.try_inverse()? * &by;
         }
-        let covariance = information.cholesky()?.inverse();
+        let covariance = inverse(information)?;
         Some(covariance.view((0, 0), (n, n)).into_owned())
     }
 
@@ -203,4 +203,16 @@ impl At<'_> {
         let sums = squares.fold([0.0; 2], |[a, b], [c, d]| [a + c, b + d]);
         Some(sums.map(|sum: f64| (sum * each).sqrt()))
     }
+}
+
+/// `None` where a direction is faint.
+fn inverse(information: DMatrix<f64>) -> Option<DMatrix<f64>> {
+    let eigen = information.symmetric_eigen();
+    let [least, most] = [eigen.eigenvalues.min(), eigen.eigenvalues.max()];
+    // Nor of what is no number.
+    if least.is_nan() || least <= FAINT * most {
+        return None;
+    }
+    let inverse = DMatrix::from_diagonal(&eigen.eigenvalues.map(f64::recip));
+    Some(&eigen.eigenvectors * inverse * eigen.eigenvectors.transpose())
 }

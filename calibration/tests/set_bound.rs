@@ -71,6 +71,13 @@ fn uniform_motion_shows_the_blind_direction() {
             (v.transpose() * theta * v).x
         };
         assert!(along(&of(Motion::Unknown).theta) < 1e-18);
+        // It is held, not unseen, where β is not 0.
+        let late = Ellipse {
+            beta: 0.1,
+            ..circle
+        };
+        let held = of_ellipse(set, &late, angles(), [0.01; 2], Motion::Unknown).expect("a bound");
+        assert!(along(&held.theta) < 1e-18);
         let seen = along(&of(Motion::Uniform).theta);
         println!("{set:?}: {:.2e} of the blind direction", seen.sqrt());
         assert!(seen > 0.0 && seen < 1e-4);
@@ -151,9 +158,11 @@ fn the_searches_come_near_their_bounds() {
                 continue;
             };
             furthest = furthest.max(spread / bound);
-            // Four standard errors of a spread of 150 below; the sums of squares weigh the channels alike, though their noise is not.
+            // Four standard errors of a spread of 150 below; the sums of squares weigh the channels alike, though in amplitudes their noise
+            // is not.
+            let most = if method.set().cubic() { 1.35 } else { 1.25 };
             assert!(
-                (0.77..1.4).contains(&(spread / bound)),
+                (0.77..most).contains(&(spread / bound)),
                 "{method:?} {name}: {spread} {bound}"
             );
         }

@@ -69,12 +69,6 @@ pub(crate) fn run(args: &Simulate) -> Result<()> {
     )?;
     play::check(spec, &recording, &path, args.repeat)?;
     let thetas = spec.calibration.thetas();
-    let c = &spec.calibration;
-    if args.reference && c.completed().is_some() && c.squares() {
-        eprintln!(
-            "note: completed, the paper's search runs along the radius, whatever calibration.method says"
-        );
-    }
     let mut interpolator: Box<dyn Interpolator> = if args.reference {
         Box::new(InFloatingPoint::of(&design)?)
     } else {

@@ -31,6 +31,7 @@ mod reference_interpolator;
 mod reference_loops;
 mod reference_loss;
 mod reference_null_direction;
+mod reference_of_designs;
 mod reference_sensor;
 mod reference_speed_of_convergence;
 mod reference_support;

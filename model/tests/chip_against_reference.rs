@@ -204,7 +204,7 @@ fn finest(spec: &mut Spec) {
 
 /// The chip's equations are the paper's: with the finest sine table and coefficients the unrounded chip and the
 /// reference differ by the table's interpolation error and the coefficients' last bit, some 10⁻⁹ of a period, in
-/// every method, type and parameter set, through reversals and all of the convergence; where skew is corrected, by the rest
+/// every method and type, four, five, and by the final form eight and nine parameters, through reversals and all of the convergence; where skew is corrected, by the rest
 /// of its series too.
 #[test]
 fn the_equations_agree() {

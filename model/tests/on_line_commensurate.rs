@@ -48,15 +48,21 @@ fn left(spec: &Spec, per_period: u32, signs: u32, place: f64) -> [f64; 3] {
     ]
 }
 
-/// At exactly 8 and 64 samples a period every search of every set finds its parameters from new, and keeps them. At exactly four the
+/// At exactly 8 and 64 samples a period every search of every set finds its parameters from new, and keeps them, but for bends where cos 4α is 0
+/// at all eight places (`on_line_speeds.rs`). At exactly four the
 /// exact gradient does; the others, which learn from the radius, see too little of it there from new, but keep what a speed a little beside has
-/// shown them. Every fifth of the signs, each at another place of the period; in the long form all.
+/// shown them. Every fifth of the signs, each at another place of the period; in the long form all of both.
 #[test]
 fn every_search_at_commensurate_speeds() {
     for per_period in [4, 8, 64] {
         let worst = |spec: &Spec| {
-            let all = (0..16).zip([0.013, 0.1, 0.125, 0.0].into_iter().cycle());
-            every(5, all)
+            let places = [0.013, 0.1, 0.125, 0.0];
+            let all = (0..16).flat_map(|signs| {
+                // Each of the signs at another place first.
+                let from = signs as usize;
+                (0..4).map(move |i| (signs, places[(from + i) % 4]))
+            });
+            every(20, all)
                 .map(|(signs, place)| left(spec, per_period, signs, place))
                 .fold([0.0f64; 3], |worst, now| {
                     [0, 1, 2].map(|i| worst[i].max(now[i]))
@@ -95,7 +101,7 @@ fn every_search_at_commensurate_speeds() {
             all(0.2, &[exact]);
             assert!(linear[1] < 0.3 && linear[2] < 0.6, "{linear:?}");
             // Of the bends four places tell nothing: they go where noise and roundings push them.
-            assert!(bent[1] < 3.5 && bent[2] < 3.5, "{bent:?}");
+            assert!(bent[1] < 3.0 && bent[2] < 2.0, "{bent:?}");
         } else {
             all(0.3, &groups);
         }

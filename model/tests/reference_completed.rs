@@ -320,4 +320,7 @@ fn what_cannot_converge_is_refused() {
     assert!(with(-0.1, Parameters::Eight, Gate::EverySample).is_err());
     assert!(with(0.1, Parameters::Five, Gate::EverySample).is_err());
     assert!(with(0.1, Parameters::Four, Gate::EverySample).is_err());
+    // The exact gradient sees that direction itself.
+    let twice = config(Parameters::ChebyshevEight, (EXACT.0, Some(COMPLETION)), 0.5);
+    assert!(Reference::new(twice).is_err());
 }

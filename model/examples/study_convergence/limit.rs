@@ -3,8 +3,8 @@
 //! For a constant sensor without harmonics, samples evenly over the period: of the whole run (what an
 //! unbiased estimator could reach that keeps all of it), and of so many samples as the chip's last γ averages over. A step γ
 //! against a gradient whose modes are brought to about 1/2 leaves as much of the noise as a mean of 4/γ samples, each of the
-//! 64 sectors once a period. Of the sets with a cubic without and with the direction that no radius shows, which uniform motion
-//! tells. Θ of eight and nine parameters is that of the paper's raw powers.
+//! 64 sectors once a period. Of the sets with a cubic with the direction v held that no radius shows (or hardly, where β is not 0), and found, as
+//! uniform motion tells it. Θ of eight and nine parameters is that of the paper's raw powers.
 
 use std::f64::consts::TAU;
 
@@ -31,9 +31,9 @@ pub(crate) fn bounds(design: &Design, scenario: Scenario) -> Vec<(String, SetBou
     for (name, set, motion) in [
         ("four", Set::Four, Motion::Unknown),
         ("five", Set::Five, Motion::Unknown),
-        ("eight, radius alone", Set::Eight, Motion::Unknown),
+        ("eight, v held", Set::Eight, Motion::Unknown),
         ("eight, uniform motion", Set::Eight, Motion::Uniform),
-        ("nine, radius alone", Set::Nine, Motion::Unknown),
+        ("nine, v held", Set::Nine, Motion::Unknown),
         ("nine, uniform motion", Set::Nine, Motion::Uniform),
     ] {
         for (record, samples) in [

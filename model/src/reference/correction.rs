@@ -171,15 +171,15 @@ impl Parameters {
             }
             Self::SplitEight | Self::SplitNine => {
                 let [c, s] = self.corrected(theta, y);
-                let radius = c.hypot(s);
-                return self.at_estimate(theta, y, (c / radius, s / radius));
+                let (sin, cos) = s.atan2(c).sin_cos();
+                return self.at_estimate(theta, y, (cos, sin));
             }
         }
         m
     }
 
     /// The same where α̂ is known: of the split sets with (cos α̂, sin α̂) in the place of u, v and the corrected cosine, and without
-    /// the bends, which are small. T2 is cos 2α̂ and −cos 2α̂ then, T3 cos 3α̂ and −sin 3α̂.
+    /// the bends and the phase's share of the cosine's parameters, which are small. T2 is cos 2α̂ and −cos 2α̂ then, T3 cos 3α̂ and −sin 3α̂.
     #[must_use]
     pub fn at_estimate(self, theta: &Theta, y: [f64; 2], (cos, sin): (f64, f64)) -> Jacobian {
         if !matches!(self, Self::SplitEight | Self::SplitNine) {
@@ -207,14 +207,15 @@ impl Parameters {
     #[must_use]
     pub fn null_direction(self, theta: &Theta) -> Option<Theta> {
         let mut v = Theta::zeros();
-        if matches!(self, Self::SplitEight | Self::SplitNine) {
-            v[8] = 0.25;
-            return Some(v);
-        }
         for (first, sign) in [(0, 1.0), (4, -1.0)] {
             let (g, o) = (theta[first], theta[first + 3]);
             let channel = match self {
-                Self::Four | Self::Five | Self::SplitEight | Self::SplitNine => return None,
+                Self::Four | Self::Five => return None,
+                // (T3(u) − u)/4 of one channel, less that of the other.
+                Self::SplitEight | Self::SplitNine => {
+                    v[8] = 0.25;
+                    return Some(v);
+                }
                 Self::Eight | Self::Nine => [
                     3.0 * g * o * o - g,
                     3.0 * g * g * o,

@@ -8,8 +8,9 @@ use std::f64::consts::TAU;
 use super::catch_up::{self, Behind};
 use super::completed::Completion;
 pub use super::config::{Config, Gamma, Search, Steps};
+pub use super::estimate::Estimate;
 use super::gate::{Gate, GateState, Window};
-use super::gradient::{Observation, ResidualGradient};
+use super::gradient::{Form, Observation, ResidualGradient};
 use super::hold::{self, Hold, Recall, Recalled, Verdict};
 use super::loops::Loop;
 use super::recursive::LeastSquaresStart;
@@ -17,37 +18,6 @@ use super::solved::Solved;
 use super::start::{Acquisition, Start};
 use super::sum_of_squares::{Smoothing, SumOfSquares};
 use super::{ReferenceError, Theta, require};
-
-/// What is known at a sample.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Estimate {
-    /// α̂_k, unwrapped, radians.
-    pub alpha_hat: f64,
-    /// The same in whole turns, and the phase −π … π that remains: full resolution after any distance.
-    pub turns: i64,
-    /// See [`turns`](Self::turns).
-    pub phase: f64,
-    /// Speed, radians per second.
-    pub speed: f64,
-    /// Θ_k, with which this sample was corrected.
-    pub theta: Theta,
-    /// Phase error, radians.
-    pub e: f64,
-    /// Radial residual.
-    pub rho: f64,
-    /// The loop follows.
-    pub locked: bool,
-    /// This sample was allowed to move Θ.
-    pub updated: bool,
-}
-
-impl Estimate {
-    /// Position in scale periods.
-    #[must_use]
-    pub fn periods(&self) -> f64 {
-        self.turns as f64 + self.phase / TAU
-    }
-}
 
 /// State of the search.
 #[derive(Clone, Debug, PartialEq)]
@@ -65,7 +35,7 @@ pub struct Reference {
     theta: Theta,
     /// Steps of the search in the running period of travel, which wait for its end.
     pending: Theta,
-    /// The same of the completion.
+    /// The same of the completion; it is applied at once but where the decisions are made outside.
     completing: Theta,
     tracking: Loop,
     searching: Searching,
@@ -109,6 +79,15 @@ impl Reference {
             }
             Search::Started(start) => Searching::Started(Box::new(LeastSquaresStart::new(start)?)),
         };
+        let along_radius = matches!(
+            config.search,
+            Search::Residual(Form::Final) | Search::SumOfSquares(_)
+        );
+        if config.completion.is_some() && !along_radius {
+            return Err(ReferenceError::Impossible(
+                "the completion is beside a search along the radius; the exact gradient sees that direction itself",
+            ));
+        }
         let completion = config
             .completion
             .map(|completed| Completion::new(completed, config.parameters, filter))
@@ -369,6 +348,7 @@ impl Reference {
             if let Recalled::Held(theta) | Recalled::Again(theta) = recalled {
                 self.theta = theta;
                 self.pending = Theta::zeros();
+                self.completing = Theta::zeros();
                 self.hold.recalled();
                 // A mean of the way down would be the first to act on it.
                 if let Searching::SumOfSquares(sum) = &mut self.searching {

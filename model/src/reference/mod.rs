@@ -28,6 +28,7 @@ pub mod catch_up;
 pub mod completed;
 pub mod config;
 pub mod correction;
+pub mod estimate;
 pub mod extremes;
 pub mod from_spec;
 pub mod gate;
