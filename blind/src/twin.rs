@@ -67,25 +67,12 @@ mod tests {
     use super::*;
     use crate::effects::{CATALOGUE, Draw};
     use crate::magnitude::scaled;
-    use crate::motion::Drive;
-    use crate::world::Wish;
+    use crate::world::to_and_fro;
     use rand::{SeedableRng, rngs::StdRng};
-
-    fn world(reference: bool) -> World {
-        let wish = Wish {
-            samples: 4000,
-            drive: Drive::Reversing,
-            reference,
-            revolution: false,
-            vibration: false,
-            temperature: false,
-        };
-        World::draw(&mut StdRng::seed_from_u64(3), &wish)
-    }
 
     /// Distance and ωτ at full speed of a cause with so large an SNR, beside noise that is so many times that of the world.
     fn of(name: &str, seed: u64, reference: bool, snr: f64, noise: f64) -> Option<(f64, f64)> {
-        let mut world = world(reference);
+        let mut world = to_and_fro(reference, false);
         world.noise *= noise;
         let entry = CATALOGUE.iter().find(|e| e.name == name).expect("a name");
         let mut random = StdRng::seed_from_u64(seed);

@@ -293,22 +293,8 @@ fn basis(x: f64, intervals: usize) -> (usize, [f64; 4]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::motion::Drive;
     use crate::simulate::{Finish, simulate};
-    use crate::world::Wish;
-    use rand::{SeedableRng, rngs::StdRng};
-
-    fn world(vibration: bool) -> World {
-        let wish = Wish {
-            samples: 4000,
-            drive: Drive::Reversing,
-            reference: false,
-            revolution: false,
-            vibration,
-            temperature: false,
-        };
-        World::draw(&mut StdRng::seed_from_u64(3), &wish)
-    }
+    use crate::world::to_and_fro;
 
     fn change(world: &World, f: impl Fn(f64, f64) -> [f64; 2]) -> [Vec<f64>; 2] {
         [0, 1].map(|c: usize| {
@@ -331,7 +317,7 @@ mod tests {
 
     #[test]
     fn calibration_and_smooth_motion_are_invisible() {
-        let world = world(false);
+        let world = to_and_fro(false, false);
         let visible = Visible::new(&world, false, false).expect("a world");
         let offset = change(&world, |_, _| [1e-3, 0.0]);
         assert!(visible.snr(&offset) < 1e-3, "{}", visible.snr(&offset));
@@ -347,7 +333,7 @@ mod tests {
 
     #[test]
     fn what_is_late_altogether_is_motion_and_what_shrinks_with_speed_is_seen() {
-        let world = world(false);
+        let world = to_and_fro(false, false);
         let visible = Visible::new(&world, false, false).expect("a world");
         let fastest = (0..world.samples)
             .map(|k| world.motion.at(k as f64 / world.rate).speed.abs())
@@ -382,7 +368,7 @@ mod tests {
 
     #[test]
     fn a_harmonic_is_seen_nearly_whole_and_vibration_hides_half_of_it() {
-        let (still, shaken) = (world(false), world(true));
+        let (still, shaken) = (to_and_fro(false, false), to_and_fro(false, true));
         let whole = |world: &World| {
             let harmonic = change(world, |_, a| [1e-3 * (5.0 * a).cos(), 0.0]);
             let size: f64 = harmonic[0].iter().map(|d| d * d).sum();

@@ -199,3 +199,18 @@ fn way(motion: &Motion, seconds: f64) -> f64 {
     });
     high - low
 }
+
+/// For tests: an axis that goes to and fro, always the same.
+#[cfg(test)]
+pub(crate) fn to_and_fro(reference: bool, vibration: bool) -> World {
+    use rand::SeedableRng;
+    let wish = Wish {
+        samples: 4000,
+        drive: Drive::Reversing,
+        reference,
+        revolution: false,
+        vibration,
+        temperature: false,
+    };
+    World::draw(&mut rand::rngs::StdRng::seed_from_u64(3), &wish)
+}

@@ -1,10 +1,10 @@
 //! One calibration from beginning to end.
 
-use nalgebra::{DMatrix, SMatrix};
+use nalgebra::DMatrix;
 use nonius_recording::Ellipse;
 
 use crate::cramer_rao;
-use crate::curve::{Curve, Parameters};
+use crate::curve::{Curve, Parameters, dynamic};
 use crate::estimate::{Estimate, estimate};
 use crate::method::{Error, Method, Options};
 use crate::residual::{collapsed, residual, white};
@@ -162,10 +162,9 @@ pub fn calibrate(
         .as_ref()
         .zip(estimate.theta_covariance.as_ref());
     let bounds = match method.set() {
-        Set::Five => bound.as_ref().map(|b| {
-            let dynamic = |c: &SMatrix<f64, 5, 5>| DMatrix::from_fn(5, 5, |i, j| c[(i, j)]);
-            (dynamic(&b.covariance), dynamic(&b.theta))
-        }),
+        Set::Five => bound
+            .as_ref()
+            .map(|b| (dynamic(&b.covariance), dynamic(&b.theta))),
         _ => estimate.bound.and_then(|b| Some((b.physical?, b.theta))),
     };
     Ok(Calibration {

@@ -8,6 +8,8 @@ use nalgebra::{SMatrix, Vector2};
 use nonius_recording::Ellipse;
 
 use crate::curve::{Curve, Parameters, invert, theta_covariance};
+use crate::set::Set;
+use crate::set_bound::{Motion, SetBound, of_ellipse};
 
 /// Bounds for given angles and noise.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,11 +45,30 @@ impl Plan {
     /// The bound; `None` where the arc or the noise does not determine it.
     #[must_use]
     pub fn bound(&self) -> Option<Bound> {
+        let angles: Vec<f64> = self.angles().collect();
+        bound(&self.ellipse, &angles, self.noise_with_adc())
+    }
+
+    /// That of any set, for a sensor without bends; the sets without phase take β as 0.
+    #[must_use]
+    pub fn bound_of(&self, set: Set, motion: Motion) -> Option<SetBound> {
+        of_ellipse(
+            set,
+            &self.ellipse,
+            self.angles(),
+            self.noise_with_adc(),
+            motion,
+        )
+    }
+
+    fn angles(&self) -> impl Iterator<Item = f64> + use<> {
         let step = self.periods * std::f64::consts::TAU / self.samples as f64;
-        let angle = |k: usize| self.start + step * k as f64;
-        let angles: Vec<f64> = (0..self.samples).map(angle).collect();
-        let noise = [0, 1].map(|i| with_adc(self.noise[i], self.lsb[i]));
-        bound(&self.ellipse, &angles, noise)
+        let start = self.start;
+        (0..self.samples).map(move |k| start + step * k as f64)
+    }
+
+    fn noise_with_adc(&self) -> [f64; 2] {
+        [0, 1].map(|i| with_adc(self.noise[i], self.lsb[i]))
     }
 }
 

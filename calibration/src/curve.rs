@@ -1,6 +1,6 @@
 //! Equation (4) as a curve: points, tangents, curvature, the nearest point; and Θ of section 5.3.
 
-use nalgebra::{SMatrix, SVector, Vector2};
+use nalgebra::{DMatrix, SMatrix, SVector, Vector2};
 use nonius_recording::Ellipse;
 
 /// a_c, b_c, a_s, b_s, β.
@@ -146,6 +146,11 @@ pub fn theta_covariance(ellipse: &Ellipse, covariance: &SMatrix<f64, 5, 5>) -> S
         jacobian.set_column(i, &((at(1.0) - at(-1.0)) / (2.0 * steps[i])));
     }
     jacobian * covariance * jacobian.transpose()
+}
+
+/// Of five parameters, as of a set of any number.
+pub(crate) fn dynamic(covariance: &SMatrix<f64, 5, 5>) -> DMatrix<f64> {
+    DMatrix::from_fn(5, 5, |i, j| covariance[(i, j)])
 }
 
 /// Share of the largest eigenvalue below which an information matrix, in comparable units, is rounding.

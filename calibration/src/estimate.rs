@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, SMatrix};
 use nonius_recording::Ellipse;
 
-use crate::curve::{Curve, theta_covariance};
+use crate::curve::{Curve, dynamic, theta_covariance};
 use crate::method::Method;
 use crate::set::Set;
 use crate::set_bound::{self, SetBound};
@@ -29,12 +29,11 @@ impl Estimate {
     /// Of a method that finds an ellipse.
     pub(crate) fn of(ellipse: Ellipse, covariance: Option<SMatrix<f64, 5, 5>>) -> Self {
         let sound = covariance.filter(|c| c.iter().all(|v| v.is_finite()));
-        let dynamic = |c: SMatrix<f64, 5, 5>| DMatrix::from_fn(5, 5, |i, j| c[(i, j)]);
         Self {
             theta: ellipse.theta().to_vec(),
-            theta_covariance: sound.map(|c| dynamic(theta_covariance(&ellipse, &c))),
+            theta_covariance: sound.map(|c| dynamic(&theta_covariance(&ellipse, &c))),
             ellipse,
-            covariance: sound.map(dynamic),
+            covariance: sound.as_ref().map(dynamic),
             cannot_tell: vec![],
             adrift: false,
             bias: None,

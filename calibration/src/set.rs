@@ -1,6 +1,6 @@
 //! The parameter sets of sections 5.2 to 5.4 as polynomials of the channels.
 
-use nalgebra::{DMatrix, DVector, Matrix2};
+use nalgebra::{DMatrix, DVector, Matrix2, SMatrix};
 use nonius_recording::Ellipse;
 
 /// Which parameters.
@@ -71,10 +71,10 @@ impl Set {
         }
     }
 
-    /// Derivative of (c, s) by Θ: M, two rows.
-    pub(crate) fn jacobian(self, theta: &[f64], y_c: f64, y_s: f64) -> DMatrix<f64> {
+    /// Derivative of (c, s) by Θ: M, with zeros for what the set has not.
+    pub(crate) fn jacobian(self, theta: &[f64], y_c: f64, y_s: f64) -> SMatrix<f64, 2, 9> {
         let cross = self.cross(theta);
-        let mut m = DMatrix::zeros(2, self.len());
+        let mut m = SMatrix::zeros();
         match self {
             Self::Four | Self::Five => {
                 (m[(0, 0)], m[(0, 1)]) = (y_c, 1.0);
@@ -127,26 +127,9 @@ impl Set {
     /// Derivative of ‖(c, s)‖² by Θ.
     pub(crate) fn slope(self, theta: &[f64], y_c: f64, y_s: f64, out: &mut [f64]) {
         let (c, s) = self.correct(theta, y_c, y_s);
-        match self {
-            Self::Four | Self::Five => {
-                out[..4].copy_from_slice(&[2.0 * c * y_c, 2.0 * c, 2.0 * s * y_s, 2.0 * s]);
-                if let Some(five) = out.get_mut(4) {
-                    *five = 2.0 * s * y_c;
-                }
-            }
-            Self::Eight | Self::Nine => {
-                // The corrected cosine acts in both rows of the nine.
-                let cross = self.cross(theta);
-                let by_c = 2.0 * (c + cross * s);
-                let by_s = 2.0 * s;
-                for (i, (y, by)) in [(y_c, by_c), (y_s, by_s)].into_iter().enumerate() {
-                    let own = [by * y, by * y * y, by * y * y * y, by];
-                    out[4 * i..4 * i + 4].copy_from_slice(&own);
-                }
-                if let Some(nine) = out.get_mut(8) {
-                    *nine = by_s * c;
-                }
-            }
+        let m = self.jacobian(theta, y_c, y_s);
+        for (to, by) in out.iter_mut().zip(m.column_iter()) {
+            *to = 2.0 * (c * by[0] + s * by[1]);
         }
     }
 

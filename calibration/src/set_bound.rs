@@ -11,7 +11,7 @@
 
 use std::f64::consts::TAU;
 
-use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
+use nalgebra::{DMatrix, DVector, Matrix2, Matrix2xX, Vector2};
 use nonius_recording::Ellipse;
 
 use crate::gradient::{FAINT, Minimum, invert, physical_covariance};
@@ -94,8 +94,8 @@ struct At<'a> {
 
 /// What a place on the circle tells.
 struct Place {
-    /// M, two rows.
-    m: DMatrix<f64>,
+    /// M.
+    m: Matrix2xX<f64>,
     /// C, of the corrected pair.
     noise: Matrix2<f64>,
     normal: Vector2<f64>,
@@ -143,7 +143,11 @@ impl At<'_> {
             (self.noise[1] / self.frame.a_s).powi(2),
         );
         Some(Place {
-            m: self.set.jacobian(t, u_c, u_s),
+            m: self
+                .set
+                .jacobian(t, u_c, u_s)
+                .columns(0, self.set.len())
+                .into_owned(),
             noise: slope * Matrix2::from_diagonal(&white) * slope.transpose(),
             normal: Vector2::new(cos, sin),
             tangent: Vector2::new(-sin, cos),

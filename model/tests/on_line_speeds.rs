@@ -60,7 +60,7 @@ fn nine() -> Spec {
 }
 
 /// So many samples from a place of the period on, each so many periods after the last.
-fn travel(
+pub(crate) fn travel(
     bench: &mut Bench,
     signals: &impl Fn(f64) -> (f64, f64),
     turns: &mut f64,
@@ -74,7 +74,7 @@ fn travel(
 }
 
 /// A design that may run at exactly four samples a period for very long: its accumulators are those of the optical one.
-fn for_long() -> Spec {
+pub(crate) fn for_long() -> Spec {
     let mut spec = up_to(4.0, 20e3);
     spec.formats.accumulator_fraction = Some(25);
     spec

@@ -8,9 +8,9 @@
 
 use std::f64::consts::TAU;
 
-use nonius_calibration::cramer_rao::with_adc;
+use nonius_calibration::cramer_rao::Plan;
 use nonius_calibration::set::Set;
-use nonius_calibration::set_bound::{Motion, SetBound, of_ellipse};
+use nonius_calibration::set_bound::{Motion, SetBound};
 use nonius_model::design::Design;
 use nonius_recording::Ellipse;
 
@@ -54,10 +54,15 @@ pub(crate) fn bounds(design: &Design, scenario: Scenario) -> Vec<(String, SetBou
     rows.into_iter()
         .filter_map(|(name, (set, motion), (samples, lsb))| {
             // The sectors of the last gamma lie as evenly as the samples.
-            let periods = (SPEED * samples as f64 / TAU).round();
-            let angles = (0..samples).map(|k| TAU * periods * k as f64 / samples as f64);
-            let noise = [with_adc(scenario.sigma(), lsb); 2];
-            let bound = of_ellipse(set, &ellipse, angles, noise, motion)?;
+            let plan = Plan {
+                ellipse,
+                noise: [scenario.sigma(); 2],
+                lsb: [lsb; 2],
+                samples,
+                start: 0.0,
+                periods: (SPEED * samples as f64 / TAU).round(),
+            };
+            let bound = plan.bound_of(set, motion)?;
             Some((format!("Cramér–Rao bound, {name}"), bound))
         })
         .collect()

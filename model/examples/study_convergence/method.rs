@@ -30,35 +30,9 @@ pub(crate) enum Method {
 /// What a method says of a sample: α̂ in radians and Θ before it, for signals of amplitude 1.
 pub(crate) struct Said {
     pub(crate) alpha_hat: f64,
-    pub(crate) correction: Correction,
+    /// What Θ means.
+    pub(crate) set: Parameters,
     pub(crate) theta: Theta,
-}
-
-/// What Θ means.
-#[derive(Clone, Copy)]
-pub(crate) enum Correction {
-    /// One of the paper's sets.
-    Paper(Parameters),
-    /// The chip's own with 8 or 9 parameters: gain and offset, bend, phase.
-    Bent,
-}
-
-impl Correction {
-    /// The corrected pair.
-    pub(crate) fn corrected(self, theta: &Theta, y: [f64; 2]) -> [f64; 2] {
-        match self {
-            Self::Paper(parameters) => parameters.corrected(theta, y),
-            Self::Bent => on_chip::bent(theta, y),
-        }
-    }
-
-    /// The Θ that corrects this sensor; of a set without phase, one without a phase error.
-    pub(crate) fn of(self, sensor: &Sensor) -> Theta {
-        match self {
-            Self::Paper(set) => set.from_five(sensor.theta()),
-            Self::Bent => on_chip::bent_theta(sensor),
-        }
-    }
 }
 
 impl Method {
@@ -169,7 +143,7 @@ impl Method {
                 let seen = open_loop.step(y[0], y[1]);
                 Said {
                     alpha_hat: seen.alpha_hat,
-                    correction: Correction::Paper(Parameters::Four),
+                    set: Parameters::Four,
                     theta: seen.theta,
                 }
             }
@@ -177,7 +151,7 @@ impl Method {
                 let seen = reference.step(y[0], y[1]);
                 Said {
                     alpha_hat: seen.alpha_hat,
-                    correction: Correction::Paper(*parameters),
+                    set: *parameters,
                     theta: seen.theta,
                 }
             }

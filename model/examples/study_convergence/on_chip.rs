@@ -6,10 +6,10 @@ use nonius_model::bits::Bits;
 use nonius_model::chip::Chip;
 use nonius_model::design::Design;
 use nonius_model::physical::{self, Converter};
-use nonius_model::reference::{Parameters, Sensor, Theta};
+use nonius_model::reference::{Parameters, Theta};
 use nonius_model::spec::Spec;
 
-use super::method::{Correction, Said};
+use super::method::Said;
 use super::shipped::variants::searches_of;
 
 /// The bit-true chip of a design.
@@ -67,10 +67,10 @@ impl OnChip {
         }
         let said = Said {
             alpha_hat: self.chip.position() * TAU,
-            correction: if bent {
-                Correction::Bent
+            set: if bent {
+                Parameters::SplitNine
             } else {
-                Correction::Paper(Parameters::Five)
+                Parameters::Five
             },
             theta,
         };
@@ -78,27 +78,4 @@ impl OnChip {
         self.chip.step_codes(cos, sin, false, true);
         said
     }
-}
-
-/// The chip's nine parameters for a sensor without bends: gain and offset of each channel, then s = s' + tan β c.
-pub(crate) fn bent_theta(sensor: &Sensor) -> Theta {
-    let (gain_c, gain_s) = (1.0 / sensor.a_c, 1.0 / (sensor.a_s * sensor.beta.cos()));
-    let linear = [
-        gain_c,
-        -gain_c * sensor.b_c,
-        gain_s,
-        -gain_s * sensor.b_s,
-        sensor.beta.tan(),
-    ];
-    Theta::from_fn(|i, _| linear.get(i).copied().unwrap_or(0.0))
-}
-
-/// The chip's correction with bends, in plain `f64` (see docs/on-line-calibration.md).
-pub(crate) fn bent(theta: &Theta, [y_c, y_s]: [f64; 2]) -> [f64; 2] {
-    let (u, v) = (theta[0] * y_c + theta[1], theta[2] * y_s + theta[3]);
-    let second = |u: f64| 2.0 * u * u - 1.0;
-    let third = |u: f64| 4.0 * u * u * u - 3.0 * u;
-    let c = u + theta[5] * second(u) + theta[7] * third(u) + theta[8] * (third(u) - u);
-    let s = v + theta[6] * second(v) + theta[7] * third(v) - theta[8] * (third(v) - v);
-    [c, s + theta[4] * c]
 }

@@ -18,9 +18,8 @@ fn miscalibration(scenario: Scenario, sensor: &Sensor, k: u32, said: &Said) -> (
     let errors: Vec<f64> = (0..POINTS)
         .map(|i| {
             let alpha = TAU * f64::from(i) / f64::from(POINTS);
-            let [c, s] = said
-                .correction
-                .corrected(&said.theta, scenario.signals(sensor, alpha, k));
+            let y = scenario.signals(sensor, alpha, k);
+            let [c, s] = said.set.corrected(&said.theta, y);
             wrapped(s.atan2(c) - alpha)
         })
         .collect();
@@ -85,7 +84,7 @@ fn run(scenario: Scenario, method: &mut Method) -> Outcome {
     };
     let (rms, largest) = miscalibration(scenario, &sensor, SAMPLES, &said);
     Outcome {
-        parameter: (said.theta - truth::theta(said.correction, scenario, &sensor)).amax(),
+        parameter: (said.theta - truth::theta(said.set, scenario, &sensor)).amax(),
         rms,
         largest,
         alpha_hat: f64::sqrt(square / counted),

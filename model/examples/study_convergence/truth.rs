@@ -3,9 +3,8 @@
 use std::f64::consts::TAU;
 
 use nalgebra::{DMatrix, DVector};
-use nonius_model::reference::{Sensor, Theta};
+use nonius_model::reference::{Parameters, Sensor, Theta};
 
-use super::method::Correction;
 use super::scenario::{SAMPLES, Scenario};
 
 /// Places of the period.
@@ -15,19 +14,19 @@ const ITERATIONS: usize = 20;
 
 /// By least squares of the corrected pair against (cos α, sin α), from the Θ that corrects the sensor without what the scenario
 /// adds to it.
-pub(crate) fn theta(correction: Correction, scenario: Scenario, sensor: &Sensor) -> Theta {
+pub(crate) fn theta(set: Parameters, scenario: Scenario, sensor: &Sensor) -> Theta {
     let left = |theta: &Theta| {
         DVector::from_iterator(
             2 * POINTS,
             (0..POINTS).flat_map(|k| {
                 let alpha = TAU * k as f64 / POINTS as f64;
                 let y = scenario.signals(sensor, alpha, SAMPLES);
-                let [c, s] = correction.corrected(theta, y);
+                let [c, s] = set.corrected(theta, y);
                 [c - alpha.cos(), s - alpha.sin()]
             }),
         )
     };
-    let mut theta = correction.of(sensor);
+    let mut theta = set.from_five(sensor.theta());
     for _ in 0..ITERATIONS {
         let mut by = DMatrix::zeros(2 * POINTS, theta.len());
         for i in 0..theta.len() {

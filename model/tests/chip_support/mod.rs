@@ -14,6 +14,7 @@ use nonius_model::bits::Bits;
 use nonius_model::chip::Chip;
 use nonius_model::design::Design;
 use nonius_model::physical::Converter;
+use nonius_model::reference::{Parameters, Theta};
 use nonius_model::spec::Spec;
 use rand::{Rng, SeedableRng, rngs::StdRng};
 
@@ -97,17 +98,17 @@ impl Bench {
     }
 
     fn correction(&self) -> impl Fn((f64, f64)) -> (f64, f64) {
-        let theta = self.chip.theta();
+        let theta = Theta::from(self.chip.theta());
         let scale = self.design.spec.sensor.amplitude / self.design.spec.adc.full_scale;
         let power = (1.0 / scale).log2().floor().exp2().max(1.0);
-        let bent = self.design.spec.calibration.has_bend();
+        let set = if self.design.spec.calibration.has_bend() {
+            Parameters::SplitNine
+        } else {
+            Parameters::Five
+        };
         move |y| {
-            let y = (y.0 * scale * power, y.1 * scale * power);
-            if bent {
-                bent_pair(&theta, y)
-            } else {
-                linear_pair(&theta, y)
-            }
+            let [c, s] = set.corrected(&theta, [y.0, y.1].map(|y| y * scale * power));
+            (c, s)
         }
     }
 
@@ -134,23 +135,6 @@ impl Bench {
         let mean = errors.iter().sum::<f64>() / points as f64;
         errors.iter().map(|e| e - mean).collect()
     }
-}
-
-/// Section 5.3 in plain `f64`.
-fn linear_pair(theta: &[f64; 9], (y_c, y_s): (f64, f64)) -> (f64, f64) {
-    let [t1, t2, t3, t4, t5, ..] = *theta;
-    (t1 * y_c + t2, t3 * y_s + t4 + t5 * y_c)
-}
-
-/// Offset and gain, bend, phase, in plain `f64`.
-fn bent_pair(theta: &[f64; 9], (y_c, y_s): (f64, f64)) -> (f64, f64) {
-    let [t1, t2, t3, t4, t5, t6, t7, t8, t9] = *theta;
-    let (u, v) = (t1 * y_c + t2, t3 * y_s + t4);
-    let second = |u: f64| 2.0 * u * u - 1.0;
-    let third = |u: f64| 4.0 * u * u * u - 3.0 * u;
-    let c = u + t6 * second(u) + t8 * third(u) + t9 * (third(u) - u);
-    let s = v + t7 * second(v) + t8 * third(v) - t9 * (third(v) - v);
-    (c, s + t5 * c)
 }
 
 /// Amplitude of one order of an error over a period.
