@@ -231,6 +231,7 @@ fn attempted(
         });
         truths.push(HiddenCause {
             name: effect.name().into(),
+            brings: effect.brings().iter().map(|&name| name.into()).collect(),
             snr_asked: *asked,
             snr,
             twin,

@@ -124,6 +124,11 @@ pub(crate) trait Effect: Send + Sync {
         false
     }
 
+    /// Other names of the catalogue that are true of it: low passes of both channels, not the same, are a mismatch and one in common.
+    fn brings(&self) -> &'static [&'static str] {
+        &[]
+    }
+
     /// The low pass of a delay, or the delay of a low pass. `motion_known`: a reference shows which of the channels is late, not only
     /// that one is later than the other.
     fn twins(&self, _motion_known: bool) -> Option<Twins> {

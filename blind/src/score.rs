@@ -42,7 +42,7 @@ pub struct Score {
     pub outcomes: Vec<Outcome>,
     /// What came first: a name, `unexplained` or `nothing`.
     pub first: String,
-    /// Sensor causes that were named and are not hidden, nor in a group with what is.
+    /// Sensor causes that were named and are not hidden, nor brought by what is, nor in a group with that.
     pub wrong: Vec<String>,
     /// Motions that were named and are not hidden.
     pub motions: Vec<String>,
@@ -62,7 +62,9 @@ impl Score {
     /// Scores a verdict on a case by its opened truth.
     #[must_use]
     pub fn of(truth: Truth, case: &Case, verdict: &Verdict) -> Self {
-        let hidden = |name: &Named| truth.hidden.iter().any(|h| is(name, h, &truth));
+        let hidden = |name: &Named| {
+            truth.hidden.iter().any(|h| is(name, h, &truth)) || is_brought(name, &truth)
+        };
         let strange = |motion: bool| -> Vec<String> {
             let others = verdict.named.iter().filter(|n| n.motion == motion);
             others
@@ -70,7 +72,11 @@ impl Score {
                 .map(|n| n.cause.clone())
                 .collect()
         };
-        let named: Vec<&Named> = verdict.named.iter().filter(|n| counts(&truth, n)).collect();
+        let found = truth.hidden.iter();
+        let mut found = found.filter(|h| verdict.named.iter().any(|n| is(n, h, &truth)));
+        let found = found.any(|h| !h.brings.is_empty());
+        let named = verdict.named.iter().filter(|n| counts(&truth, n, found));
+        let named: Vec<&Named> = named.collect();
         let first = match named.first() {
             Some(n) => n.cause.clone(),
             None if verdict.unexplained => "unexplained".into(),
@@ -108,11 +114,20 @@ impl Score {
     }
 }
 
-/// A motion that is named where the axis truly vibrates is no rival of a hidden sensor cause, unless it may be that cause.
-fn counts(truth: &Truth, named: &Named) -> bool {
+/// A motion that is named where the axis truly vibrates is no rival of a hidden sensor cause, unless it may be that cause; nor is what a
+/// hidden cause brings where that cause is `found` as well.
+fn counts(truth: &Truth, named: &Named, found: bool) -> bool {
     let true_motion = named.motion && truth.vibration_rad.is_some();
-    let hidden = |h: &HiddenCause| h.motion || is(named, h, truth);
-    !true_motion || truth.hidden.iter().any(hidden)
+    let hidden = |h: &HiddenCause| h.motion && true_motion || is(named, h, truth);
+    let beside = true_motion || found && is_brought(named, truth);
+    !beside || truth.hidden.iter().any(hidden)
+}
+
+/// Whether a name, or the other one of a group of two, is true of a hidden cause beside its own.
+fn is_brought(named: &Named, truth: &Truth) -> bool {
+    let pair = named.confounded_with.len() <= 1;
+    let is = |name: &String| named.cause == *name || pair && named.holds(name);
+    truth.hidden.iter().any(|h| h.brings.iter().any(is))
 }
 
 /// Whether a name, or one that it cannot be told from, is that of a hidden cause. An order that is not its own, or a frequency farther

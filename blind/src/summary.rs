@@ -317,6 +317,7 @@ mod tests {
                 kind: Kind::One,
                 hidden: vec![HiddenCause {
                     name: name.into(),
+                    brings: vec![],
                     snr_asked: snr,
                     snr,
                     twin,

@@ -43,6 +43,8 @@ pub struct Twin {
 pub struct HiddenCause {
     /// Its name.
     pub name: String,
+    /// Other names of the catalogue that are true of it: right where they are named beside its own, and not enough without.
+    pub brings: Vec<String>,
     /// SNR that was drawn.
     pub snr_asked: f64,
     /// SNR that it has.

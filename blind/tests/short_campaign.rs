@@ -212,13 +212,7 @@ fn silence_a_wrong_name_and_a_group_are_scored_as_such() {
         })
         .expect("one cause in some seed");
     let case = Case::draw(seed, 3000).expect("a case can be drawn");
-    let silent = nonius_blind::Verdict {
-        named: vec![],
-        unexplained: false,
-        signature: String::new(),
-        positions: vec![0.0; 3000],
-        seconds: 0.0,
-    };
+    let silent = says(vec![]);
     let score = Score::of(case.truth.clone(), &case, &silent);
     assert_eq!(score.outcomes, [nonius_blind::Outcome::Silent]);
     assert_eq!(score.first, "nothing");
@@ -261,18 +255,12 @@ fn a_name_of_another_order_or_frequency_is_wrong() {
             .value;
         let resolved = case.truth.rate / 3000.0;
         for (shown, right) in [(own, true), (own + 2.0 * resolved.max(1.0), false)] {
-            let verdict = nonius_blind::Verdict {
-                named: vec![nonius_blind::Named {
-                    cause: name.into(),
-                    confounded_with: vec![],
-                    parameters: vec![(number.into(), shown, 0.0)],
-                    motion: false,
-                }],
-                unexplained: false,
-                signature: String::new(),
-                positions: vec![0.0; 3000],
-                seconds: 0.0,
-            };
+            let verdict = says(vec![nonius_blind::Named {
+                cause: name.into(),
+                confounded_with: vec![],
+                parameters: vec![(number.into(), shown, 0.0)],
+                motion: false,
+            }]);
             let score = Score::of(case.truth.clone(), &case, &verdict);
             let outcome = if right {
                 Outcome::First
@@ -283,6 +271,49 @@ fn a_name_of_another_order_or_frequency_is_wrong() {
             assert_eq!(score.wrong.is_empty(), right, "{name} {shown}");
         }
     }
+}
+
+/// A verdict on 3000 samples that names these.
+fn says(named: Vec<nonius_blind::Named>) -> nonius_blind::Verdict {
+    nonius_blind::Verdict {
+        named,
+        unexplained: false,
+        signature: String::new(),
+        positions: vec![0.0; 3000],
+        seconds: 0.0,
+    }
+}
+
+/// Low passes of both channels that are not the same are one in common, too: naming that beside the mismatch is right, and not enough alone.
+#[test]
+fn what_a_cause_brings_is_no_wrong_name_and_not_its_own() {
+    let brings = |seed: &u64| {
+        let truth = Case::draw(*seed, 3000).expect("a case can be drawn").truth;
+        truth.hidden.iter().any(|h| !h.brings.is_empty())
+    };
+    let seed = (0..2000).find(brings).expect("such a cause in some seed");
+    let case = Case::draw(seed, 3000).expect("a case can be drawn");
+    let name = |cause: &str, with: &[&str]| nonius_blind::Named {
+        cause: cause.into(),
+        confounded_with: with.iter().map(|&name| name.into()).collect(),
+        parameters: vec![],
+        motion: false,
+    };
+    let common = name("latency", &["common_bandwidth"]);
+    let own = name("bandwidth_mismatch", &["channel_skew"]);
+    for (named, outcome) in [
+        (vec![common.clone(), own], Outcome::First),
+        (vec![common], Outcome::Misnamed),
+    ] {
+        let verdict = says(named);
+        let score = Score::of(case.truth.clone(), &case, &verdict);
+        assert_eq!(score.outcomes, [outcome]);
+        assert!(score.wrong.is_empty(), "{:?}", score.wrong);
+    }
+    let delay = vec![name("latency", &[])];
+    let verdict = says(delay);
+    let score = Score::of(case.truth.clone(), &case, &verdict);
+    assert_eq!(score.wrong, ["latency"]);
 }
 
 /// Samples lost on slow axes that shake, or near where they turn back, which were silent once.
@@ -303,5 +334,17 @@ fn lost_samples_show() {
         let of_sensor = verdict.named.iter().filter(|one| !one.motion);
         let names: Vec<&str> = of_sensor.map(|one| one.cause.as_str()).collect();
         assert_eq!(names, ["dropped_samples"], "{seed}");
+    });
+}
+
+/// A vibration of a quiet axis is a line whatever stands out of the almost nothing that a spline leaves where it follows the axis.
+#[test]
+fn a_vibration_faster_than_the_knots_shows() {
+    [138_003_455, 138_003_787].into_par_iter().for_each(|seed| {
+        let case = Case::draw(seed, 20_000).expect("a case can be drawn");
+        let verdict = verdict(&case.csv()).unwrap_or_else(|why| panic!("{seed}: {why}"));
+
+        let names: Vec<&str> = verdict.named.iter().map(|one| one.cause.as_str()).collect();
+        assert_eq!(names, ["vibration"], "{seed}");
     });
 }

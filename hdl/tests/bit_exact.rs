@@ -1,5 +1,11 @@
 //! The generated chips agree with the model in every bit of every probe and register, in Icarus and in Verilator.
 
+#[path = "../examples/bit_exact/row.rs"]
+mod row;
+
+use std::fs;
+use std::path::Path;
+
 use crate::chip::shipped::variants::{self, Variant};
 use crate::chip::{write, write_with};
 use nonius_hdl::ChipDir;
@@ -144,4 +150,21 @@ fn gears_in_icarus_and_verilator() {
 fn harmonics_in_icarus_and_verilator() {
     let some: Vec<Variant> = variants::harmonics().into_iter().step_by(4).collect();
     agree(&some, some.len());
+}
+
+/// Every sixth chip, in the long form all: the page is of the files that the generator writes today.
+#[test]
+fn the_page_is_of_these_chips() {
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/bit-exact.md");
+    let page = fs::read_to_string(page).expect("docs/bit-exact.md");
+    assert!(page.starts_with(row::HEAD), "{}", row::HEAD);
+    let some: Vec<Variant> = every(6, variants::everything()).collect();
+    some.par_iter().for_each(|Variant { what, spec }| {
+        let begins = row::begins(what, spec).expect("a chip");
+        let stands = |row: &str| row.starts_with(&begins) && row.matches(" equal ").count() == 2;
+        assert!(
+            page.lines().any(stands),
+            "docs/bit-exact.md has no row {begins} or not two that are equal: run cargo run --release -p nonius-hdl --example bit_exact -- docs"
+        );
+    });
 }

@@ -12,7 +12,7 @@ use std::sync::{Arc, LazyLock, Mutex};
 use crate::chip::{self, optical};
 use corrections::{harmonic_faults, skew_faults};
 use edit::{Fault, on_one_line};
-use faults::{dropping_faults, faults};
+use faults::{dropping_faults, faults, resting_faults};
 use nonius_hdl::verify::{Options, verify};
 use nonius_kept::{every, figure, figure_of_all};
 use nonius_model::design::Design;
@@ -240,13 +240,14 @@ fn vectors_catch_every_fault_in_the_correction_of_skew() {
 }
 
 #[test]
-fn vectors_catch_every_fault_in_the_dropping_of_periods() {
+fn vectors_catch_every_fault_in_dropping_periods_and_resting_bends() {
     let mut spec = optical();
     spec.calibration.parameters = 9;
     // Settled within the rows.
     spec.calibration.gear_periods = Some(1);
     let chip = Sound::new(&spec);
     all_caught("the dropping of periods", &chip, RTL, &dropping_faults());
+    all_caught("the resting of bends", &chip, RTL, &resting_faults());
 }
 
 #[test]

@@ -112,6 +112,15 @@ fn structures() -> Vec<(String, Spec)> {
         let name = format!("method {method} type {filter_type}, {parameters} parameters, {with}");
         list.push((name, spec));
     }
+    // So fast that bends rest at times.
+    for parameters in [8, 9] {
+        let mut spec = optical();
+        spec.calibration.parameters = parameters;
+        spec.sensor.speed_max_periods_per_s = 0.2 * spec.adc.sample_rate_hz;
+        spec.tracking.bandwidth_hz = 0.01 * spec.adc.sample_rate_hz;
+        let name = format!("{parameters} parameters, completed, up to six samples a period");
+        list.push((name, spec));
+    }
     let mut binary = optical();
     binary.adc.coding = Coding::OffsetBinary;
     binary.adc.bits = 14;

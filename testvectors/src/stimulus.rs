@@ -1,6 +1,7 @@
 //! Named stimuli: what the testbench plays.
 
 use nonius_model::design::Design;
+use nonius_model::spec::Calibration;
 use rand::{Rng, SeedableRng, rngs::StdRng};
 
 use crate::ties::Ties;
@@ -114,7 +115,7 @@ pub fn named(design: &Design, rows: usize) -> Vec<Stimulus> {
     });
     // Rate below which the direction does not change, turns.
     let dead = design.constants.direction_rate.value();
-    vec![
+    let mut all = vec![
         motion("standstill", &|_| pair(0.3, 1.0, 0.0)),
         motion("forwards", &|k| {
             pair(0.017 * k as f64 * (top / 0.1), 1.0, 0.0)
@@ -265,5 +266,16 @@ pub fn named(design: &Design, rows: usize) -> Vec<Stimulus> {
             samples: Ties::new(design).search(design, &slow.samples),
         },
         motion("random", &|k| noise[k]),
-    ]
+    ];
+    if spec.calibration.has_bend() {
+        // So fast that bends rest, forwards and backwards, and a little slower.
+        all.push(motion("fast", &|k| {
+            let third = rows / 3;
+            let run = |of: usize| k.saturating_sub(of * third).min(third) as f64;
+            let rate = Calibration::BEND_RATE;
+            let turns = rate * (1.13 * run(0) - 1.43 * run(1) + 0.93 * run(2));
+            pair(turns, 1.0, 0.0)
+        }));
+    }
+    all
 }

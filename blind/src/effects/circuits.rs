@@ -91,6 +91,14 @@ impl Effect for Bandwidth {
     fn delays_both(&self) -> bool {
         self.shares[0] == self.shares[1]
     }
+    fn brings(&self) -> &'static [&'static str] {
+        let both = self.shares.iter().all(|of| !of.is_empty());
+        if both && !self.delays_both() {
+            &[COMMON]
+        } else {
+            &[]
+        }
+    }
     fn twins(&self, motion_known: bool) -> Option<Twins> {
         // Low passes one after the other delay slow signals by the sum of their time constants.
         let [cos, sin] = [0, 1].map(|c: usize| self.shares[c].iter().sum::<f64>());

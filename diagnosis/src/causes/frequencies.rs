@@ -1,7 +1,7 @@
 //! Frequencies that may be lines.
 
 use super::mains;
-use super::mirror::unmirrored;
+use super::mirror::{self, unmirrored};
 use crate::context::Context;
 use crate::lines::{flattened, pair_spectrum, peak, refined, two_transforms};
 
@@ -36,11 +36,11 @@ pub(super) fn lowest(context: &Context) -> f64 {
 
 impl Search<'_> {
     /// Frequency of the highest line of a spectrum, in cycles per sample.
-    fn line(&self, power: &[f64], length: usize) -> Option<f64> {
+    fn line(&self, power: &[f64], length: usize, lowest: f64) -> Option<f64> {
         if self.coloured {
-            return self.narrow(power, length);
+            return self.narrow(power, length, lowest);
         }
-        peak(power, length, lowest(self.context), HIGHEST)
+        peak(power, length, lowest, HIGHEST)
     }
 
     /// Frequency of the highest line where the mains has one, in cycles per sample; flank and side lobes of another line are none.
@@ -68,7 +68,7 @@ impl Search<'_> {
 
     /// Frequencies of the highest line, and of the highest of the mains where that is another.
     pub(super) fn lines(&self, power: &[f64], length: usize) -> impl Iterator<Item = f64> + use<> {
-        let highest = self.line(power, length);
+        let highest = self.line(power, length, lowest(self.context));
         let known = |f: &f64| highest.is_some_and(|h| self.same(*f, h));
         let mains = self.of_mains(power, length).filter(|f| !known(f));
         highest.into_iter().chain(mains)
@@ -80,17 +80,21 @@ impl Search<'_> {
     }
 
     /// Frequency of the line that stands highest above what is near it, where one stands out.
-    fn narrow(&self, power: &[f64], length: usize) -> Option<f64> {
+    fn narrow(&self, power: &[f64], length: usize, lowest: f64) -> Option<f64> {
         let level = flattened(power);
-        let f = peak(&level, length, lowest(self.context), HIGHEST)?;
+        let f = peak(&level, length, lowest, HIGHEST)?;
         let highest = level[(f * length as f64).round() as usize];
         (highest > STANDS_OUT).then_some(f)
     }
 
-    /// Frequency of a line in the motion: an axis that shakes has broad peaks, too, which may be the higher ones.
+    /// Frequency of a line in the motion: an axis that shakes has broad peaks, too, which may be the higher ones. What the spline follows
+    /// wholly leaves a spectrum that is almost nothing, in which anything stands out.
     pub(super) fn of_motion(&self, power: &[f64], length: usize) -> Option<f64> {
-        let narrow = self.narrow(power, length);
-        let seen = narrow.or_else(|| self.line(power, length))?;
+        let spline = self.context.spline.as_ref();
+        let followed = spline.map_or(0.0, |spline| mirror::FOLLOWED / spline.spacing());
+        let lowest = followed.max(lowest(self.context));
+        let narrow = self.narrow(power, length, lowest);
+        let seen = narrow.or_else(|| self.line(power, length, lowest))?;
         Some(unmirrored(self.context, seen))
     }
 
@@ -100,7 +104,7 @@ impl Search<'_> {
         let (power, length) = pair_spectrum(&in_c, &in_s);
         let mut list: Vec<Line> = vec![];
         let highest = self
-            .line(&power, length)
+            .line(&power, length, lowest(self.context))
             .map(|f| Line { f, by_radius: 1.0 });
         let mains = self.of_mains(&power, length);
         let radius = self.in_radius(radial);

@@ -13,6 +13,8 @@ use crate::spline::Spline;
 const WIDER: f64 = 1.3;
 /// Frequency over that of the knots beyond which hardly anything is mirrored.
 const FASTEST: f64 = 0.85;
+/// And below which hardly anything is left of it: nothing is looked for there.
+pub(super) const FOLLOWED: f64 = 1.0 - FASTEST;
 /// Mean square of a wave of which knots leave nothing.
 const SOMETHING: f64 = 1e-3;
 /// The mirror has to explain so many times as much as the line where it seems to be.
@@ -25,7 +27,7 @@ pub(super) fn unmirrored(context: &Context, seen: f64) -> f64 {
     };
     let knots = 1.0 / spline.spacing();
     let mirror = knots - seen;
-    if seen > FASTEST * knots || mirror > FASTEST * knots {
+    if seen > FASTEST * knots {
         return seen;
     }
     let weight = &context.weight;

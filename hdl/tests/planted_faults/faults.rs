@@ -35,6 +35,36 @@ pub(crate) fn dropping_faults() -> Vec<Fault> {
     ]
 }
 
+/// Faults in the resting of bends.
+pub(crate) fn resting_faults() -> Vec<Fault> {
+    vec![
+        swap(
+            "bends learn at every speed",
+            &["wire bends_due_now ="],
+            " & bends_shown",
+            "",
+        ),
+        swap(
+            "the completion learns at every speed",
+            &["wire bends_free_now ="],
+            " & bends_shown",
+            "",
+        ),
+        swap(
+            "offsets are told from bends that rest",
+            &["[17:0] half_cos_2_shown_now ="],
+            "bends_shown ? half_cos_2 : 18'sd0",
+            "half_cos_2",
+        ),
+        swap(
+            "bends rest backwards only",
+            &["wire bends_shown_now ="],
+            "($signed(rate[25:20]) < 6'sh11) & ",
+            "",
+        ),
+    ]
+}
+
 /// Faults in the Verilog, each of one place.
 pub(crate) fn faults() -> Vec<Fault> {
     vec![

@@ -93,6 +93,8 @@ pub(super) fn constants(
         steady_gain: Constant::rounded(exp2(spec.steady_gain().log2().ceil() as i64), f.min(10)),
         gain_near_bound: near_bound(structure.formats.deviation[0].format),
         bend_near_bound: near_bound(structure.formats.deviation[7].format),
+        // At exactly eight they learn: between seven and eight. Few bits make a short comparator.
+        bend_rate: Constant::rounded(Calibration::BEND_RATE, 7),
         direction_rate: Constant::rounded(exp2(-i64::from(f)), words.phase_bits),
         lock_down: whole(-8),
         lock_full: whole(full),

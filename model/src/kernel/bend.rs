@@ -5,8 +5,9 @@
 //! common, θ8, which changes the radius by cos 4α, and what is opposite in them, θ9, which turns the pair by 2 sin 2α and
 //! changes no radius: T3(u) − u = 4 (u³ − u) of one channel, less that of the other.
 
-use super::{Coefficients, State, Structure};
-use crate::signal::{Formula, Signal, Wide};
+use super::detector::within;
+use super::{Coefficients, State, Structure, loop_filter};
+use crate::signal::{Formula, Logic, Signal, Wide};
 
 static BEND: Formula = Formula {
     title: "Bend",
@@ -45,6 +46,28 @@ pub fn parameters<S: Signal>(state: &State<S>, structure: &Structure) -> Bends<S
         cubic_c: cubic(both + opposite, ["cubic_c", "cubic_c_constant"]),
         cubic_s: cubic(both - opposite, ["cubic_s", "cubic_s_constant"]),
     }
+}
+
+static SHOWN: Formula = Formula {
+    title: "Bends that a speed shows",
+    equation: "-17/128 <= rate < 17/128, or bends rest: fewer than 7.5 samples a period",
+    source: "",
+};
+
+/// Whether a period has samples enough to tell bends from gains and offsets, where bends are calibrated. Exactly seven samples and fewer
+/// stand at seven places of the period, which are fewer than there are parameters: what fits these fits no other. Between such speeds more is
+/// seen, but where a sensor is that is not yet calibrated, they cannot be told apart.
+pub fn shown<S: Signal>(
+    state: &State<S>,
+    k: &Coefficients<S>,
+    structure: &Structure,
+) -> Option<S::Bool> {
+    if !structure.calibration.has_bend() {
+        return None;
+    }
+    state.alpha_hat.begin(&SHOWN);
+    let rate = loop_filter::rate_before(state, structure);
+    Some(within(rate, k.bend_rate).named("bends_shown"))
 }
 
 /// (c, s) before the phase, of (u_c, u_s).

@@ -46,6 +46,18 @@ pub struct Gate<S: Signal> {
     pub clear: S::Bool,
     /// Where the search waits for the end of a period: it ends, and what it taught is dropped.
     pub dropped: Option<S::Bool>,
+    /// Where bends are calibrated: this sample may move them.
+    pub bends: Option<S::Bool>,
+}
+
+impl<S: Signal> Gate<S> {
+    /// What counts for the bends: nothing where they rest.
+    fn for_bends(self) -> Self {
+        let fresh = self.bends.map_or(self.fresh, |shown| {
+            self.fresh.and(shown).named("bends_fresh")
+        });
+        Self { fresh, ..self }
+    }
 }
 
 /// The parameters after a sample, and what their search remembers.
@@ -104,8 +116,8 @@ pub fn update<S: Signal, const PLAIN: bool>(
         .phase_settles()
         .then(|| gears::settled(state, k, structure));
     let mut gradient = gradient::linear(seen, settled, k, structure);
-    let mut bent =
-        (!PLAIN && structure.calibration.has_bend()).then(|| gradient::bent(seen, k, structure));
+    let mut bent = (!PLAIN && structure.calibration.has_bend())
+        .then(|| gradient::bent(seen, gate.bends, k, structure));
     let solved = starting.map(|_| {
         let solved = start::start(gradient, seen.theta, gate, state, k, structure);
         (this.gathered, this.start_periods) = (solved.gathered, solved.periods);
@@ -148,11 +160,16 @@ pub fn update<S: Signal, const PLAIN: bool>(
                 let [second_c, second_s] = &mut bent.second;
                 [second_c, second_s, &mut bent.third]
             });
-            let calibrated = gradient.iter_mut().zip(plain).take(linear);
-            for (gradient, before) in calibrated.chain(of_bends.zip(bends)) {
+            let gather = |gradient: &mut S::Wide, before: &mut S, gate| {
                 let gathered = gather::squares(*gradient, *before, gate, k.zero, structure);
                 *gradient = gathered.gradient.widen();
                 *before = gathered.next;
+            };
+            for (gradient, before) in gradient.iter_mut().zip(plain).take(linear) {
+                gather(gradient, before, gate);
+            }
+            for (gradient, before) in of_bends.zip(bends) {
+                gather(gradient, before, gate.for_bends());
             }
         }
     }
@@ -193,6 +210,10 @@ pub fn update<S: Signal, const PLAIN: bool>(
     this.theta[2] = mover.moved(2, this.theta[2], (third, by.gain), of);
     this.theta[3] = mover.moved(3, this.theta[3], (fourth, by.offset), of);
     if let Some(Bent { second, third, .. }) = bent {
+        let due = gate
+            .bends
+            .map_or(mover.due, |shown| mover.due.and(shown).named("bends_due"));
+        let mover = Mover { due, ..mover };
         for (i, gradient) in [(5, second[0]), (6, second[1]), (7, third)] {
             this.theta[i] = mover.moved(i, this.theta[i], (gradient, by.bend), of);
         }

@@ -128,6 +128,8 @@ coefficients! {
     gain_near_bound,
     /// From this θ8 on, in magnitude, the bends are near their bounds.
     bend_near_bound,
+    /// Bends rest from this rate on, turns per sample.
+    bend_rate,
     /// Rate below which the direction does not change, turns per sample.
     direction_rate,
     /// What a bad sample adds to the lock level.

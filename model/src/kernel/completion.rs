@@ -5,7 +5,7 @@
 //! cannot tell from motion. Hence the gate: whole periods of net travel must follow one another fast enough, and θ9 moves where
 //! one of them ends, by what its 64 sectors gathered. What a loop lags behind an axis that gathers speed or brakes is nearly the
 //! same all round the period, and w is zero on average. A period in which the axis stops is dropped with what it shakes with there,
-//! and so is one with a sample whose |e| is more than a sensor's error: a stop or a start. Standstill, slow motion and vibration,
+//! and so is one with a sample whose |e| is more than a sensor's error, a stop or a start, and one in which bends rest. Standstill, slow motion and vibration,
 //! however fast, rest.
 
 use super::catch_up::CatchUp;
@@ -23,7 +23,7 @@ static COMPLETION: Formula = Formula {
 
 static MOVING: Formula = Formula {
     title: "Travel fast enough for the completion",
-    equation: "moving from one whole period of travel to the next, while they take few samples; one with a stop, large e or large rho teaches nothing",
+    equation: "moving from one whole period of travel to the next, while they take few samples; one with a stop, large e or large rho, or in which bends rest, teaches nothing",
     source: "",
 };
 
@@ -41,7 +41,7 @@ pub struct Completion<S: Signal> {
     pub moving: S::Bool,
 }
 
-/// The completion of this sample; `w` is sin α̂ cos α̂, `open` says that samples count and parameters may move.
+/// The completion of this sample; `w` is sin α̂ cos α̂, `open` says that samples count and bends may move.
 pub fn complete<S: Signal>(
     (w, e, rho): (S, S, S),
     open: S::Bool,

@@ -21,13 +21,13 @@ static ALONG: Formula = Formula {
 
 static BENDS: Formula = Formula {
     title: "Gradient by the bends",
-    equation: "theta_2: 2 rho_c (1 - cos 2a), theta_6: 2 rho_c (2 cos 2a - 1), theta_8: rho cos 4a, a = alpha_hat",
+    equation: "theta_2: 2 rho_c (1 - cos 2a), without cos 2a where bends rest, theta_6: 2 rho_c (2 cos 2a - 1), theta_8: rho cos 4a, a = alpha_hat",
     source: "paper section 5.5.1 for section 5.4; offset and second order decoupled",
 };
 
 static BENDS_OF_PAIR: Formula = Formula {
     title: "Gradient by the bends",
-    equation: "theta_2: 2 rho_c (1 - cos 2a), theta_6: 2 rho_c (2 cos 2a - 1), theta_8: epsilon cos 4a, (cos a, sin a) = (c, s)",
+    equation: "theta_2: 2 rho_c (1 - cos 2a), without cos 2a where bends rest, theta_6: 2 rho_c (2 cos 2a - 1), theta_8: epsilon cos 4a, (cos a, sin a) = (c, s)",
     source: "paper section 5.4, the sum of squares; offset and second order decoupled",
 };
 
@@ -126,8 +126,14 @@ pub struct Bent<S: Signal> {
 }
 
 /// The bends are small, so M is taken as it is without them, in α̂ (for the sum of squares in the pair's own angle): T2 is
-/// cos 2α̂ in the cosine and −cos 2α̂ in the sine.
-pub fn bent<S: Signal>(seen: &Seen<S>, k: &Coefficients<S>, structure: &Structure) -> Bent<S> {
+/// cos 2α̂ in the cosine and −cos 2α̂ in the sine. Where the speed shows no bends (`shown` is false) the offsets need not be told
+/// from them: at four samples a period, where 1 − cos 2α̂ can be 0 at all of a channel's, they would not be seen.
+pub fn bent<S: Signal>(
+    seen: &Seen<S>,
+    shown: Option<S::Bool>,
+    k: &Coefficients<S>,
+    structure: &Structure,
+) -> Bent<S> {
     seen.rho.begin(if structure.calibration.squares() {
         &BENDS_OF_PAIR
     } else {
@@ -138,6 +144,9 @@ pub fn bent<S: Signal>(seen: &Seen<S>, k: &Coefficients<S>, structure: &Structur
     let w = (sin_hat * cos_hat).quantise(signal).named("half_sin_2");
     let half_cos_2 =
         ((cos_hat * cos_hat).quantise(signal).named("cos_square") - k.half).named("half_cos_2");
+    let half_cos_2 = shown.map_or(half_cos_2, |shown| {
+        S::select(shown, half_cos_2, k.zero).named("half_cos_2_shown")
+    });
     let square = (w * w).quantise(signal).named("half_sin_2_square");
     let cos_4 = (k.one - square.scale(3)).quantise(signal).named("cos_4");
     let (second_c, second_s) = (rho_c * half_cos_2, rho_s * half_cos_2);

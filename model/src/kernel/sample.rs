@@ -157,7 +157,9 @@ fn advance_of<S: Signal, const PLAIN: bool>(
         theta,
         start: polar,
     };
+    let bends_shown = (!PLAIN).then(|| bend::shown(state, k, structure)).flatten();
     let gate = calibration::Gate {
+        bends: bends_shown,
         fresh,
         tick,
         whole_period: travel.whole_period,
@@ -173,6 +175,7 @@ fn advance_of<S: Signal, const PLAIN: bool>(
     };
     let completed = completion.map(|_| {
         let open = counting.and(hold.held.not()).named("parameters_free");
+        let open = bends_shown.map_or(open, |shown| open.and(shown).named("bends_free"));
         let seen = (updated.w_null, e, rho);
         completion::complete(
             seen,

@@ -79,6 +79,8 @@ pub struct Config {
     pub completion: Option<CompletedConfig>,
     /// The residual along the radius is the radius less 1, not its projection on the estimate, which lags; never in the paper.
     pub allows_for_lag: bool,
+    /// From this speed on, radians per sample, bends rest; infinite in the paper.
+    pub bend_rate: f64,
     /// When a sample teaches nothing because the loop catches up; never in the paper.
     pub catch_up: Option<CatchUp>,
     /// γ.
@@ -108,6 +110,7 @@ impl Config {
             search: Search::Residual(Form::Final),
             completion: None,
             allows_for_lag: false,
+            bend_rate: f64::INFINITY,
             catch_up: None,
             gamma: Gamma::constant(gamma),
             gate: Gate::EverySample,

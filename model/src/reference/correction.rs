@@ -66,6 +66,13 @@ impl Parameters {
         }
     }
 
+    /// 1 where a parameter is of the ellipse, 0 where it is of a bend.
+    #[must_use]
+    pub fn of_ellipse(self) -> Theta {
+        let linear = self.linear();
+        Theta::from_fn(|i, _| f64::from(linear.contains(&i) || self.phase() == Some(i)))
+    }
+
     /// Where the phase stands, counted from 0; `None`: it is not calibrated.
     #[must_use]
     pub fn phase(self) -> Option<usize> {

@@ -194,6 +194,7 @@ pub fn config(spec: &Spec) -> Result<Config, ReferenceError> {
         search: search(spec),
         completion: completion(spec),
         allows_for_lag: k.allows_for_lag(),
+        bend_rate: TAU * Calibration::BEND_RATE,
         // A loop of type 1 always lags.
         catch_up: (k.is_on() && k.settles() && spec.tracking.filter_type == 2).then(|| CatchUp {
             settled: Calibration::SETTLED,

@@ -10,23 +10,13 @@ use super::completed::Completion;
 pub use super::config::{Config, Gamma, Search, Steps};
 pub use super::estimate::Estimate;
 use super::gate::{Gate, GateState, Window};
-use super::gradient::{Form, Observation, ResidualGradient};
+use super::gradient::Observation;
 use super::hold::{self, Hold, Recall, Recalled, Verdict};
 use super::loops::Loop;
-use super::recursive::LeastSquaresStart;
+use super::searching::Searching;
 use super::solved::Solved;
 use super::start::{Acquisition, Start};
-use super::sum_of_squares::{Smoothing, SumOfSquares};
-use super::{ReferenceError, Theta, require};
-
-/// State of the search.
-#[derive(Clone, Debug, PartialEq)]
-enum Searching {
-    None,
-    Residual(ResidualGradient),
-    SumOfSquares(SumOfSquares),
-    Started(Box<LeastSquaresStart>),
-}
+use super::{ReferenceError, Theta};
 
 /// The reference: configuration and state.
 #[derive(Clone, Debug, PartialEq)]
@@ -59,35 +49,8 @@ impl Reference {
     /// # Errors
     /// A search that this parameter set cannot have, or a step that cannot converge.
     pub fn new(config: Config) -> Result<Self, ReferenceError> {
-        for &gamma in config.gamma.first.iter() {
-            require(gamma.is_finite(), "gamma", gamma, "a step is finite")?;
-        }
-        for &gamma in config.gamma.first.diagonal().iter() {
-            let reason = "a step against the gradient is not negative";
-            require(gamma >= 0.0, "gamma", gamma, reason)?;
-        }
         let filter = config.tracking.filter;
-        let searching = match config.search {
-            Search::None => Searching::None,
-            Search::Residual(form) => Searching::Residual(ResidualGradient::new(form, filter)),
-            Search::SumOfSquares(smoothing) => {
-                if let Smoothing::Forgetting { lambda } = smoothing {
-                    let reason = "the gradient is forgotten only for 0 <= lambda < 1";
-                    require((0.0..1.0).contains(&lambda), "lambda", lambda, reason)?;
-                }
-                Searching::SumOfSquares(SumOfSquares::new(smoothing))
-            }
-            Search::Started(start) => Searching::Started(Box::new(LeastSquaresStart::new(start)?)),
-        };
-        let along_radius = matches!(
-            config.search,
-            Search::Residual(Form::Final) | Search::SumOfSquares(_)
-        );
-        if config.completion.is_some() && !along_radius {
-            return Err(ReferenceError::Impossible(
-                "the completion is beside a search along the radius; the exact gradient sees that direction itself",
-            ));
-        }
+        let searching = Searching::new(&config)?;
         let completion = config
             .completion
             .map(|completed| Completion::new(completed, config.parameters, filter))
@@ -252,30 +215,26 @@ impl Reference {
             updated: gamma.is_some(),
             ..self.expected()
         };
-        let along = |gradient: Theta| gamma.map_or(Theta::zeros(), |g| -g * gradient);
         let parameters = self.config.parameters;
         let followed = self.followed(seen);
+        let fast = self.tracking.speed().abs() * self.config.tracking.ts >= self.config.bend_rate;
+        let free = if fast {
+            parameters.of_ellipse()
+        } else {
+            Theta::repeat(1.0)
+        };
         if let Some(completion) = &mut self.completion {
+            let completes = completes && !fast;
             self.completing +=
                 completion.step(parameters, &theta, seen, estimate.alpha_hat, completes);
         }
-        let step = match &mut self.searching {
-            Searching::None => Theta::zeros(),
-            Searching::Residual(gradient) => along(gradient.step(&followed)),
-            // A closed gate takes no sample into the sum.
-            Searching::SumOfSquares(_) if gamma.is_none() => Theta::zeros(),
-            Searching::SumOfSquares(sum) => along(sum.step_of(&seen.m, seen.corrected)),
-            Searching::Started(_) if gamma.is_none() => Theta::zeros(),
-            Searching::Started(start) => start
-                .step(seen, estimate.alpha_hat)
-                .unwrap_or_else(|| along(seen.final_form())),
-        };
+        let alpha_hat = estimate.alpha_hat;
+        self.pending += self.searching.step(&followed, alpha_hat, gamma, &free);
         let Config {
             bound,
             theta: start,
             ..
         } = &self.config;
-        self.pending += step;
         let mut change = solved;
         if completed {
             change += self.completing;

@@ -40,6 +40,7 @@ pub mod interpolator;
 pub mod loops;
 pub mod poles;
 pub mod recursive;
+mod searching;
 pub mod sensor;
 pub mod skew;
 pub mod solved;

@@ -72,15 +72,18 @@ impl SumOfSquares {
         self.step_of(
             &parameters.jacobian(theta, y),
             parameters.corrected(theta, y),
+            &Theta::repeat(1.0),
         )
     }
 
-    /// The same of M and of a pair from which more than Θ has been taken.
-    pub(super) fn step_of(&mut self, m: &Jacobian, corrected: [f64; 2]) -> Theta {
-        let gradient = gradient_of(m, corrected);
+    /// The same of M and of a pair from which more than Θ has been taken; `free` is 1 where a parameter learns and 0 where it rests: what
+    /// was gathered of that stays as it is, and is not to be stepped by.
+    pub(super) fn step_of(&mut self, m: &Jacobian, corrected: [f64; 2], free: &Theta) -> Theta {
+        let gradient = gradient_of(m, corrected).component_mul(free);
         match self.smoothing {
             Smoothing::Forgetting { lambda } => {
-                self.sum = gradient + self.sum * lambda;
+                let kept = free.map(|free| 1.0 - free * (1.0 - lambda));
+                self.sum = gradient + self.sum.component_mul(&kept);
                 self.sum
             }
             Smoothing::Batch { samples } => {

@@ -133,6 +133,8 @@ impl Calibration {
     pub const HELD_KNOWN: u32 = 256;
     /// Halvings of the phase's step then, in the final form of five parameters.
     pub const PHASE_HALVINGS: u32 = 2;
+    /// Bends rest from this rate on, periods per sample: exactly seven samples a period and fewer do not show them, eight do.
+    pub const BEND_RATE: f64 = 17.0 / 128.0;
 
     /// Any parameters are calibrated.
     #[must_use]

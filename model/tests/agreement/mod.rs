@@ -16,7 +16,7 @@ use nonius_model::reference::interpolator::Search;
 use nonius_model::reference::start::Start;
 use nonius_model::reference::sum_of_squares::Smoothing;
 use nonius_model::reference::{Config, Parameters, Reference, Steps, Theta, from_spec};
-use nonius_model::spec::{CalibrationMethod, Coding, Spec};
+use nonius_model::spec::{Calibration, CalibrationMethod, Coding, Spec};
 
 use crate::support::shipped::variants::third_and_fifth;
 use crate::support::{Encoder, wrapped};
@@ -135,6 +135,7 @@ fn reference(design: &Design, registers: &State<f64>, position: f64) -> Referenc
             // It is told when.
             slowest: 0.0,
         }),
+        bend_rate: TAU * Calibration::BEND_RATE,
         // Of the final form only what stands along the radius; the other searches are compared without.
         allows_for_lag: spec.calibration.allows_for_lag(),
         start: Start::At {

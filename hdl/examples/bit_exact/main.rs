@@ -7,7 +7,8 @@
 //! The second runs few samples of few variants and writes nothing: the form for every commit.
 //! Exit code 1 if any bit of any probe differs.
 
-#[path = "../../designs/shipped.rs"]
+mod row;
+#[path = "../../../designs/shipped.rs"]
 mod shipped;
 
 use std::env;
@@ -21,17 +22,14 @@ use std::time::Duration;
 use nonius_hdl::progress::silent;
 use nonius_hdl::{ChipDir, Options, verify};
 use nonius_model::design::Design;
-use nonius_model::spec::{Multipliers, Spec};
+use nonius_model::spec::Spec;
 use rayon::prelude::*;
-use sha2::{Digest, Sha256};
+use row::{HEAD, begins, described};
 use shipped::variants::{Variant, everything};
 
 /// Rows of each stimulus: at least 100 000 samples for Verilator, 2 000 for Icarus.
 const LONG: (usize, usize) = (5_600, 112);
 const SHORT: (usize, usize) = (60, 60);
-
-/// Rows of the stimuli that a chip's fingerprint is made of.
-const FINGERPRINT: usize = 60;
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = env::args().skip(1).collect();
@@ -72,7 +70,7 @@ fn run(docs: Option<&Path>) -> Result<bool, Box<dyn Error>> {
         .par_iter()
         .enumerate()
         .try_for_each(|(i, variant)| {
-            let begins = format!("| {} | {} |", described(variant), fingerprint(variant)?);
+            let begins = begins(&variant.what, &variant.spec)?;
             let same = known
                 .lines()
                 .find(|line| line.starts_with(&begins) && !line.contains(FAIL));
@@ -93,7 +91,7 @@ fn run(docs: Option<&Path>) -> Result<bool, Box<dyn Error>> {
 
 /// The row that the page has of this variant, as one of a chip that has changed since.
 fn earlier(variant: &Variant, known: &str) -> Option<String> {
-    let begins = format!("| {} | ", described(variant));
+    let begins = format!("| {} | ", described(&variant.what, &variant.spec));
     let row = known.lines().find_map(|line| line.strip_prefix(&begins))?;
     let (_, results) = row.split_once(" | ")?;
     Some(format!("{begins}earlier | {results}\n")).filter(|row| !row.contains(FAIL))
@@ -110,27 +108,6 @@ fn write(docs: &Path, file: &Path, page: &str) -> std::io::Result<()> {
     fs::rename(scratch, file)
 }
 
-/// Twelve digits for what is compared: Verilog, tables, testbench, and the first rows of the stimuli.
-fn fingerprint(variant: &Variant) -> Result<String, String> {
-    let design = Design::new(&variant.spec).map_err(|e| e.to_string())?;
-    let package = nonius_package::package(&design, FINGERPRINT).map_err(|e| e.to_string())?;
-    let mut hash = Sha256::new();
-    let compared = ["rtl/", "tb/", "coefficients/", "vectors/"];
-    for (path, content) in &package.files {
-        if compared.iter().any(|folder| path.starts_with(folder)) {
-            hash.update(path);
-            hash.update(content);
-        }
-    }
-    let digits = hash
-        .finalize()
-        .iter()
-        .take(6)
-        .map(|b| format!("{b:02x}"))
-        .collect();
-    Ok(digits)
-}
-
 /// A chip in both simulators: its line.
 fn run_one(variant: &Variant, rows: (usize, usize)) -> Result<String, String> {
     let say = |rows: usize, verilator: bool| {
@@ -141,29 +118,11 @@ fn run_one(variant: &Variant, rows: (usize, usize)) -> Result<String, String> {
         })
     };
     Ok(format!(
-        "| {} | {} | {} | {} |\n",
-        described(variant),
-        fingerprint(variant)?,
+        "{} {} | {} |\n",
+        begins(&variant.what, &variant.spec)?,
         say(rows.0, true)?,
         say(rows.1, false)?
     ))
-}
-
-/// Its line in the table.
-fn described(variant: &Variant) -> String {
-    let spec = &variant.spec;
-    let multipliers = match spec.chip.multipliers {
-        Multipliers::Count(n) => n.to_string(),
-        Multipliers::All(_) => "all".into(),
-    };
-    format!(
-        "{} | {} | {} | {} | {multipliers} | {}",
-        variant.what,
-        spec.tracking.method,
-        spec.tracking.filter_type,
-        spec.calibration.parameters,
-        spec.adc.bits
-    )
 }
 
 fn samples(
@@ -202,15 +161,3 @@ fn page(lines: &[Option<String>]) -> String {
     let lines: String = lines.iter().flatten().map(String::as_str).collect();
     format!("{HEAD}{lines}")
 }
-
-const HEAD: &str = "\
-# Bit-exactness
-
-Written by `cargo run --release -p nonius-hdl --example bit_exact -- docs`; do not edit. Samples of mixed stimuli
-(standstill, both directions, sweep, creep, reversals, jolts, loss, fading (to nothing, and for a while) and drift of the signal, step, corners, bounds, ties, random codes) in which every probe and register of the
-Verilog equals the model. A variant that is missing was not run. *Chip* is a fingerprint of its Verilog, tables, testbench and
-stimuli: run again, the command takes only those whose files have changed since; *earlier* stands where it has not come to them yet.
-
-| design | method | type | parameters | multipliers | ADC bits | chip | Verilator | Icarus |
-|---|---|---|---|---|---|---|---|---|
-";
