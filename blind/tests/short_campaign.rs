@@ -348,3 +348,17 @@ fn a_vibration_faster_than_the_knots_shows() {
         assert_eq!(names, ["vibration"], "{seed}");
     });
 }
+
+/// A drift that is named twice, by its ends and by how it went, is one that each of the two explains without the other: one of them stays.
+#[test]
+fn what_two_names_explain_keeps_one() {
+    let seeds = [(141_000_364, "gain_drift"), (141_000_610, "offset_drift")];
+    seeds.into_par_iter().for_each(|(seed, name)| {
+        let case = Case::draw(seed, 20_000).expect("a case can be drawn");
+        let verdict = verdict(&case.csv()).unwrap_or_else(|why| panic!("{seed}: {why}"));
+
+        let names: Vec<&str> = verdict.named.iter().map(|one| one.cause.as_str()).collect();
+        assert_eq!(names, [name], "{seed}");
+        assert!(!verdict.unexplained, "{seed}: {}", verdict.signature);
+    });
+}

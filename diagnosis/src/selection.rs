@@ -91,14 +91,68 @@ impl Selection {
     /// in for what has no name. Those would make anything look explained.
     pub(crate) fn named(&self, system: &System) -> Self {
         let (kept, names) = self.kept(system);
-        let sure: Vec<Accepted> = kept.iter().map(|i| self.accepted[*i].clone()).collect();
-        let pairs = sure.iter().zip(&names.accepted);
-        let findings = pairs.filter_map(|(one, alone)| {
-            let own = self.own(one, system);
-            let own = own.or_else(|| self.held(&names, alone, system))?;
-            Some(Accepted { own, ..one.clone() })
+        let pairs = kept.iter().zip(&names.accepted);
+        let owns = pairs.map(|(i, alone)| {
+            let own = self.own(&self.accepted[*i], system);
+            own.or_else(|| self.held(&names, alone, system))
+        });
+        let owns: Vec<Option<Own>> = owns.collect();
+        let pairs = || kept.iter().copied().zip(&owns);
+        let idle: Vec<usize> = pairs()
+            .filter_map(|(i, own)| own.is_none().then_some(i))
+            .collect();
+        if let Some(likeliest) = self.likeliest(&idle, system) {
+            // Each of them is idle beside the others, which explain the same: one has to stay for the rest to be idle.
+            let others: Vec<usize> = idle.into_iter().filter(|i| *i != likeliest).collect();
+            return self.dropping(&others, system).named(system);
+        }
+        let findings = pairs().filter_map(|(i, own)| {
+            Some(Accepted {
+                own: (*own)?,
+                ..self.accepted[i].clone()
+            })
         });
         self.of(findings.collect(), system)
+    }
+
+    /// Of some names the one that is likeliest where the rest of them is not there; nothing where none is likely, or where there are not
+    /// two.
+    fn likeliest(&self, some: &[usize], system: &System) -> Option<usize> {
+        if some.len() < 2 {
+            return None;
+        }
+        let alone = some.iter().filter_map(|&i| {
+            let others: Vec<usize> = some.iter().copied().filter(|k| *k != i).collect();
+            let at = i - others.iter().filter(|k| **k < i).count();
+            let beside = self.dropping(&others, system);
+            let own = beside.own(&beside.accepted[at], system)?;
+            Some((i, own.log_p))
+        });
+        alone.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(i, _)| i)
+    }
+
+    /// The same without some of the names, what has no name still in the fit.
+    fn dropping(&self, some: &[usize], system: &System) -> Self {
+        let gone = |k: usize| some.iter().any(|i| self.accepted[*i].range().contains(&k));
+        let shapes = self.fit.shapes.iter().enumerate();
+        let shapes = shapes.filter(|(k, _)| !gone(*k)).map(|(_, s)| s.clone());
+        let accepted = self.accepted.iter().enumerate();
+        let accepted = accepted.filter(|(i, _)| !some.contains(i)).map(|(_, one)| {
+            let before = (0..one.first).filter(|k| gone(*k)).count();
+            Accepted {
+                first: one.first - before,
+                ..one.clone()
+            }
+        });
+        Self {
+            fit: system.fit(shapes.collect()),
+            base: self.base.clone(),
+            accepted: accepted.collect(),
+            unnamed: vec![],
+            left: vec![],
+            again: vec![],
+            coded: false,
+        }
     }
 
     /// The names that were not taken back: which they are, and what they explain alone.
