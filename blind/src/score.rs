@@ -72,9 +72,9 @@ impl Score {
                 .map(|n| n.cause.clone())
                 .collect()
         };
-        let found = truth.hidden.iter();
-        let mut found = found.filter(|h| verdict.named.iter().any(|n| is(n, h, &truth)));
-        let found = found.any(|h| !h.brings.is_empty());
+        let found = |h: &HiddenCause| verdict.named.iter().any(|n| is(n, h, &truth));
+        let brings = |h: &HiddenCause| !h.brings.is_empty() && found(h);
+        let found = truth.hidden.iter().any(brings);
         let named = verdict.named.iter().filter(|n| counts(&truth, n, found));
         let named: Vec<&Named> = named.collect();
         let first = match named.first() {

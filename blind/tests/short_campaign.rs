@@ -305,15 +305,19 @@ fn what_a_cause_brings_is_no_wrong_name_and_not_its_own() {
         (vec![common.clone(), own], Outcome::First),
         (vec![common], Outcome::Misnamed),
     ] {
-        let verdict = says(named);
-        let score = Score::of(case.truth.clone(), &case, &verdict);
+        let score = Score::of(case.truth.clone(), &case, &says(named));
         assert_eq!(score.outcomes, [outcome]);
         assert!(score.wrong.is_empty(), "{:?}", score.wrong);
     }
-    let delay = vec![name("latency", &[])];
-    let verdict = says(delay);
-    let score = Score::of(case.truth.clone(), &case, &verdict);
+    let delay = says(vec![name("latency", &[])]);
+    let score = Score::of(case.truth.clone(), &case, &delay);
     assert_eq!(score.wrong, ["latency"]);
+}
+
+/// What the diagnosis says of the case of a seed.
+fn asked(seed: u64) -> nonius_blind::Verdict {
+    let case = Case::draw(seed, 20_000).expect("a case can be drawn");
+    verdict(&case.csv()).unwrap_or_else(|why| panic!("{seed}: {why}"))
 }
 
 /// Samples lost on slow axes that shake, or near where they turn back, which were silent once.
@@ -329,8 +333,7 @@ fn lost_samples_show() {
         127_001_415,
     ];
     seeds.into_par_iter().for_each(|seed| {
-        let case = Case::draw(seed, 20_000).expect("a case can be drawn");
-        let verdict = verdict(&case.csv()).unwrap_or_else(|why| panic!("{seed}: {why}"));
+        let verdict = asked(seed);
         let of_sensor = verdict.named.iter().filter(|one| !one.motion);
         let names: Vec<&str> = of_sensor.map(|one| one.cause.as_str()).collect();
         assert_eq!(names, ["dropped_samples"], "{seed}");
@@ -341,8 +344,7 @@ fn lost_samples_show() {
 #[test]
 fn a_vibration_faster_than_the_knots_shows() {
     [138_003_455, 138_003_787].into_par_iter().for_each(|seed| {
-        let case = Case::draw(seed, 20_000).expect("a case can be drawn");
-        let verdict = verdict(&case.csv()).unwrap_or_else(|why| panic!("{seed}: {why}"));
+        let verdict = asked(seed);
 
         let names: Vec<&str> = verdict.named.iter().map(|one| one.cause.as_str()).collect();
         assert_eq!(names, ["vibration"], "{seed}");
@@ -354,8 +356,7 @@ fn a_vibration_faster_than_the_knots_shows() {
 fn what_two_names_explain_keeps_one() {
     let seeds = [(141_000_364, "gain_drift"), (141_000_610, "offset_drift")];
     seeds.into_par_iter().for_each(|(seed, name)| {
-        let case = Case::draw(seed, 20_000).expect("a case can be drawn");
-        let verdict = verdict(&case.csv()).unwrap_or_else(|why| panic!("{seed}: {why}"));
+        let verdict = asked(seed);
 
         let names: Vec<&str> = verdict.named.iter().map(|one| one.cause.as_str()).collect();
         assert_eq!(names, [name], "{seed}");

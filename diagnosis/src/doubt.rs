@@ -139,14 +139,8 @@ fn so_small(gain: f64, most: f64, strongest: &str) -> String {
 
 /// What the fit explains more than without some of its causes.
 pub(crate) fn gain_of(system: &System, found: &Selection, own: &[usize]) -> f64 {
-    let within = |k: usize| own.iter().any(|i| found.accepted[*i].range().contains(&k));
-    let shapes = found.fit.shapes.iter().enumerate();
-    let others: Vec<Shape> = shapes
-        .filter(|(k, _)| !within(*k))
-        .map(|(_, s)| s.clone())
-        .collect();
     let gain = |shapes: &[Shape]| system.fit(system.sure(shapes)).solution.gain();
-    gain(&found.fit.shapes) - gain(&others)
+    gain(&found.fit.shapes) - gain(&found.shapes_but(own))
 }
 
 /// What is taken back, and why; `gain` is what its name explained.

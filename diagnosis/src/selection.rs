@@ -6,6 +6,7 @@ use crate::cause::{Candidate, Estimate};
 use crate::exact::Start;
 use crate::finding::{Finding, Gain, OTHER_ORDER, Parameter};
 use crate::generic::HOLDS;
+use crate::library::Shape;
 use crate::model::{Fit, Halves, System, amounts};
 use crate::score::{KINDS, SHOWN};
 use crate::statistics::by_chance;
@@ -133,21 +134,36 @@ impl Selection {
 
     /// The same without some of the names, what has no name still in the fit.
     fn dropping(&self, some: &[usize], system: &System) -> Self {
-        let gone = |k: usize| some.iter().any(|i| self.accepted[*i].range().contains(&k));
-        let shapes = self.fit.shapes.iter().enumerate();
-        let shapes = shapes.filter(|(k, _)| !gone(*k)).map(|(_, s)| s.clone());
         let accepted = self.accepted.iter().enumerate();
         let accepted = accepted.filter(|(i, _)| !some.contains(i)).map(|(_, one)| {
-            let before = (0..one.first).filter(|k| gone(*k)).count();
+            let before = (0..one.first).filter(|k| self.is_of(some, *k)).count();
             Accepted {
                 first: one.first - before,
                 ..one.clone()
             }
         });
+        self.of_fit(system.fit(self.shapes_but(some)), accepted.collect())
+    }
+
+    /// Whether one of the fit's shapes is of some of the names.
+    fn is_of(&self, some: &[usize], shape: usize) -> bool {
+        some.iter()
+            .any(|i| self.accepted[*i].range().contains(&shape))
+    }
+
+    /// The shapes of the fit but those of some of the names.
+    pub(crate) fn shapes_but(&self, some: &[usize]) -> Vec<Shape> {
+        let shapes = self.fit.shapes.iter().enumerate();
+        let others = shapes.filter(|(k, _)| !self.is_of(some, *k));
+        others.map(|(_, shape)| shape.clone()).collect()
+    }
+
+    /// Names in a fit, and nothing else that is found.
+    fn of_fit(&self, fit: Fit, accepted: Vec<Accepted>) -> Self {
         Self {
-            fit: system.fit(shapes.collect()),
+            fit,
             base: self.base.clone(),
-            accepted: accepted.collect(),
+            accepted,
             unnamed: vec![],
             left: vec![],
             again: vec![],
@@ -171,15 +187,7 @@ impl Selection {
             one.first = shapes.len();
             shapes.extend(one.candidate.shapes.iter().cloned());
         }
-        Self {
-            fit: system.fit(shapes),
-            base: self.base.clone(),
-            accepted,
-            unnamed: vec![],
-            left: vec![],
-            again: vec![],
-            coded: false,
-        }
+        self.of_fit(system.fit(shapes), accepted)
     }
 
     /// The same where what has no name spans the cause too, as every harmonic of the period does: the cause is a finding if

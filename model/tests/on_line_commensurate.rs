@@ -5,6 +5,7 @@ use crate::chip_support::{Bench, rms, sensor_of};
 use crate::on_line_speeds::{for_long, travel};
 use crate::support::shipped::variants::{Variant, searches_of};
 use nonius_kept::{every, figure_of_short};
+use nonius_model::kernel::waits::applied;
 use nonius_model::spec::{CalibrationMethod, Spec};
 use rayon::prelude::*;
 
@@ -29,13 +30,8 @@ fn left(
             &mut turns,
             ((f64::from(periods) * per_period) as u32, step),
         );
-        let s = &bench.chip.state;
-        let bends = [
-            s.theta_6_deviation,
-            s.theta_7_deviation,
-            s.theta_8_deviation,
-            s.theta_9_deviation,
-        ];
+        let [.., theta_6, theta_7, theta_8, theta_9] = applied(&bench.chip.state);
+        let bends = [theta_6, theta_7, theta_8, theta_9];
         (left(&bench), bends.map(|bend| bend.to_f64()))
     };
     let exactly = 1.0 / per_period;
@@ -57,6 +53,11 @@ fn left(
     now
 }
 
+/// The larger of each.
+fn larger(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [0, 1, 2].map(|i| a[i].max(b[i]))
+}
+
 /// At exactly 8 and 64 samples a period every search of every set finds its parameters from new, and keeps them, but for bends where cos 4α is 0
 /// at all eight places (`on_line_speeds.rs`); at 5, 6 and 7 those of the ellipse, which is all that these sensors have. At exactly four the
 /// exact gradient does; the others, which learn from the radius, see too little of it there from new, and where bends rest what these do stays:
@@ -76,9 +77,7 @@ fn every_search_at_commensurate_speeds() {
                 .map(|(signs, place)| {
                     left(spec, f64::from(per_period), &sensor_for(spec, signs), place)
                 })
-                .fold([0.0f64; 3], |worst, now| {
-                    [0, 1, 2].map(|i| worst[i].max(now[i]))
-                })
+                .fold([0.0; 3], larger)
         };
         let rows: Vec<(Variant, [f64; 3])> = searches_of(&for_long())
             .into_par_iter()
@@ -101,9 +100,7 @@ fn every_search_at_commensurate_speeds() {
                 (_, true, false) => 2,
                 (_, true, true) => 3,
             };
-            for (worst, now) in groups[group].iter_mut().zip(left) {
-                *worst = worst.max(*now);
-            }
+            groups[group] = larger(groups[group], *left);
         }
         println!("{per_period} samples a period: {groups:.2?}");
         let all = |limit: f64, of: &[[f64; 3]]| {
@@ -153,9 +150,7 @@ fn bends_rest_where_a_period_has_seven_samples_or_fewer() {
             let all = (0..16).map(|signs| (signs, 0.013 + 0.37 * f64::from(signs)));
             let worst = every(8, all)
                 .map(|(signs, place)| left(&variant.spec, per_period, &bent(signs, beta), place))
-                .fold([0.0f64; 3], |worst, now| {
-                    [0, 1, 2].map(|i| worst[i].max(now[i]))
-                });
+                .fold([0.0; 3], larger);
             println!(
                 "{per_period} samples a period, {}, {} parameters: {worst:.2?} mrad rms",
                 variant.what, k.parameters
@@ -165,7 +160,7 @@ fn bends_rest_where_a_period_has_seven_samples_or_fewer() {
         .collect::<Vec<_>>();
     let worst_of = |speeds: std::ops::RangeInclusive<f64>| {
         let all = worst.iter().filter(|(n, _)| speeds.contains(n));
-        all.fold([0.0f64; 3], |a, (_, b)| [0, 1, 2].map(|i| a[i].max(b[i])))
+        all.fold([0.0; 3], |a, (_, b)| larger(a, *b))
     };
     let [four, few, between] = [4.0..=4.0, 5.0..=7.0, 7.1..=7.9].map(worst_of);
     println!("{four:.2?} {few:.2?} {between:.2?}");

@@ -56,7 +56,7 @@ static SHOWN: Formula = Formula {
 
 /// Whether a period has samples enough to tell bends from gains and offsets, where bends are calibrated. Exactly seven samples and fewer
 /// stand at seven places of the period, which are fewer than there are parameters: what fits these fits no other. Between such speeds more is
-/// seen, but where a sensor is that is not yet calibrated, they cannot be told apart.
+/// seen, but with a sensor that is not yet calibrated the rate is not known so well.
 pub fn shown<S: Signal>(
     state: &State<S>,
     k: &Coefficients<S>,

@@ -46,17 +46,15 @@ pub struct Gate<S: Signal> {
     pub clear: S::Bool,
     /// Where the search waits for the end of a period: it ends, and what it taught is dropped.
     pub dropped: Option<S::Bool>,
-    /// Where bends are calibrated: this sample may move them.
-    pub bends: Option<S::Bool>,
+    /// Where bends are calibrated: this speed shows them.
+    pub bends_shown: Option<S::Bool>,
 }
 
 impl<S: Signal> Gate<S> {
-    /// What counts for the bends: nothing where they rest.
-    fn for_bends(self) -> Self {
-        let fresh = self.bends.map_or(self.fresh, |shown| {
-            self.fresh.and(shown).named("bends_fresh")
-        });
-        Self { fresh, ..self }
+    /// A condition as it is for the bends, where there are any: not met while they rest.
+    pub fn for_bends(&self, condition: S::Bool, name: &'static str) -> S::Bool {
+        let shown = self.bends_shown;
+        shown.map_or(condition, |shown| condition.and(shown).named(name))
     }
 }
 
@@ -117,7 +115,7 @@ pub fn update<S: Signal, const PLAIN: bool>(
         .then(|| gears::settled(state, k, structure));
     let mut gradient = gradient::linear(seen, settled, k, structure);
     let mut bent = (!PLAIN && structure.calibration.has_bend())
-        .then(|| gradient::bent(seen, gate.bends, k, structure));
+        .then(|| gradient::bent(seen, gate.bends_shown, k, structure));
     let solved = starting.map(|_| {
         let solved = start::start(gradient, seen.theta, gate, state, k, structure);
         (this.gathered, this.start_periods) = (solved.gathered, solved.periods);
@@ -168,8 +166,12 @@ pub fn update<S: Signal, const PLAIN: bool>(
             for (gradient, before) in gradient.iter_mut().zip(plain).take(linear) {
                 gather(gradient, before, gate);
             }
+            let gate = Gate {
+                fresh: gate.for_bends(gate.fresh, "bends_fresh"),
+                ..gate
+            };
             for (gradient, before) in of_bends.zip(bends) {
-                gather(gradient, before, gate.for_bends());
+                gather(gradient, before, gate);
             }
         }
     }
@@ -210,9 +212,7 @@ pub fn update<S: Signal, const PLAIN: bool>(
     this.theta[2] = mover.moved(2, this.theta[2], (third, by.gain), of);
     this.theta[3] = mover.moved(3, this.theta[3], (fourth, by.offset), of);
     if let Some(Bent { second, third, .. }) = bent {
-        let due = gate
-            .bends
-            .map_or(mover.due, |shown| mover.due.and(shown).named("bends_due"));
+        let due = gate.for_bends(mover.due, "bends_due");
         let mover = Mover { due, ..mover };
         for (i, gradient) in [(5, second[0]), (6, second[1]), (7, third)] {
             this.theta[i] = mover.moved(i, this.theta[i], (gradient, by.bend), of);

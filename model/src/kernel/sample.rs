@@ -157,14 +157,18 @@ fn advance_of<S: Signal, const PLAIN: bool>(
         theta,
         start: polar,
     };
-    let bends_shown = (!PLAIN).then(|| bend::shown(state, k, structure)).flatten();
+    let bends_shown = if PLAIN {
+        None
+    } else {
+        bend::shown(state, k, structure)
+    };
     let gate = calibration::Gate {
-        bends: bends_shown,
         fresh,
         tick,
         whole_period: travel.whole_period,
         clear: travel.clear,
         dropped,
+        bends_shown,
     };
     let searched = catch_up::searched(dropped, state, structure);
     let mut updated = calibration::update::<S, PLAIN>(&seen, searched, gate, state, k, structure);
@@ -175,7 +179,7 @@ fn advance_of<S: Signal, const PLAIN: bool>(
     };
     let completed = completion.map(|_| {
         let open = counting.and(hold.held.not()).named("parameters_free");
-        let open = bends_shown.map_or(open, |shown| open.and(shown).named("bends_free"));
+        let open = gate.for_bends(open, "bends_free");
         let seen = (updated.w_null, e, rho);
         completion::complete(
             seen,
