@@ -1,9 +1,14 @@
 //! Digital checks on the codes and the time base, before anything is fitted.
 
+use std::cell::OnceCell;
+
+use nonius_calibration::Ellipse;
 use nonius_recording::Recording;
 
 use crate::finding::{Finding, Parameter, Place};
+use crate::first;
 use crate::glitches;
+use crate::jumps;
 use crate::missing;
 use crate::rail;
 use crate::timebase;
@@ -19,6 +24,16 @@ pub(crate) struct Checked {
     pub(crate) repeated: Vec<usize>,
     /// Those of them that were put in: what follows is late by one each.
     pub(crate) extra: Vec<usize>,
+    /// The ellipse of all samples, where one can be fitted; made when it is asked for.
+    ellipse: OnceCell<Option<Ellipse>>,
+}
+
+impl Checked {
+    /// The angle of the recording, continuous, radians, bridged where its samples do not count.
+    pub(crate) fn angle(&self, recording: &Recording) -> Option<Vec<f64>> {
+        let ellipse = self.ellipse.get_or_init(|| first::of_all(recording));
+        Some(jumps::angle(recording, ellipse.as_ref()?, &self.weight))
+    }
 }
 
 const CHANNELS: [&str; 2] = ["cos", "sin"];
@@ -38,6 +53,7 @@ pub(crate) fn check(recording: &Recording, weight: Vec<f64>, time_base: TimeBase
         gaps: vec![],
         repeated: vec![],
         extra: vec![],
+        ellipse: OnceCell::new(),
     };
     if time_base == TimeBase::Searched {
         timebase::repeated(recording, &mut checked);

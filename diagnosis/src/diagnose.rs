@@ -209,7 +209,7 @@ fn search(
         if selection.again.is_empty() {
             let noise = system.flicker.clone();
             let note = codes::beside(&system, &mut selection, &checked.findings);
-            let concluded = conclude(&system, &selection, checked, repaired);
+            let concluded = conclude(&mut system, &selection, checked, repaired);
             drop(system);
             let mut found = concluded(context);
             found.notes.extend(note);
@@ -239,7 +239,7 @@ fn worse(new: &Context, old: &Context) -> bool {
 
 /// Findings, gains and positions of a search that has come to its end; the context is its own, and is not kept twice.
 fn conclude(
-    system: &System,
+    system: &mut System,
     selection: &Selection,
     checked: &Checked,
     repaired: &Repaired,
@@ -249,6 +249,7 @@ fn conclude(
     let extended = selection.named(system);
     let all = [selection.base.shapes.as_slice(), &extended.fit.shapes].concat();
     let halves = system.halves(&all);
+    let system = &*system;
     let mut findings = checked.findings.clone();
     let named = extended.findings(system, &halves);
     let left = system.residual(&selection.fit);
@@ -340,7 +341,7 @@ fn conclude(
     // The angle, less what everything that is no motion does to it.
     let change = system
         .samples
-        .sum(&extended.sensor_amounts(), Row::Tangential);
+        .sum(&extended.sensor_amounts(), Row::Tangential, 1);
     let pairs = context.measured.iter().zip(&change);
     let angle: Vec<f64> = pairs.map(|(measured, change)| measured - change).collect();
     let own = repaired.place.iter();

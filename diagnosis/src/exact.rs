@@ -12,7 +12,7 @@ use crate::causes::Catalogue;
 use crate::context::{Context, Known, unwrapped};
 use crate::library::{Row, Shape};
 use crate::model::{Fit, System, above_motion, atoms_of};
-use crate::select::begin;
+use crate::select::{anew, begin};
 use crate::selection::Accepted;
 use crate::spline::Spline;
 use crate::statistics::price;
@@ -25,7 +25,7 @@ const STEPS: usize = 8;
 /// Small changes that one step may go.
 const REACH: f64 = 12.0;
 /// Samples that are enough to find what is large, and to see the colour of the noise.
-const ENOUGH: usize = 50_000;
+const ENOUGH: usize = 25_000;
 /// Share of its standard error by which a number may still move when its fit ends.
 const AT_REST: f64 = 0.2;
 /// Detection SNR of a remainder from which on a recording is looked at anew before anything else can be named for it.
@@ -145,12 +145,12 @@ pub(crate) fn tuned(system: &mut System, fit: &[Shape], cause: &mut Accepted, ga
     }
 }
 
-/// What a cause does, along the radius and along the circle.
+/// What a cause does, along the radius and along the circle, where functions are tried.
 fn effect(system: &System, amounts: &[(usize, f64)]) -> [Vec<f64>; 2] {
-    [Row::Radial, Row::Tangential].map(|row| system.samples.sum(amounts, row))
+    [Row::Radial, Row::Tangential].map(|row| system.samples.sum(amounts, row, system.tried()))
 }
 
-/// Detection SNR of the product of two effects: what second order leaves.
+/// Detection SNR of the product of two effects, where functions are tried: what second order leaves.
 fn product(system: &System, a: &[Vec<f64>; 2], b: &[Vec<f64>; 2]) -> f64 {
     let square = |e: &[Vec<f64>; 2], k: usize| e[0][k].powi(2) + e[1][k].powi(2);
     let sum: f64 = (0..system.context.samples())
@@ -178,10 +178,12 @@ pub(crate) fn tangents_do(system: &System, fit: &Fit, accepted: &[Accepted], lea
         }
     }
     let middle = effect(system, &middle);
-    let seen = |moved: &[(usize, f64)], least: f64| {
-        !moved.is_empty() && product(system, &middle, &effect(system, moved)) > least
+    let seen = |moved: &[(usize, f64)], samples: usize, least: f64| {
+        let left = || product(system, &middle, &effect(system, moved));
+        !moved.is_empty() && left() * (samples as f64).sqrt() > least
     };
-    !seen(&moved, least) && !seen(&moved_known, SETTLED)
+    // Amounts that all samples gave, a part of them gives with a larger error: that is not to be seen in it.
+    !seen(&moved, system.tried(), least) && !seen(&moved_known, 1, SETTLED)
 }
 
 /// What is known of a recording: the ellipse, and causes with their amounts.
@@ -280,7 +282,7 @@ fn settled(
         let price = price(context.samples() as f64);
         let paid = |a: &Accepted| price * a.x.len() as f64 + a.candidate.trials.ln();
         score -= found.accepted.iter().map(paid).sum::<f64>();
-        let Some(next) = found.again.into_iter().next() else {
+        let Some(next) = anew(&system, &found) else {
             break;
         };
         start = next;
@@ -329,11 +331,11 @@ fn effects(context: &Context, carried: &mut [Accepted], with_motion: bool) -> Kn
     let mut catalogue = Catalogue::new(context, with_motion);
     enter(carried, &mut catalogue);
     let library = std::mem::take(&mut catalogue.library);
-    let samples = Samples::unfitted(context, library);
+    let samples = Samples::new(context, library, Default::default(), 1);
     let of = |wanted: &dyn Fn(&Accepted, Row) -> bool, row: Row| {
         let chosen = carried.iter().filter(|a| wanted(a, row));
         let amounts: Vec<(usize, f64)> = chosen.flat_map(Accepted::amounts).collect();
-        samples.sum(&amounts, row)
+        samples.sum(&amounts, row, 1)
     };
     // What stands along the circle alone is an error of the angle.
     let turns = |a: &Accepted| {

@@ -6,6 +6,11 @@ use nonius_recording::Recording;
 /// Most samples that it is fitted to; the model of all samples has the five parameters again.
 const ENOUGH: usize = 8192;
 
+/// The ellipse of all samples, where one can be fitted.
+pub(crate) fn of_all(recording: &Recording) -> Option<Ellipse> {
+    ellipse(recording, &vec![1.0; recording.samples()]).ok()
+}
+
 /// The ellipse of the samples that count, for a weight of each.
 ///
 /// # Errors

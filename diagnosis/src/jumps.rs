@@ -1,12 +1,12 @@
 //! Samples that are missing without a gap in time: the angle jumps by what it moves in whole samples.
 
+use nonius_calibration::Ellipse;
 use nonius_recording::Recording;
 
 use crate::checks::{Checked, NINTH, magnitudes, ninth, repeats};
 use crate::context::{against, unwrapped};
 use crate::correlate::sums;
 use crate::delays::{Delay, Delays, delays};
-use crate::first;
 use crate::sides::{AROUND, beside, column, is_about, powers};
 use crate::solve::{dot, weights_of};
 
@@ -126,8 +126,7 @@ fn bridge(values: &mut [f64], weight: &[f64]) {
 }
 
 /// The angle of a recording that draws an ellipse, continuous, radians.
-pub(crate) fn angle(recording: &Recording, weight: &[f64]) -> Option<Vec<f64>> {
-    let ellipse = first::ellipse(recording, &vec![1.0; recording.samples()]).ok()?;
+pub(crate) fn angle(recording: &Recording, ellipse: &Ellipse, weight: &[f64]) -> Vec<f64> {
     let pairs = recording.cos.iter().zip(&recording.sin);
     let angle = pairs.map(|(c, s)| {
         let (c, s) = ellipse.corrected(*c, *s);
@@ -135,7 +134,7 @@ pub(crate) fn angle(recording: &Recording, weight: &[f64]) -> Option<Vec<f64>> {
     });
     let mut angle = unwrapped(angle.collect());
     bridge(&mut angle, weight);
-    Some(angle)
+    angle
 }
 
 /// An angle, looked at with curves through so many samples on either side.
@@ -234,7 +233,7 @@ impl<'a> Look<'a> {
 /// Places where the angle jumps by what it moves in whole samples: before which sample, how many are missing. What only a
 /// reference shows counts where the sensor jumps with it.
 pub(crate) fn jumps(recording: &Recording, checked: &Checked) -> Vec<(usize, usize)> {
-    let Some(angle) = angle(recording, &checked.weight) else {
+    let Some(angle) = checked.angle(recording) else {
         return vec![];
     };
     let reference = recording.reference_rad.clone().map(unwrapped);

@@ -4,7 +4,6 @@ use nonius_recording::Recording;
 
 use crate::checks::Checked;
 use crate::delays::delays;
-use crate::jumps::angle;
 use crate::sides::is_about;
 
 /// Standard deviations from which on a delay counts.
@@ -17,7 +16,7 @@ pub(crate) fn late(recording: &Recording, checked: &Checked, of: &[usize]) -> Ve
     if of.is_empty() {
         return vec![];
     }
-    let Some(angle) = angle(recording, &checked.weight) else {
+    let Some(angle) = checked.angle(recording) else {
         return vec![];
     };
     let all = delays(&angle);

@@ -65,6 +65,7 @@ mod stairs;
 mod statistics;
 mod steps;
 mod sweep;
+mod taken;
 mod telegraph;
 mod timebase;
 mod trig;

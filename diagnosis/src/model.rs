@@ -78,7 +78,8 @@ impl<'a> System<'a> {
             context.tangential(),
             motion.unwrap_or_default(),
         ];
-        let mut samples = Samples::new(context, std::mem::take(&mut catalogue.library), data);
+        let mut samples =
+            Samples::new(context, std::mem::take(&mut catalogue.library), data, every);
         // What is known was taken off exactly, and comes back as it is to first order: so the fit is of the whole.
         let known: Vec<(usize, f64)> = carried.iter().flat_map(Accepted::amounts).collect();
         // The reference moves as it did.
@@ -102,15 +103,13 @@ impl<'a> System<'a> {
             whitener.sigma = power.sqrt().max(1e-12);
         }
         let plain = this.moments(&atoms, every);
-        this.total = this.without_nothing(this.normal(&plain, &atoms, true), &atoms);
+        this.total = this.units(&plain, &atoms, every);
         let mut any = catalogue.broad.clone();
-        any.extend(
-            known
-                .iter()
-                .map(|k| k.0)
-                .filter(|i| !catalogue.broad.contains(i)),
-        );
-        let mut left = this.samples.left(&broad::all(&this, &any));
+        any.extend(known.iter().map(|k| k.0));
+        any.sort_unstable();
+        any.dedup();
+        let along = this.along_all(&any);
+        let mut left = this.samples.left(&broad::all(&this, &along, &any));
         this.flicker = flicker::find(context, &left[0]);
         if every > 1 && this.flicker.is_some() {
             this.flicker = flicker::find(context, &this.left_of_radius(&any));
@@ -169,22 +168,8 @@ impl<'a> System<'a> {
         } else {
             this.moments(&atoms, every)
         };
-        this.total = this.without_nothing(this.normal(&moments, &atoms, true), &atoms);
+        this.total = this.units(&moments, &atoms, every);
         this
-    }
-
-    /// What the best amounts of some atoms leave of the radius, fitted to all samples. Amounts that were fitted to a part of them
-    /// are off by more than all samples would allow, and slow functions with such amounts leave what looks like slow noise.
-    fn left_of_radius(&self, atoms: &[usize]) -> Vec<f64> {
-        let radial = self.in_row(atoms, Row::Radial);
-        let own: Vec<usize> = radial.map(|i| atoms[i]).collect();
-        let moments = self.moments(&own, 1);
-        let normal = self.without_nothing(self.normal(&moments, &own, true), &own);
-        let shapes: Vec<Shape> = (0..own.len()).map(|i| Shape(vec![(i, 1.0)])).collect();
-        let x = normal.of(&shapes).solve().x;
-        let amounts: Vec<(usize, f64)> = own.into_iter().zip(x).collect();
-        let [radial, ..] = self.samples.left(&amounts);
-        radial
     }
 
     /// Whether what is left along the circle is the axis more than it is noise.
@@ -219,6 +204,11 @@ impl<'a> System<'a> {
         self.every
     }
 
+    /// Of so many blocks of samples, functions are tried on one.
+    pub(crate) fn tried(&self) -> usize {
+        self.tried
+    }
+
     /// From now on functions are tried on all samples.
     pub(crate) fn try_on_all(&mut self) {
         self.tried = 1;
@@ -227,15 +217,21 @@ impl<'a> System<'a> {
     /// Looks at all samples.
     pub(crate) fn complete(&mut self) {
         (self.every, self.tried) = (1, 1);
-        self.samples.take_motion_off();
         let atoms: Vec<usize> = (0..self.samples.library.atoms.len()).collect();
         let moments = self.moments(&atoms, 1);
-        self.total = self.without_nothing(self.normal(&moments, &atoms, true), &atoms);
+        self.total = self.units(&moments, &atoms, 1);
     }
 
-    fn moments(&self, atoms: &[usize], every: usize) -> Moments {
+    /// Sums over one block in so many.
+    fn moments(&mut self, atoms: &[usize], every: usize) -> Moments {
+        self.moments_along(atoms, every, every)
+    }
+
+    /// The same, with motions that were fitted to one block in so many, `followed`.
+    fn moments_along(&mut self, atoms: &[usize], every: usize, followed: usize) -> Moments {
+        self.samples.take_motion_off(atoms, followed);
         let mut sums = self.empty(atoms);
-        self.samples.pass(atoms, every, &mut |_, parts| {
+        self.samples.pass(atoms, every, followed, &mut |_, parts| {
             for (part, sum) in parts.iter().zip(&mut sums.0) {
                 part.add_products(true, 0, sum);
             }
@@ -278,12 +274,17 @@ impl<'a> System<'a> {
         Normal::new(gram, right, power)
     }
 
+    /// Normal equations of sums over one block in so many, in units of the noise.
+    fn units(&self, moments: &Moments, atoms: &[usize], every: usize) -> Normal {
+        self.without_nothing(self.normal(moments, atoms, true), atoms, every)
+    }
+
     /// What follows the motion wholly leaves rounding errors, and they explain nothing.
-    fn without_nothing(&self, mut total: Normal, atoms: &[usize]) -> Normal {
+    fn without_nothing(&self, mut total: Normal, atoms: &[usize], every: usize) -> Normal {
         for (i, number) in atoms.iter().enumerate() {
             let atom = self.samples.library.atoms[*number];
             let scale = self.samples.whiteners[atom.row as usize].sigma.powi(-2);
-            if total.gram[(i, i)] < NOTHING * scale * self.samples.squares[*number] {
+            if total.gram[(i, i)] < NOTHING * scale * self.samples.square(*number, every) {
                 total.gram.row_mut(i).fill(0.0);
                 total.gram.column_mut(i).fill(0.0);
                 total.right[i] = 0.0;
@@ -299,27 +300,27 @@ impl<'a> System<'a> {
         if atoms.len() == known {
             return;
         }
-        self.samples.take_motion_off();
+        self.samples.take_motion_off(&atoms, self.every);
         let fresh = ROWS.map(|row| self.in_row(&atoms[..known], row).count());
         let mut sums = self.empty(&atoms);
-        self.samples.pass(&atoms, self.every, &mut |_, parts| {
-            for ((part, sum), fresh) in parts.iter().zip(&mut sums.0).zip(fresh) {
-                part.add_products(true, fresh, sum);
-            }
-        });
+        self.samples
+            .pass(&atoms, self.every, self.every, &mut |_, parts| {
+                for ((part, sum), fresh) in parts.iter().zip(&mut sums.0).zip(fresh) {
+                    part.add_products(true, fresh, sum);
+                }
+            });
         let mut total = self.normal(&sums, &atoms, true);
         // What was known stays.
         let mut block = total.gram.view_mut((0, 0), (known, known));
         block.copy_from(&self.total.gram);
-        self.total = self.without_nothing(total, &atoms);
+        self.total = self.without_nothing(total, &atoms, self.every);
     }
 
     /// Normal equations of some atoms, of new ones that no pass has seen yet too, and those atoms: cheaper than to take
     /// the new ones in against every function.
     pub(crate) fn among(&mut self, atoms: &[usize]) -> Normal {
-        self.samples.take_motion_off();
         let moments = self.moments(atoms, self.tried);
-        self.without_nothing(self.normal(&moments, atoms, true), atoms)
+        self.units(&moments, atoms, self.tried)
     }
 
     /// Leaves atoms out; the new number of each.
@@ -328,9 +329,7 @@ impl<'a> System<'a> {
         // Some may not have been taken in yet.
         let known = self.total.right.len();
         let kept: Vec<usize> = (0..known).filter(|i| map[*i].is_some()).collect();
-        let gram = self.total.gram.select_rows(&kept).select_columns(&kept);
-        let right = self.total.right.select_rows(&kept);
-        self.total = Normal::new(gram, right, self.total.power);
+        self.total = self.total.only(&kept);
         map
     }
 
@@ -344,6 +343,14 @@ impl<'a> System<'a> {
     /// Rms of the unpredictable part of the radial residual.
     pub(crate) fn noise(&self) -> f64 {
         self.samples.whiteners[0].sigma
+    }
+
+    /// The shapes' best amounts where functions are tried.
+    pub(crate) fn fit_tried(&mut self, shapes: Vec<Shape>) -> Fit {
+        let atoms = atoms_of(&shapes);
+        let own: Vec<Shape> = shapes.iter().map(|s| s.among(&atoms)).collect();
+        let solution = self.among(&atoms).of(&own).solve();
+        Fit { shapes, solution }
     }
 
     /// The shapes' best amounts.

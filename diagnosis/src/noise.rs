@@ -33,6 +33,8 @@ const CLEARLY: f64 = 3.0;
 /// Names of the contract.
 const CLOCK_JITTER: &str = "clock_jitter";
 const AMPLITUDE_NOISE: &str = "amplitude_noise";
+/// Standard errors by which an amount that a part of the samples gives is below nothing for sure.
+const SURELY: f64 = 3.0;
 /// Noise of either residual, and unequal and common noise of the channels.
 const BASE: usize = 4;
 
@@ -153,14 +155,15 @@ pub(crate) fn findings(system: &System, residual: &Residual) -> (Vec<Finding>, V
             }
         };
         let plain = [1.0, 1.0, 0.0, 0.0, 0.0];
-        let with = pairs.fit([&plain[..], &[0.0]].concat(), &both);
-        let amount = with.x[BASE + 1];
-        if amount <= 0.0 {
+        let (with, error) = pairs.rough_fit([&plain[..], &[0.0]].concat(), &both);
+        // Less noise than none is of no kind.
+        let unsure = if pairs.is_rough() { SURELY } else { 0.0 };
+        if with[BASE + 1] <= -unsure * error[BASE + 1] {
             continue;
         }
         let mut own = pairs.clone();
-        own.cut(&with.x, &both);
-        let with = own.fit(with.x.clone(), &both);
+        own.cut(&with, &both);
+        let with = own.fit(with, &both);
         let without = own.fit(plain.to_vec(), &both);
         // At constant speed the noise of a clock is white noise of the angle, and of the two one number is seen.
         if with.rank <= without.rank {

@@ -6,6 +6,7 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI, TAU};
 use nonius_recording::Recording;
 
 use crate::context::{against, unwrapped};
+use crate::first;
 use crate::jumps;
 
 /// Share of samples that may be farther than a quarter period from where the reference says.
@@ -110,9 +111,11 @@ fn reason(angle: &[f64], reference: &[f64], per: Option<u32>) -> String {
 pub(crate) fn checked(recording: &Recording) -> Cow<'_, Recording> {
     let all = vec![1.0; recording.samples()];
     let own = recording.reference_rad.as_ref();
-    let Some((reference, angle)) = own.zip(own.and_then(|_| jumps::angle(recording, &all))) else {
+    let ellipse = own.and_then(|_| first::of_all(recording));
+    let Some((reference, ellipse)) = own.zip(ellipse) else {
         return Cow::Borrowed(recording);
     };
+    let angle = jumps::angle(recording, &ellipse, &all);
     let continuous = unwrapped(reference.clone());
     if follows(&angle, &continuous) {
         return Cow::Borrowed(recording);

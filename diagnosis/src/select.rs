@@ -21,8 +21,8 @@ use crate::unexplained::{Unnamed, What};
 const MOST: usize = 8;
 /// Share of what could not be named that a cause has to explain beside it to be named.
 const BEYOND_UNKNOWN: f64 = 0.5;
-/// Gain in log-likelihood (an SNR of 45) from which on a part of a long recording is enough to name a cause.
-const CLEAR: f64 = 1000.0;
+/// Gain in log-likelihood (an SNR of 24) from which on a part of a long recording is enough to name a cause.
+const CLEAR: f64 = 300.0;
 /// Shapes of one list, then of the other.
 pub(crate) fn both(a: &[Shape], b: &[Shape]) -> Vec<Shape> {
     a.iter().chain(b).cloned().collect()
@@ -83,33 +83,31 @@ pub(crate) fn begin(
         one.first = fit.shapes.len();
         fit = system.fit(both(&fit.shapes, &one.candidate.shapes));
     }
-    // What stands beside a cause has changed since its numbers were fitted.
-    for one in &mut accepted {
-        let range = one.range();
-        let others = fit.others(&range);
-        let gain = fit.solution.gain() - system.fit(others.clone()).solution.gain();
-        exact::tuned(system, &others, one, gain);
-        let mut shapes = fit.shapes.clone();
-        shapes.splice(range, one.candidate.shapes.iter().cloned());
-        fit = system.fit(shapes);
-    }
-    let mut found = Selection {
-        fit,
-        base,
-        accepted,
-        unnamed: vec![],
-        left: vec![],
-        again: vec![],
-        coded: false,
-    };
-    // Functions that were made for the known causes and that no shape uses.
-    keep_used(system, catalogue.atoms, &mut found);
-    if !found.accepted.is_empty()
-        && !exact::tangents_do(system, &found.fit, &found.accepted, exact::NAMED)
-    {
-        found.again = vec![exact::start(system, &found.fit, &found.accepted)];
-    }
+    let mut found = Selection::of_fits(base, fit, accepted);
+    tune(system, catalogue, &mut found);
     found
+}
+
+/// Fits the inner numbers of what is accepted anew: what stands beside it has changed.
+fn tune(system: &mut System, catalogue: &Catalogue, found: &mut Selection) {
+    for one in &mut found.accepted {
+        let range = one.range();
+        let others = found.fit.others(&range);
+        let gain = found.fit.solution.gain() - system.fit(others.clone()).solution.gain();
+        exact::tuned(system, &others, one, gain);
+        let mut shapes = found.fit.shapes.clone();
+        shapes.splice(range, one.candidate.shapes.iter().cloned());
+        found.fit = system.fit(shapes);
+    }
+    // Functions that were made for the known causes and that no shape uses.
+    keep_used(system, catalogue.atoms, found);
+}
+
+/// Where to look anew from, if the tangents do not do for what is known.
+pub(crate) fn anew(system: &System, found: &Selection) -> Option<Start> {
+    let (fit, accepted) = (&found.fit, &found.accepted);
+    let astray = !accepted.is_empty() && !exact::tangents_do(system, fit, accepted, exact::NAMED);
+    astray.then(|| exact::start(system, fit, accepted))
 }
 
 /// Accepts causes one after the other, beside those that are known; ends where the tangents do not do, unless this is
@@ -121,18 +119,36 @@ pub(crate) fn select(
     carried: Vec<Accepted>,
     last: bool,
 ) -> Selection {
+    let found = begin(system, catalogue, carried);
+    let mut found = search(context, system, catalogue, found, last);
     if system.every() == 1 {
-        return search(context, system, catalogue, carried, last);
+        return found;
     }
-    let found = search(context, system, catalogue, carried, last);
+    if let [start] = found.again.as_mut_slice() {
+        // The amounts that all samples give need not be looked at anew for their errors in a part of them.
+        system.try_on_all();
+        let fit = system.fit_tried(found.fit.shapes.clone());
+        *start = exact::start(system, &fit, &found.accepted);
+    }
     if !found.again.is_empty() {
         return found;
     }
     // What was found in a part has its numbers from all of it, and then the rest is looked for there.
     system.try_on_all();
-    let found = begin(system, catalogue, found.accepted);
+    let mut found = begin(system, catalogue, found.accepted);
+    found.fit = system.fit_tried(found.fit.shapes);
+    if !last && let Some(start) = anew(system, &found) {
+        found.again = vec![start];
+        return found;
+    }
     system.complete();
-    search(context, system, catalogue, found.accepted, last)
+    found.refit(system);
+    let with_inner = found.accepted.iter().filter(|a| a.has_inner());
+    if with_inner.count() > 1 {
+        // Each was fitted beside others that were not yet.
+        tune(system, catalogue, &mut found);
+    }
+    search(context, system, catalogue, found, last)
 }
 
 /// Beside flicker noise, what is slow in the channels is that noise: drift cannot be told from it, nor can these.
@@ -160,19 +176,21 @@ fn best_change(system: &System, fit: &Fit, scored: &[Scored]) -> f64 {
     })
 }
 
+/// The same, from what is known on.
 fn search(
     context: &Context,
     system: &mut System,
     catalogue: &Catalogue,
-    carried: Vec<Accepted>,
+    mut found: Selection,
     last: bool,
 ) -> Selection {
     let fixed = catalogue.atoms;
-    let mut found = begin(system, catalogue, carried);
-    if !last && !found.again.is_empty() {
+    if !last {
+        found.again.extend(anew(system, &found));
+    }
+    if !found.again.is_empty() {
         return found;
     }
-    found.again.clear();
     let mut closed: Vec<Domain> = vec![];
     let mut refused: Vec<&'static str> = vec![];
     if system.flicker.is_some() {

@@ -57,6 +57,12 @@ impl Accepted {
         }
     }
 
+    /// Whether it has numbers that are no amounts.
+    pub(crate) fn has_inner(&self) -> bool {
+        let exact = self.candidate.exact.as_ref();
+        exact.is_some_and(|e| !e.inner.is_empty())
+    }
+
     /// How much of each atom is known.
     pub(crate) fn amounts(&self) -> Vec<(usize, f64)> {
         amounts(&self.candidate.shapes, &self.x)
@@ -160,14 +166,26 @@ impl Selection {
 
     /// Names in a fit, and nothing else that is found.
     fn of_fit(&self, fit: Fit, accepted: Vec<Accepted>) -> Self {
+        Self::of_fits(self.base.clone(), fit, accepted)
+    }
+
+    /// The five parameters, names beside them, and nothing else that is found.
+    pub(crate) fn of_fits(base: Fit, fit: Fit, accepted: Vec<Accepted>) -> Self {
         Self {
             fit,
-            base: self.base.clone(),
+            base,
             accepted,
             unnamed: vec![],
             left: vec![],
             again: vec![],
             coded: false,
+        }
+    }
+
+    /// Fits the amounts anew.
+    pub(crate) fn refit(&mut self, system: &System) {
+        for fit in [&mut self.base, &mut self.fit] {
+            *fit = system.fit(std::mem::take(&mut fit.shapes));
         }
     }
 

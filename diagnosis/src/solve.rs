@@ -55,7 +55,7 @@ pub(crate) struct Normal {
 }
 
 /// Their solution.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Solution {
     /// One number per column.
     pub(crate) x: Vec<f64>,
@@ -97,6 +97,12 @@ impl Normal {
             }
         }
         Self::new(gram, right, dot(values, values))
+    }
+
+    /// Some of the columns.
+    pub(crate) fn only(&self, kept: &[usize]) -> Self {
+        let gram = self.gram.select_rows(kept).select_columns(kept);
+        Self::new(gram, self.right.select_rows(kept), self.power)
     }
 
     /// The columns that shapes make of these.

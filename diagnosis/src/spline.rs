@@ -32,6 +32,18 @@ fn slopes(x: f64) -> [f64; 4] {
     ]
 }
 
+/// Writes four functions of places.
+fn fill(
+    [a, b, c, d]: [&mut [f64]; 4],
+    places: impl Iterator<Item = f64>,
+    of: impl Fn(f64) -> [f64; 4],
+) {
+    let lists = a.iter_mut().zip(b).zip(c).zip(d);
+    for (x, (((a, b), c), d)) in places.zip(lists) {
+        [*a, *b, *c, *d] = of(x);
+    }
+}
+
 impl Spline {
     /// A spline over `samples` samples with a knot about every `spacing` of them; `weight` is 0 where a sample does
     /// not count.
@@ -120,25 +132,28 @@ impl Spline {
 
     /// The B-splines of a stretch of samples from `start` on.
     pub(crate) fn basis(&self, start: usize, samples: usize, slope: bool) -> Basis {
-        let pieces = self.count() - 3;
+        let last = self.count() - 4;
+        let begin = start as f64 + 0.5;
+        let places = (0..samples as u32).map(|k| (begin + f64::from(k)) / self.spacing);
+        let places: Vec<f64> = places.collect();
         let mut basis = Basis {
             weights: std::array::from_fn(|_| vec![0.0; samples]),
             pieces: vec![],
         };
-        for k in 0..samples {
-            let (first, w) = Self::at(self.spacing, pieces, start + k);
-            let values = if slope {
-                slopes(w).map(|v| v / self.spacing)
+        let mut from = 0;
+        while from < samples {
+            let first = (places[from] as usize).min(last);
+            let within = |x: &f64| first == last || *x < (first + 1) as f64;
+            let range = from..from + places[from..].partition_point(within);
+            from = range.end;
+            let lists = basis.weights.each_mut().map(|w| &mut w[range.clone()]);
+            let places = places[range.clone()].iter().map(|x| x - first as f64);
+            if slope {
+                fill(lists, places, |x| slopes(x).map(|v| v / self.spacing));
             } else {
-                weights(w)
-            };
-            for (list, value) in basis.weights.iter_mut().zip(values) {
-                list[k] = value;
+                fill(lists, places, weights);
             }
-            match basis.pieces.last_mut() {
-                Some((same, range)) if *same == first => range.end = k + 1,
-                _ => basis.pieces.push((first, k..k + 1)),
-            }
+            basis.pieces.push((first, range));
         }
         basis
     }

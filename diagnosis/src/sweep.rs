@@ -1,26 +1,22 @@
 //! One pass over the samples: functions are made block by block, motion is taken off, the rest whitened, and only the
 //! sums of products are kept. So memory does not grow with the number of causes.
 
+mod amounts;
+
 use std::cell::OnceCell;
 use std::ops::Range;
 
 use crate::block::{Block, Shared};
 use crate::context::Context;
-use crate::library::{Library, ROWS, Row};
+use crate::library::{Library, Row};
 use crate::part::{CHUNK, Part, STRIDE};
 use crate::solve::dot;
 use crate::spline::{Basis, Spline};
+use crate::taken::{Motions, Projector, Taken};
 use crate::whiten::{ORDER, Whitener};
 
 /// Interleaved blocks, every other one of which is held out.
 pub(crate) const BLOCKS: usize = 20;
-
-/// How what cannot be seen is taken off a row.
-enum Projector<'a> {
-    Nothing,
-    Mean(f64),
-    Spline(&'a Spline),
-}
 
 /// Whether a block is looked at where of so many one is: one of each group, and not always the same, for the motion may
 /// repeat itself.
@@ -29,6 +25,23 @@ fn chosen(block: usize, every: usize) -> bool {
     const SPREAD: f64 = 0.618_033_988_749_894_9;
     let place = (block / every) as f64 * SPREAD;
     block % every == (place.fract() * every as f64) as usize
+}
+
+/// Samples of either half of interleaved blocks: so many of the one, then of the other.
+fn half(samples: usize) -> usize {
+    samples.div_ceil(BLOCKS).max(1)
+}
+
+/// The blocks that are looked at where of so many one is.
+fn blocks(samples: usize, every: usize) -> impl Iterator<Item = Range<usize>> {
+    let half = half(samples);
+    let of = move |first: usize| {
+        let last = (first + half).min(samples);
+        let starts = (first..last).step_by(CHUNK);
+        starts.map(move |start| start..(start + CHUNK).min(last))
+    };
+    let all = (0..samples).step_by(half).flat_map(of);
+    all.filter(move |range| chosen(range.start / CHUNK, every))
 }
 
 /// The splines of a block, made when they are asked for.
@@ -56,78 +69,94 @@ pub(crate) struct Samples<'a> {
     /// The data of each row; empty where there is no such row.
     pub(crate) data: [Vec<f64>; 3],
     pub(crate) whiteners: [Whitener; 3],
-    /// What is taken off each atom: coefficients of the motion that follows it.
-    motions: Vec<Vec<f64>>,
-    /// Square of each atom before the motion is taken off; 0 where there is none to take off.
-    pub(crate) squares: Vec<f64>,
+    /// What is taken off each atom.
+    whole: Motions<'a>,
+    /// The same where one block in several is looked at.
+    part: Option<Motions<'a>>,
 }
 
 impl<'a> Samples<'a> {
-    pub(crate) fn new(context: &'a Context, library: Library, data: [Vec<f64>; 3]) -> Self {
-        let mut this = Self {
+    /// `every`: of so many blocks, one may be looked at.
+    pub(crate) fn new(
+        context: &'a Context,
+        library: Library,
+        data: [Vec<f64>; 3],
+        every: usize,
+    ) -> Self {
+        let weight = &context.weight;
+        let spline = context.spline.as_ref();
+        let mut chosen = vec![0.0; if every > 1 { weight.len() } else { 0 }];
+        if every > 1 {
+            blocks(weight.len(), every)
+                .for_each(|range| chosen[range.clone()].copy_from_slice(&weight[range]));
+        }
+        Self {
             context,
             library,
             data,
             whiteners: Default::default(),
-            motions: vec![],
-            squares: vec![],
-        };
-        this.take_motion_off();
-        this
-    }
-
-    /// Functions without their motion and without data: for sums of them alone.
-    pub(crate) fn unfitted(context: &'a Context, library: Library) -> Self {
-        Self {
-            context,
-            library,
-            data: Default::default(),
-            whiteners: Default::default(),
-            motions: vec![],
-            squares: vec![],
+            whole: Motions::whole(spline, weight),
+            part: Motions::part(spline, &chosen, every, CHUNK),
         }
     }
 
-    fn projector(&self, row: Row) -> Projector<'_> {
-        let against = self.context.against_reference.is_some();
-        match (row, &self.context.spline) {
-            (Row::Radial, _) => Projector::Nothing,
-            (Row::Tangential, _) if against => Projector::Mean(self.context.weight.iter().sum()),
-            (_, Some(spline)) => Projector::Spline(spline),
-            (_, None) => Projector::Nothing,
+    /// Whether the motion of a part is fitted to that alone.
+    pub(crate) fn follows_a_part(&self) -> bool {
+        self.part.is_some()
+    }
+
+    /// What is taken off each atom where of so many blocks one is looked at.
+    fn motions(&self, every: usize) -> &Motions<'a> {
+        let part = self.part.as_ref().filter(|_| every > 1);
+        part.unwrap_or(&self.whole)
+    }
+
+    /// How what cannot be seen is taken off a row where of so many blocks one is looked at.
+    fn projector(&self, row: Row, every: usize) -> Projector<'_> {
+        let motions = self.motions(every);
+        match row {
+            Row::Radial => Projector::Nothing,
+            Row::Tangential if self.context.against_reference.is_some() => Projector::Mean,
+            _ => motions
+                .spline
+                .as_deref()
+                .map_or(Projector::Nothing, Projector::Spline),
         }
     }
 
-    /// Samples that count in either half of the interleaved blocks.
-    pub(crate) fn counts(&self) -> [f64; 2] {
-        let half = self.context.samples().div_ceil(BLOCKS).max(1);
+    /// Samples that count in either half of the interleaved blocks, of so many of which one is looked at.
+    pub(crate) fn counts(&self, every: usize) -> [f64; 2] {
+        let half = half(self.context.samples());
         let mut counts = [0.0; 2];
-        for (i, block) in self.context.weight.chunks(half).enumerate() {
-            counts[i % 2] += block.iter().sum::<f64>();
+        for range in blocks(self.context.samples(), every) {
+            let of = range.start / half % 2;
+            counts[of] += self.context.weight[range].iter().sum::<f64>();
         }
         counts
     }
 
-    /// Fits the motion to every atom that has none yet.
-    pub(crate) fn take_motion_off(&mut self) {
-        let from = self.motions.len();
-        let fresh: Vec<usize> = (from..self.library.atoms.len()).collect();
-        let weight = &self.context.weight;
-        let mut sums: Vec<Vec<f64>> = fresh
-            .iter()
-            .map(|i| match self.projector(self.library.atoms[*i].row) {
-                Projector::Nothing => vec![],
-                Projector::Mean(_) => vec![0.0],
+    /// Square of an atom before its motion is taken off, in one block of so many; 0 where there is none to take off.
+    pub(crate) fn square(&self, atom: usize, every: usize) -> f64 {
+        self.motions(every).of(atom).map_or(0.0, |t| t.square)
+    }
+
+    /// Fits the motion to those of some atoms that have none yet, in one block of so many.
+    pub(crate) fn take_motion_off(&mut self, atoms: &[usize], every: usize) {
+        let (mut wanted, mut sums) = (vec![], vec![]);
+        for atom in self.motions(every).lacking(atoms) {
+            let sum = match self.projector(self.library.atoms[atom].row, every) {
+                Projector::Nothing => continue,
+                Projector::Mean => vec![0.0],
                 Projector::Spline(spline) => vec![0.0; spline.count()],
-            })
-            .collect();
-        let wanted: Vec<usize> = fresh
-            .into_iter()
-            .filter(|i| !sums[i - from].is_empty())
-            .collect();
+            };
+            wanted.push(atom);
+            sums.push(sum);
+        }
+        let weight = &self.context.weight;
         let mut weighted = vec![];
-        let mut squares = vec![0.0; self.library.atoms.len() - from];
-        self.fill(&wanted, 1, &mut |block, splines, i, values| {
+        let mut squares = vec![0.0; wanted.len()];
+        let looked_at = self.motions(every).every;
+        self.fill(&wanted, looked_at, &mut |block, splines, i, values| {
             let range = block.start..block.start + block.len();
             let weights = &weight[range];
             let counted = if weights.iter().all(|w| *w == 1.0) {
@@ -137,8 +166,8 @@ impl<'a> Samples<'a> {
                 weighted.extend(values.iter().zip(weights).map(|(v, w)| v * w));
                 &weighted
             };
-            squares[wanted[i] - from] += dot(counted, counted);
-            let own = &mut sums[wanted[i] - from];
+            squares[i] += dot(counted, counted);
+            let own = &mut sums[i];
             match own.len() {
                 1 => own[0] += counted.iter().sum::<f64>(),
                 _ => splines
@@ -147,30 +176,34 @@ impl<'a> Samples<'a> {
                     .for_each(|b| b.accumulate(counted, own)),
             }
         });
-        for (own, atom) in sums.iter_mut().zip(&self.library.atoms[from..]) {
-            if let Projector::Mean(total) = self.projector(atom.row) {
-                own[0] /= total.max(1.0);
-            }
+        self.solved(sums.iter_mut(), every);
+        let fresh = sums.into_iter().zip(squares).zip(wanted);
+        let motions = self.part.as_mut().filter(|_| every > 1);
+        let motions = motions.unwrap_or(&mut self.whole);
+        for ((motion, square), atom) in fresh {
+            motions.set(atom, Taken { motion, square });
         }
-        if let Some(spline) = &self.context.spline {
-            let count = spline.count();
-            spline.solve_all(sums.iter_mut().filter(|s| s.len() == count));
+    }
+
+    /// Sums of products, with 1 or with B-splines → means, or coefficients.
+    fn solved<'b>(&self, sums: impl Iterator<Item = &'b mut Vec<f64>>, every: usize) {
+        let motions = self.motions(every);
+        let (means, splines): (Vec<_>, Vec<_>) = sums.partition(|sum| sum.len() == 1);
+        for mean in means {
+            mean[0] /= motions.counts.max(1.0);
         }
-        self.motions.extend(sums);
-        self.squares.extend(squares);
+        if let Some(spline) = &motions.spline {
+            spline.solve_all(splines.into_iter());
+        }
     }
 
     /// Leaves out atoms that are not kept; the new number of each.
     pub(crate) fn retain(&mut self, keep: impl Fn(usize) -> bool) -> Vec<Option<usize>> {
         let map = self.library.retain(keep);
-        let kept = std::mem::take(&mut self.motions).into_iter().zip(&map);
-        self.motions = kept
-            .filter_map(|(m, new)| new.is_some().then_some(m))
-            .collect();
-        let kept = std::mem::take(&mut self.squares).into_iter().zip(&map);
-        self.squares = kept
-            .filter_map(|(s, new)| new.is_some().then_some(s))
-            .collect();
+        self.whole.retain(&map);
+        if let Some(part) = &mut self.part {
+            part.retain(&map);
+        }
         map
     }
 
@@ -180,7 +213,6 @@ impl<'a> Samples<'a> {
         if atoms.is_empty() {
             return;
         }
-        let n = self.context.samples();
         // Each group is filled once for all of its atoms.
         let mut groups: Vec<(usize, Vec<usize>)> = vec![];
         for (i, atom) in atoms.iter().enumerate() {
@@ -191,47 +223,40 @@ impl<'a> Samples<'a> {
             }
         }
         let (mut scratch, mut shared) = (vec![], Shared::default());
-        let half = n.div_ceil(BLOCKS).max(1);
-        for first in (0..n).step_by(half) {
-            let last = (first + half).min(n);
-            for start in (first..last).step_by(CHUNK) {
-                if !chosen(start / CHUNK, every) {
-                    continue;
+        for range in blocks(self.context.samples(), every) {
+            let block = self.context.block(range, &mut shared);
+            let splines = Splines {
+                spline: self.context.spline.as_ref(),
+                start: block.start,
+                samples: block.len(),
+                made: OnceCell::new(),
+            };
+            for (group, members) in &groups {
+                let group = &self.library.groups[*group];
+                let (len, count) = (block.len(), group.count);
+                let need = group.way.values() * count * len;
+                if scratch.len() < need {
+                    scratch.resize(need, 0.0);
                 }
-                let range = start..(start + CHUNK).min(last);
-                let block = self.context.block(range, &mut shared);
-                let splines = Splines {
-                    spline: self.context.spline.as_ref(),
-                    start: block.start,
-                    samples: block.len(),
-                    made: OnceCell::new(),
-                };
-                for (group, members) in &groups {
-                    let group = &self.library.groups[*group];
-                    let (len, count) = (block.len(), group.count);
-                    let need = group.way.values() * count * len;
-                    if scratch.len() < need {
-                        scratch.resize(need, 0.0);
-                    }
-                    group.write(&block, &mut scratch[..need]);
-                    for i in members {
-                        let atom = self.library.atoms[atoms[*i]];
-                        let along = group.way.values() > 1 && atom.row != Row::Radial;
-                        let at = (if along { count } else { 0 } + atom.function) * len;
-                        visit(&block, &splines, *i, &scratch[at..at + len]);
-                    }
+                group.write(&block, &mut scratch[..need]);
+                for i in members {
+                    let atom = self.library.atoms[atoms[*i]];
+                    let along = group.way.values() > 1 && atom.row != Row::Radial;
+                    let at = (if along { count } else { 0 } + atom.function) * len;
+                    visit(&block, &splines, *i, &scratch[at..at + len]);
                 }
             }
         }
     }
 
     /// Goes through the samples, of so many blocks through one: the half of the blocks that it belongs to, and the three
-    /// rows. What whitening takes for the past of a block is the end of the one that was looked at before: for data and
-    /// functions alike, so what is fitted stays right.
+    /// rows. Their motions are those that were fitted to one of so many blocks, `followed`. What whitening takes for the past of a
+    /// block is the end of the one that was looked at before: for data and functions alike, so what is fitted stays right.
     pub(crate) fn pass(
         &self,
         atoms: &[usize],
         every: usize,
+        followed: usize,
         visit: &mut dyn FnMut(usize, &[Part; 3]),
     ) {
         let n = self.context.samples();
@@ -258,7 +283,7 @@ impl<'a> Samples<'a> {
                 part.white = vec![0.0; part.columns * STRIDE];
             }
         }
-        let half = n.div_ceil(BLOCKS).max(1);
+        let half = half(n);
         let mut left = atoms.len();
         let weight = &self.context.weight;
         let mut finish = |range: Range<usize>, parts: &mut [Part; 3]| {
@@ -283,22 +308,17 @@ impl<'a> Samples<'a> {
             }
         };
         if atoms.is_empty() {
-            for first in (0..n).step_by(half) {
-                let last = (first + half).min(n);
-                for start in (first..last).step_by(CHUNK) {
-                    if chosen(start / CHUNK, every) {
-                        finish(start..(start + CHUNK).min(last), &mut parts);
-                    }
-                }
-            }
+            blocks(n, every).for_each(|range| finish(range, &mut parts));
             return;
         }
+        let motions = self.motions(followed);
         self.fill(atoms, every, &mut |block, splines, i, values| {
             let part = &mut parts[rows[i]];
             let from = columns[i] * STRIDE + ORDER;
             let own = &mut part.plain[from..from + block.len()];
-            let motion = &self.motions[atoms[i]];
-            match motion.as_slice() {
+            let motion = motions.of(atoms[i]);
+            let motion = motion.map_or(&[][..], |taken| &taken.motion);
+            match motion {
                 [] => own.copy_from_slice(values),
                 [mean] => own.iter_mut().zip(values).for_each(|(o, v)| *o = v - mean),
                 _ => match splines.basis() {
@@ -316,64 +336,6 @@ impl<'a> Samples<'a> {
                 finish(block.start..block.start + block.len(), &mut parts);
             }
         });
-    }
-
-    /// What atoms in these amounts take off the data of each row.
-    pub(crate) fn left(&self, amounts: &[(usize, f64)]) -> [Vec<f64>; 3] {
-        let mut left = self.data.clone();
-        let atoms: Vec<usize> = amounts.iter().map(|a| a.0).collect();
-        let weight = &self.context.weight;
-        let mut smooth: [Vec<f64>; 3] = Default::default();
-        for (i, x) in amounts {
-            let row = self.library.atoms[*i].row as usize;
-            let motion = &self.motions[*i];
-            smooth[row].resize(motion.len(), 0.0);
-            for (sum, m) in smooth[row].iter_mut().zip(motion) {
-                *sum += x * m;
-            }
-        }
-        self.fill(&atoms, 1, &mut |block, _, i, values| {
-            let (row, x) = (self.library.atoms[atoms[i]].row as usize, amounts[i].1);
-            let own = &mut left[row][block.start..block.start + block.len()];
-            for ((l, v), w) in own.iter_mut().zip(values).zip(&weight[block.start..]) {
-                *l -= x * v * w;
-            }
-        });
-        for (row, smooth) in ROWS.iter().zip(smooth) {
-            let own = &mut left[*row as usize];
-            match (self.projector(*row), smooth.is_empty()) {
-                (_, true) | (Projector::Nothing, _) => {}
-                (Projector::Mean(_), _) => {
-                    let pairs = own.iter_mut().zip(weight);
-                    pairs.for_each(|(l, w)| *l += smooth[0] * w);
-                }
-                (Projector::Spline(spline), _) => {
-                    let values = spline.values(&smooth);
-                    for ((l, v), w) in own.iter_mut().zip(values).zip(weight) {
-                        *l += v * w;
-                    }
-                }
-            }
-        }
-        left
-    }
-
-    /// The sum of atoms as they are, of a row, at every sample.
-    pub(crate) fn sum(&self, amounts: &[(usize, f64)], row: Row) -> Vec<f64> {
-        let own: Vec<(usize, f64)> = amounts
-            .iter()
-            .filter(|(i, _)| self.library.atoms[*i].row == row)
-            .copied()
-            .collect();
-        let atoms: Vec<usize> = own.iter().map(|a| a.0).collect();
-        let mut sum = vec![0.0; self.context.samples()];
-        self.fill(&atoms, 1, &mut |block, _, i, values| {
-            let part = &mut sum[block.start..block.start + block.len()];
-            part.iter_mut()
-                .zip(values)
-                .for_each(|(s, v)| *s += own[i].1 * v);
-        });
-        sum
     }
 }
 

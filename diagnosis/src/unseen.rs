@@ -14,7 +14,7 @@ const STANDS: f64 = 0.02;
 const PARTS: usize = 36;
 const ALL_BUT_A_FEW: usize = 32;
 /// Fewest scale periods, and fewest revolutions, that repeat themselves.
-const REPEATS: f64 = 1.9;
+pub(crate) const REPEATS: f64 = 1.9;
 /// Fewest scale periods by which drifts are looked for.
 const DRIFTS: f64 = 3.0;
 
@@ -32,7 +32,7 @@ pub fn unseen(context: &Context) -> Vec<String> {
         ));
     } else if travelled < REPEATS {
         tell(
-            "within less than two scale periods, what repeats with the period and what changes with time are the same; move over several periods",
+            "within less than two scale periods, what repeats with the period and what changes with time are the same, and slow lines are not looked for; move over several periods",
         );
     }
     if travelled < DRIFTS {

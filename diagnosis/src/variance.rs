@@ -5,13 +5,13 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::solve::Normal;
+use crate::solve::{Normal, Solution};
 use crate::sweep::BLOCKS as INTERLEAVED;
 
 /// Steps of the scoring iteration; each is a regression on the products, weighted with the covariances of the one before.
 const STEPS: usize = 6;
-/// So many of them look at every sample.
-const LAST: usize = 2;
+/// So many of them look at every sample: from where fewer lead to, a single one is off by a small part of the errors.
+const LAST: usize = 1;
 /// Samples that are enough to see what noise depends on.
 pub(crate) const ENOUGH: usize = 120_000;
 /// Samples that are enough for the steps that only lead to where the last ones start.
@@ -150,19 +150,48 @@ impl Pairs<'_> {
         }
     }
 
-    /// The likeliest amounts of `count` shapes; starts from these.
+    /// The likeliest amounts of shapes; starts from these.
     pub(crate) fn fit(&self, start: Vec<f64>, shapes: &Shapes) -> Fitted {
+        let (x, _) = self.steps(start, STEPS - LAST, self.coarse(), shapes);
+        let (x, solution) = self.steps(x, LAST, self.every, shapes);
+        Fitted {
+            likelihood: self.likelihood(&x, shapes),
+            covariance: solution.covariance,
+            rank: solution.rank,
+            x,
+        }
+    }
+
+    /// The likeliest amounts where fewer samples are enough, and their standard errors there.
+    pub(crate) fn rough_fit(&self, start: Vec<f64>, shapes: &Shapes) -> (Vec<f64>, Vec<f64>) {
+        let (x, solution) = self.steps(start, STEPS, self.coarse(), shapes);
+        let error = solution.covariance.diagonal().map(|v| v.max(0.0).sqrt());
+        (x, error.iter().copied().collect())
+    }
+
+    /// Of so many blocks of samples, one is enough for what only leads on. Rounded down: every other block, where held-out
+    /// blocks are about as long, would miss half of them.
+    fn coarse(&self) -> usize {
+        self.every.max(self.weight.len() / FIRST)
+    }
+
+    /// Whether a rough fit leaves samples out that [`Self::fit`] looks at.
+    pub(crate) fn is_rough(&self) -> bool {
+        self.coarse() > self.every
+    }
+
+    /// So many steps of scoring, on one block of samples in so many.
+    fn steps(
+        &self,
+        start: Vec<f64>,
+        steps: usize,
+        every: usize,
+        shapes: &Shapes,
+    ) -> (Vec<f64>, Solution) {
         let count = start.len();
         let (mut x, mut h) = (start, vec![Products::default(); count]);
-        let mut last = None;
-        // Rounded down: every other block, where held-out blocks are about as long, would miss half of them.
-        let coarse = self.every.max(self.weight.len() / FIRST);
-        for step in 0..STEPS {
-            let every = if step + LAST < STEPS {
-                coarse
-            } else {
-                self.every
-            };
+        let mut last = Solution::default();
+        for _ in 0..steps {
             let (mut gram, mut right) = (DMatrix::zeros(count, count), DVector::zeros(count));
             self.each(every, |k| {
                 shapes(k, &mut h);
@@ -179,18 +208,9 @@ impl Pairs<'_> {
             gram.fill_lower_triangle_with_upper_triangle();
             let solution = Normal::new(gram, right, 0.0).solve();
             x.clone_from(&solution.x);
-            last = Some(solution);
+            last = solution;
         }
-        let likelihood = self.likelihood(&x, shapes);
-        let (covariance, rank) = last.map_or((DMatrix::zeros(count, count), 0), |s| {
-            (s.covariance, s.rank)
-        });
-        Fitted {
-            x,
-            covariance,
-            likelihood,
-            rank,
-        }
+        (x, last)
     }
 
     fn likelihood(&self, x: &[f64], shapes: &Shapes) -> f64 {

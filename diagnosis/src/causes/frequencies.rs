@@ -4,9 +4,13 @@ use super::mains;
 use super::mirror::{self, unmirrored};
 use crate::context::Context;
 use crate::lines::{flattened, pair_spectrum, peak, refined, two_transforms};
+use crate::unseen::REPEATS;
 
 /// Lowest frequency of a line, in cycles per recording: below, it is drift.
 const SLOWEST: f64 = 4.0;
+
+/// Highest order of the scale period of an error that is as large as a line.
+const FINEST: f64 = 32.0;
 
 /// Highest frequency of a line, in cycles per sample: at half the sample rate one of two phases is not seen.
 const HIGHEST: f64 = 0.499;
@@ -29,9 +33,13 @@ pub(super) struct Search<'a> {
     pub(super) coloured: bool,
 }
 
-/// Cycles per sample below which nothing is a line.
+/// Cycles per sample below which nothing is a line: within a scale period that is not repeated, any error that goes with the angle
+/// would be one.
 pub(super) fn lowest(context: &Context) -> f64 {
-    SLOWEST / context.samples() as f64
+    let periods = context.periods_travelled();
+    let repeats = periods >= REPEATS;
+    let within = if repeats { 0.0 } else { FINEST * periods };
+    SLOWEST.max(within) / context.samples() as f64
 }
 
 impl Search<'_> {

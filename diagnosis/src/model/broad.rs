@@ -7,7 +7,34 @@
 use super::{Moments, System};
 use crate::causes::Catalogue;
 use crate::library::{ROWS, Row, Shape};
+use crate::solve::Normal;
 use crate::statistics::at_most_of_noise;
+
+impl System<'_> {
+    /// Normal equations of atoms without the motion of all samples. What the motion of a part of them takes nearly off would have
+    /// any amount there, and would be loud elsewhere.
+    pub(super) fn along_all(&mut self, atoms: &[usize]) -> Normal {
+        if !self.samples.follows_a_part() {
+            return self.total.only(atoms);
+        }
+        let moments = self.moments_along(atoms, self.every, 1);
+        self.units(&moments, atoms, 1)
+    }
+
+    /// What the best amounts of some atoms leave of the radius, fitted to all samples. Amounts that were fitted to a part of them
+    /// are off by more than all samples would allow, and slow functions with such amounts leave what looks like slow noise.
+    pub(super) fn left_of_radius(&mut self, atoms: &[usize]) -> Vec<f64> {
+        let radial = self.in_row(atoms, Row::Radial);
+        let own: Vec<usize> = radial.map(|i| atoms[i]).collect();
+        let moments = self.moments(&own, 1);
+        let normal = self.units(&moments, &own, 1);
+        let shapes: Vec<Shape> = (0..own.len()).map(|i| Shape(vec![(i, 1.0)])).collect();
+        let x = normal.of(&shapes).solve().x;
+        let amounts: Vec<(usize, f64)> = own.into_iter().zip(x).collect();
+        let [radial, ..] = self.samples.left(&amounts);
+        radial
+    }
+}
 
 /// What is taken off one row.
 struct Own {
@@ -25,24 +52,42 @@ fn amounts(rows: &[Own; 3]) -> Vec<(usize, f64)> {
     all.copied().collect()
 }
 
-/// The best amounts of those of some atoms that stand in a row.
-fn fitted(system: &System, atoms: &[usize], row: Row) -> Own {
-    let own = |i: &&usize| system.samples.library.atoms[**i].row == row;
-    let mut atoms: Vec<usize> = atoms.iter().filter(own).copied().collect();
-    atoms.sort_unstable();
-    atoms.dedup();
-    let shapes: Vec<Shape> = atoms.iter().map(|i| Shape(vec![(*i, 1.0)])).collect();
-    let solution = system.total.of(&shapes).solve();
+/// The best amounts of those of some atoms that stand in a row; where they stand in normal equations.
+fn fitted_of(
+    system: &System,
+    total: &Normal,
+    atoms: impl Iterator<Item = (usize, usize)>,
+    row: Row,
+) -> Own {
+    let own = |(_, i): &(usize, usize)| system.samples.library.atoms[*i].row == row;
+    let own: Vec<(usize, usize)> = atoms.filter(own).collect();
+    let shapes: Vec<Shape> = own.iter().map(|(at, _)| Shape(vec![(*at, 1.0)])).collect();
+    let solution = total.of(&shapes).solve();
+    let atoms = own.into_iter().map(|(_, i)| i);
     Own {
         freedom: solution.rank,
         explained: solution.explained,
-        amounts: atoms.into_iter().zip(solution.x).collect(),
+        amounts: atoms.zip(solution.x).collect(),
     }
 }
 
-/// The best amounts of all of these atoms.
-pub(super) fn all(system: &System, atoms: &[usize]) -> Vec<(usize, f64)> {
-    amounts(&ROWS.map(|row| fitted(system, atoms, row)))
+/// The same of all functions.
+fn fitted(system: &System, atoms: &[usize], row: Row) -> Own {
+    let mut atoms = atoms.to_vec();
+    atoms.sort_unstable();
+    atoms.dedup();
+    fitted_of(
+        system,
+        &system.total,
+        atoms.into_iter().map(|i| (i, i)),
+        row,
+    )
+}
+
+/// The best amounts of all of these atoms, of which the normal equations are.
+pub(super) fn all(system: &System, total: &Normal, atoms: &[usize]) -> Vec<(usize, f64)> {
+    let places = || atoms.iter().copied().enumerate();
+    amounts(&ROWS.map(|row| fitted_of(system, total, places(), row)))
 }
 
 /// The five parameters and what is known, as they are taken off.

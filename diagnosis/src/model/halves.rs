@@ -24,17 +24,19 @@ pub(crate) struct Halves {
 }
 
 impl System<'_> {
-    /// The sums of either half, for all that some fits are made of.
-    pub(crate) fn halves(&self, shapes: &[Shape]) -> Halves {
+    /// The sums of either half, for all that some fits are made of; of the blocks that functions are tried on.
+    pub(crate) fn halves(&mut self, shapes: &[Shape]) -> Halves {
         let atoms = atoms_of(shapes);
+        self.samples.take_motion_off(&atoms, self.tried);
         let make = || self.empty(&atoms);
         let (mut white, mut plain) = ([make(), make()], [make(), make()]);
-        self.samples.pass(&atoms, 1, &mut |half, parts| {
-            for (row, part) in parts.iter().enumerate() {
-                part.add_products(true, 0, &mut white[half].0[row]);
-                part.add_products(false, 0, &mut plain[half].0[row]);
-            }
-        });
+        self.samples
+            .pass(&atoms, self.tried, self.tried, &mut |half, parts| {
+                for (row, part) in parts.iter().enumerate() {
+                    part.add_products(true, 0, &mut white[half].0[row]);
+                    part.add_products(false, 0, &mut plain[half].0[row]);
+                }
+            });
         let only = |moments: &Moments, row: usize| {
             let mut one = self.empty(&atoms);
             one.0[row].copy_from(&moments.0[row]);
@@ -43,7 +45,7 @@ impl System<'_> {
         Halves {
             white: white.map(|m| self.normal(&m, &atoms, true)),
             plain: plain.map(|m| [0, 1, 2].map(|row| only(&m, row))),
-            counts: self.samples.counts(),
+            counts: self.samples.counts(self.tried),
             against: self.context.against_reference.is_some(),
             atoms,
         }
