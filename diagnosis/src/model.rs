@@ -22,6 +22,8 @@ use crate::whiten::Whitener;
 pub(crate) use halves::Halves;
 pub(crate) use residual::{Residual, Weighed, above_motion};
 
+/// Rms, in amplitudes, below which nothing was measured: numbers that were calculated leave their rounding.
+pub(crate) const ROUNDING: f64 = 1e-9;
 /// Share of a function's square below which it is a rounding error.
 const NOTHING: f64 = 1e-18;
 
@@ -100,7 +102,7 @@ impl<'a> System<'a> {
         let atoms: Vec<usize> = (0..this.samples.library.atoms.len()).collect();
         for (whitener, data) in this.samples.whiteners.iter_mut().zip(&this.samples.data) {
             let power = data.iter().map(|v| v * v).sum::<f64>() / data.len().max(1) as f64;
-            whitener.sigma = power.sqrt().max(1e-12);
+            whitener.sigma = power.sqrt().max(ROUNDING);
         }
         let plain = this.moments(&atoms, every);
         this.total = this.units(&plain, &atoms, every);
@@ -149,6 +151,7 @@ impl<'a> System<'a> {
             // as the channels could show, at every frequency.
             let noise = this.samples.whiteners[Row::Radial as usize].sigma;
             let least = if row == Row::Motion { noise } else { 0.0 };
+            let least = least.max(ROUNDING);
             // What all shapes leave of noise alone has a colour of their making.
             let noise_alone = if known.is_noise_beside(row) {
                 more

@@ -10,10 +10,11 @@ use crate::context::Context;
 use crate::finding::{Chip, Finding, Gain, Parameter};
 use crate::generic::{HOLDS, hat};
 use crate::lines;
-use crate::model::{Residual, System};
+use crate::model::{ROUNDING, Residual, System};
 use crate::statistics::{at_most_of_noise, by_chance};
 use crate::unexplained::{Unnamed, What, explains_only, like};
 use crate::variance::{ENOUGH, Fitted, Pairs, Products};
+use crate::whiten::Whitener;
 
 /// Global probability below which it is shown.
 const SHOWN: f64 = 1e-3;
@@ -122,8 +123,9 @@ pub(crate) fn findings(system: &System, residual: &Residual) -> (Vec<Finding>, V
         .iter()
         .map(|w| w.iter().map(|w| w * w).sum::<f64>() / total.max(1.0))
         .collect();
-    // Of a reference that the angle follows exactly nothing is left.
-    if power.contains(&0.0) {
+    // Of a reference that the angle follows exactly nothing is left, and of calculated numbers their rounding.
+    let nothing = |(p, w): (&f64, &Whitener)| p.sqrt() * w.sigma < ROUNDING;
+    if power.iter().zip(whiteners).any(nothing) {
         return (vec![], vec![]);
     }
     let rms: Vec<f64> = power.iter().map(|p| p.sqrt()).collect();

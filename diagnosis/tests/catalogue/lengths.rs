@@ -8,7 +8,7 @@ use nonius_recording::{Overrides, Recording};
 use rand::{Rng, SeedableRng, rngs::StdRng};
 use rand_distr::{Distribution, StandardNormal};
 
-use crate::harness::{PLAIN, diagnosed_of};
+use crate::harness::{PLAIN, diagnosed_of, names};
 
 #[test]
 fn every_length_is_diagnosed_or_refused() {
@@ -83,4 +83,54 @@ fn a_short_recording_of_a_plain_sensor_has_nothing() {
     }
     assert!(named.len() <= all / 200 + 1, "of {all}: {named:#?}");
     assert!(left.len() <= all / 100 + 1, "of {all}: {left:#?}");
+}
+
+/// One period of clipped signals, as a table of a sensor's averaged readings is: what goes with the angle has a spectrum, and none of
+/// its lines is one of time.
+#[test]
+fn within_a_period_nothing_is_a_line() {
+    for (beyond, skew) in [(0.52, 0.0), (0.6, 0.05), (0.75, 0.1)] {
+        let mut random = StdRng::seed_from_u64(4);
+        let [mut time, mut cos, mut sin] = [vec![], vec![], vec![]];
+        for k in 0..512 {
+            let alpha = TAU * f64::from(k) / 512.0;
+            let mut code = |u: f64| {
+                let own: f64 = StandardNormal.sample(&mut random);
+                let bent = u + skew * (2.0 * alpha).cos() + 0.02 * (9.0 * alpha).sin();
+                (600.0 * bent.clamp(-beyond, beyond) + 0.5 * own).round()
+            };
+            cos.push(code(alpha.cos()));
+            sin.push(code(alpha.sin()));
+            time.push(f64::from(k) / 512.0);
+        }
+        let recording = Recording::from_samples(time, cos, sin, &Overrides::default());
+        let found = diagnose(&recording.expect("a recording")).expect("an ellipse");
+        let lines = ["interference", "amplitude_ripple", "vibration"];
+        let named = names(&found);
+        assert!(!named.iter().any(|n| lines.contains(n)), "{named:?}");
+        let left = &found.unexplained.signature;
+        assert!(!left.contains("a fixed frequency"), "{left}");
+    }
+}
+
+/// What double precision leaves of a calculated circle is no error of a sensor.
+#[test]
+fn the_rounding_of_calculated_numbers_is_nothing() {
+    for swing in [0.0, 40.0] {
+        let angle = |k: u32| {
+            let t = f64::from(k) / 4000.0;
+            swing * (TAU * t).sin() + if swing > 0.0 { 8.0 * t } else { 200.0 * t }
+        };
+        let time = (0..20_000).map(|k| f64::from(k) * 2e-5).collect();
+        let cos = (0..20_000).map(|k| angle(k).cos()).collect();
+        let sin = (0..20_000).map(|k| angle(k).sin()).collect();
+        let recording = Recording::from_samples(time, cos, sin, &Overrides::default());
+        let found = diagnose(&recording.expect("a recording")).expect("an ellipse");
+        assert!(names(&found).is_empty(), "{:?}", names(&found));
+        assert!(
+            !found.unexplained.significant,
+            "{}",
+            found.unexplained.signature
+        );
+    }
 }

@@ -1,6 +1,8 @@
 //! Causes that grow with the speed or turn over with its sign.
 
-use crate::harness::{Case, NOISE, PLAIN, alone, diagnosed, finds, names, near, within_errors};
+use crate::harness::{
+    Case, LSB, NOISE, PLAIN, alone, diagnosed, finds, names, near, shows, within_errors,
+};
 use crate::motion::rumble;
 
 /// The offsets turn over with the direction, by so many per mille of the amplitude.
@@ -155,4 +157,25 @@ fn another_law_of_the_speed_has_no_name() {
     );
     assert!(names(&found).is_empty(), "{:?}", names(&found));
     assert!(found.unexplained.significant);
+}
+
+/// A capacitor before each channel, charged to the mean before the recording begins: a high pass of 4 Hz.
+#[test]
+fn a_capacitor_before_each_channel() {
+    const TAU: f64 = 0.04;
+    shows("ac_coupling", |rows| {
+        let mut slow = [0.0; 2];
+        for k in 0..rows.len() {
+            let step = if k == 0 {
+                0.0
+            } else {
+                rows[k][0] - rows[k - 1][0]
+            };
+            for (channel, slow) in slow.iter_mut().enumerate() {
+                let value = rows[k][1 + channel];
+                *slow += (value - *slow) * (1.0 - (-step / TAU).exp());
+                rows[k][1 + channel] = ((value - *slow) / LSB).round() * LSB;
+            }
+        }
+    });
 }
