@@ -2,6 +2,8 @@
 //!
 //! The long one, with its table: `cargo run --release -p nonius-blind --example campaign -- --help`.
 
+use std::path::Path;
+
 use nonius_blind::{Case, Kind, Outcome, Score, Summary, page, seal, verdict};
 use nonius_kept::every;
 use rayon::prelude::*;
@@ -32,14 +34,48 @@ fn short_campaign() {
     let alarms = seeds(&|s| s.truth.kind == Kind::Nothing && !s.wrong.is_empty());
     assert!(alarms.is_empty(), "false alarms: {alarms:?}");
     assert_eq!(all.motion_blamed().hits, 0, "motion called a sensor error");
-    // Those that are not: no worse than they are, with room for the few cases.
-    let (found, wrong) = (all.group(Kind::One), all.wrong());
-    assert!(found.of >= 12, "too few cases to say anything: {found}");
-    assert!(found.fraction() >= 0.6, "found {found}");
-    assert!(wrong.fraction() <= 0.2, "wrong {wrong}");
-    let imagined = all.imagined_motion();
-    assert!(imagined.fraction() <= 0.15, "imagined {imagined}");
-    assert!(all.coverage().fraction() >= 0.75, "{}", all.coverage());
+    assert!(all.coverage().fraction() >= 0.9, "{}", all.coverage());
+    verdicts_are_kept(&scores);
+}
+
+/// What is said of each case is what was said of it: on a machine with another sine, one that hangs on its last digits may differ.
+fn verdicts_are_kept(scores: &[Score]) {
+    const HOW: &str = "NONIUS_BLESS=1 cargo test -p nonius-blind short_campaign";
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/short_campaign.txt");
+    let said: String = scores.iter().map(said).collect();
+    if nonius_kept::blessed() {
+        nonius_kept::same(&file, &said, HOW);
+    }
+    let kept = std::fs::read_to_string(&file).unwrap_or_else(|why| panic!("{why}; {HOW}"));
+    assert_eq!(kept.lines().count(), said.lines().count(), "{HOW}");
+    let both = kept.lines().zip(said.lines());
+    let other: Vec<(&str, &str)> = both.filter(|(kept, said)| kept != said).collect();
+    assert!(other.len() <= 1, "kept, and said now: {other:#?}; {HOW}");
+}
+
+/// What was hidden in a case, and what was said of it, in a line.
+fn said(score: &Score) -> String {
+    let truth = &score.truth;
+    let hidden = truth
+        .hidden
+        .iter()
+        .map(|h| format!("{} ({:.1})", h.name, h.snr));
+    let hidden: Vec<String> = hidden.collect();
+    let left = if score.unexplained {
+        ", unexplained"
+    } else {
+        ""
+    };
+    format!(
+        "{} {:?} [{}]: {:?}, first {}, wrong {:?}, motion {:?}{left}\n",
+        truth.seed,
+        truth.kind,
+        hidden.join(", "),
+        score.outcomes,
+        score.first,
+        score.wrong,
+        score.motions,
+    )
 }
 
 /// Random cases in which a cause was named once that was not there: an axis that shakes went back to a code by itself, the
