@@ -2,10 +2,11 @@
 //!
 //! They are kept in docs/diagnosed-recordings.md and the folder of that name; NONIUS_BLESS=1 writes them anew.
 
+use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use nonius_diagnosis::{Diagnosis, diagnose, plots};
+use nonius_diagnosis::{Diagnosis, Finding, diagnose, plots};
 use nonius_recording::{Overrides, Recording};
 
 const PAGE: &str = "diagnosed-recordings";
@@ -125,8 +126,7 @@ fn measured_recordings_are_diagnosed() {
          Written by `{HOW}`; do not edit.\n\n\
          Where they come from stands in `../shared/data/README.md`; they are no part of the project. Of the RM44 one turn is\n\
          one scale period and one revolution: orders of the period and of the revolution are one and the same there, and time\n\
-         and angle as well. The sixteen encoders of `optical_servo_tables` have 512 averaged points of one period each: too\n\
-         few to tell what is left from noise, and not diagnosed.\n\n",
+         and angle as well.\n\n",
     );
     let mut files: Vec<(String, String)> = vec![];
     let mut of_rm44 = vec![];
@@ -149,6 +149,10 @@ fn measured_recordings_are_diagnosed() {
             of_rm44.push((name, found));
         }
     }
+    let Some(tables) = tables() else {
+        return;
+    };
+    page += &tables;
     let folder = docs().join(PAGE);
     if nonius_kept::blessed() {
         let _ = std::fs::remove_dir_all(&folder);
@@ -166,6 +170,68 @@ fn measured_recordings_are_diagnosed() {
     for (name, found) in &of_rm44 {
         known(name, found);
     }
+}
+
+/// A row for each of the sixteen encoders of the tables: names with their SNR, and the angle error.
+fn tables() -> Option<String> {
+    let path = nonius_kept::recording("diagnosed_recordings", "optical_servo_tables.csv")?;
+    let text = std::fs::read_to_string(&path).expect("a text");
+    let mut units: BTreeMap<usize, [Vec<f64>; 4]> = BTreeMap::new();
+    for row in text.lines().filter(|l| !l.starts_with('#')).skip(1) {
+        let values: Vec<f64> = row
+            .split(',')
+            .map(|v| v.parse().expect("a number"))
+            .collect();
+        let columns = units.entry(values[4] as usize).or_default();
+        columns
+            .iter_mut()
+            .zip(&values)
+            .for_each(|(c, v)| c.push(*v));
+    }
+    let mut page = String::from(
+        "## optical_servo_tables\n\n\
+         Sixteen home-made reflective encoders: an averaged period of 512 points each, far from an ellipse. The points are averages over\n\
+         the angle, so nothing in them goes with time, and none of the names may (a test looks). Angle error against the index, rms.\n\n\
+         | unit | five parameters | with what was found | found (SNR) |\n|---|---|---|---|\n",
+    );
+    for (unit, [time, cos, sin, reference]) in units {
+        let described = Overrides::default();
+        let recording = Recording::from_samples(time, cos, sin, &described).expect("a period");
+        let recording = Recording {
+            reference_rad: Some(reference),
+            ..recording
+        };
+        let found = diagnose(&recording).expect("an ellipse");
+        let name = |f: &Finding| {
+            let order = f
+                .parameter("order")
+                .map(|n| format!(" {n}"))
+                .unwrap_or_default();
+            let timeless = ["saturation", "adc_nonlinearity", "glitches", "stuck_bit"];
+            let angle = f.cause.ends_with("nonlinearity") || f.cause == "spatial_harmonic";
+            assert!(
+                angle || timeless.contains(&f.cause.as_str()),
+                "{unit}: {}",
+                f.cause
+            );
+            let snr = f.gain.detection_snr.map(|snr| format!(" ({snr:.0})"));
+            format!("`{}`{order}{}", f.cause, snr.unwrap_or_default())
+        };
+        let names: Vec<String> = found.findings.iter().map(name).collect();
+        let errors = [
+            found.simulation.position_error_rms_rad,
+            found.extended.position_error_rms_rad,
+        ];
+        let [before, after] = errors.map(|e| e.expect("a reference").to_degrees());
+        assert!(after <= before, "{unit}: {before} {after}");
+        let names = if names.is_empty() {
+            "nothing that has a name".into()
+        } else {
+            names.join(", ")
+        };
+        writeln!(page, "| {unit} | {before:.2}° | {after:.2}° | {names} |").expect("text");
+    }
+    Some(page + "\n")
 }
 
 /// The line that is known to be there is named, or said to be at a fixed frequency; and a gain that is worth the name.
