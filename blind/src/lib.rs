@@ -3,7 +3,8 @@
 //! A [`Case`] follows from its seed: an experiment (axis, sensor, converter), a cause hidden in it with a magnitude that
 //! gives it the detection SNR asked for, and the recording. The truth is sealed ([`seal`]): written to a file whose hash
 //! is known before the verdict. Nothing that simulates shares code or formulas with sensor model, calibration or
-//! diagnosis; the diagnosis is called in one place, `verdict`, and sees nothing but the file.
+//! diagnosis but the Fourier transform of a library (`nonius-fourier` hands it on); the diagnosis is called in one place,
+//! `verdict`, and sees nothing but the file.
 
 mod baseline;
 mod case;
