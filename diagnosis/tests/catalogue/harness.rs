@@ -247,17 +247,25 @@ pub(crate) fn finds_nothing(case: &Case, seed: u64) {
     assert!(!left.significant, "{seed}: {}", left.signature);
 }
 
-/// The first finding is the cause (or is confounded with it), and nothing else is named.
+/// The only finding is the cause.
 pub(crate) fn finds(name: &str, case: &Case) -> Diagnosis {
     let found = diagnosed(case, 7);
-    let names = names(&found);
-    let first = found.findings.first();
-    let group =
-        first.is_some_and(|f| f.cause == name || f.confounded_with.iter().any(|c| c == name));
-    assert!(group, "{name}: {names:?}, {}", found.unexplained.signature);
-    assert_eq!(names.len(), 1, "{name}: {names:?}");
-    assert!(first.is_some_and(|f| f.p_value < 1e-3 && !f.evidence.is_empty()));
+    is_only(&found, name);
     found
+}
+
+/// The only finding is a cause that the other may be as well.
+pub(crate) fn finds_beside(other: &str, name: &str, case: &Case) -> Diagnosis {
+    let found = finds(name, case);
+    assert_eq!(found.findings[0].confounded_with, [other]);
+    found
+}
+
+fn is_only(found: &Diagnosis, name: &str) {
+    let left = &found.unexplained.signature;
+    assert_eq!(names(found), [name], "{left}");
+    let first = &found.findings[0];
+    assert!(first.p_value < 1e-3 && !first.evidence.is_empty());
 }
 
 /// An effect a hundred times what can be seen, and more: what second order leaves of it is above the noise and must not be

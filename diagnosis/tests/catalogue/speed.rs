@@ -1,7 +1,8 @@
 //! Causes that grow with the speed or turn over with its sign.
 
 use crate::harness::{
-    Case, LSB, NOISE, PLAIN, alone, diagnosed, finds, names, near, shows, within_errors,
+    Case, LSB, NOISE, PLAIN, alone, diagnosed, finds, finds_beside, names, near, shows,
+    within_errors,
 };
 use crate::motion::rumble;
 
@@ -38,8 +39,10 @@ fn delays_and_bandwidths() {
         },
     );
     near(&found, "delay_s", 1e-6);
-    finds(
+    // Far below its corner a low pass is a delay.
+    finds_beside(
         "bandwidth_mismatch",
+        "channel_skew",
         &Case {
             seen: |a, v| (a, a - (2e-6 * v).atan()),
             channels: |c, s, _, _, v| (c, s / (1.0 + (2e-6 * v).powi(2)).sqrt()),
