@@ -292,8 +292,9 @@ fn the_completion_wakes_at_every_speed() {
     let left = |&(per_period, bandwidth, parameters, sign): &(f64, f64, u32, f64)| {
         let mut spec = spec(parameters, true, 126.0 / per_period * bandwidth);
         if Design::new(&spec).is_err() {
-            // So wide a loop jitters by more.
+            // So wide a loop jitters by more; the words stay as long.
             spec.accuracy.rms_periods = 1e-3;
+            spec.accuracy.arithmetic_share = 0.002;
         }
         let order_2 = |sensor: fn(f64) -> (f64, f64)| {
             let signals = shifted(sensor, (sign, -1.0));
@@ -312,7 +313,7 @@ fn the_completion_wakes_at_every_speed() {
         println!("{case:?}: {row:.4?} of order 2 is left");
     }
     assert!(worst(1) < 1.0 / 25.0, "{}", worst(1));
-    assert!(worst(0) < 0.02, "{}", worst(0));
+    assert!(worst(0) <= 0.01, "{}", worst(0));
     figure(
         "order 2 of the miscalibration, completed, at 8 to 500 samples a period, loops of half to twice the signal's frequency as far as the sample rate allows, both directions: what is left of 15 mrad by cubic terms and of 30 by third harmonics, mrad",
         &format!("{:.2}; {:.2}", 15.0 * worst(0), 30.0 * worst(1)),
