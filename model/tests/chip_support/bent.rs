@@ -54,16 +54,21 @@ pub(crate) fn parameters(s: &State<Bits>) -> [f64; 9] {
 /// σ √(γ/2) of θ1 … θ9, γ that of the parameter: the last one times the equaliser's power of two, and what is
 /// left of the phase's once γ has settled.
 pub(crate) fn noise(design: &Design) -> [f64; 9] {
+    noise_in(design, design.spec.calibration.gears())
+}
+
+/// The same in a gear of γ.
+pub(crate) fn noise_in(design: &Design, gear: u32) -> [f64; 9] {
     let (k, by) = (&design.spec.calibration, Equaliser::of(&design.structure));
     let (gain, offset, bend) = (by.gain, by.offset, by.bend);
-    let less = if k.phase_settles() {
+    let less = if k.phase_settles() && gear >= Calibration::SETTLED {
         Calibration::PHASE_HALVINGS
     } else {
         0
     };
     let phase = by.phase - less as i32;
     let powers = [gain, offset, gain, offset, phase, bend, bend, bend, 0];
-    let mut gamma = powers.map(|power| 2f64.powi(power - k.gamma_last as i32));
+    let mut gamma = powers.map(|power| 2f64.powi(power - (k.gamma_first + gear) as i32));
     gamma[8] = 2f64.powi(-(k.completion_gamma as i32));
     gamma.map(|gamma| design.spec.sensor.noise_rms * (gamma / 2.0).sqrt())
 }
