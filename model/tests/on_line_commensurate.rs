@@ -58,76 +58,109 @@ fn larger(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [0, 1, 2].map(|i| a[i].max(b[i]))
 }
 
+/// What every search leaves at exactly so many samples a period, the worst of these signs and places: by the exact gradient; by others with four
+/// and five parameters; with eight and nine by the final form; and by squares.
+fn by_every_search(per_period: u32, cases: &[(u32, f64)]) -> [[f64; 3]; 4] {
+    let rows: Vec<(Variant, [f64; 3])> = searches_of(&for_long())
+        .into_par_iter()
+        .map(|variant| {
+            let spec = &variant.spec;
+            let each = cases.iter().map(|&(signs, place)| {
+                left(spec, f64::from(per_period), &sensor_for(spec, signs), place)
+            });
+            let left = each.fold([0.0; 3], larger);
+            (variant, left)
+        })
+        .collect();
+    let mut groups = [[0.0f64; 3]; 4];
+    for (variant, left) in &rows {
+        let k = &variant.spec.calibration;
+        println!(
+            "{per_period} samples a period, {}, {} parameters: {left:.2?} mrad rms",
+            variant.what, k.parameters
+        );
+        let exact = k.method == CalibrationMethod::Exact;
+        let group = match (exact, k.has_bend(), k.squares()) {
+            (true, ..) => 0,
+            (_, false, _) => 1,
+            (_, true, false) => 2,
+            (_, true, true) => 3,
+        };
+        groups[group] = larger(groups[group], *left);
+    }
+    println!("{per_period} samples a period: {groups:.2?}");
+    groups
+}
+
+fn all_below(limit: f64, of: &[[f64; 3]]) {
+    assert!(of.iter().flatten().all(|left| *left < limit), "{of:?}");
+}
+
+fn keep(speed: &str, groups: [[f64; 3]; 4]) {
+    let row = |group: [f64; 3]| group.map(|mrad| format!("{mrad:.2}")).join(", ");
+    figure_of_short(
+        &format!(
+            "{speed}: miscalibration left from new, a little beside that speed, and at it again, mrad rms; exact gradient; final form, sum of squares and batch with four and five parameters; final form with eight and nine; sum of squares and batch with eight and nine"
+        ),
+        &groups.map(row).join("; "),
+        TEST,
+    );
+}
+
 /// At exactly 8 and 64 samples a period every search of every set finds its parameters from new, and keeps them, but for bends where cos 4α is 0
-/// at all eight places (`on_line_speeds.rs`); at 5, 6 and 7 those of the ellipse, which is all that these sensors have. At exactly four the
+/// at all eight places (below); at 5, 6 and 7 those of the ellipse, which is all that these sensors have. At exactly four the
 /// exact gradient does; the others, which learn from the radius, see too little of it there from new, and where bends rest what these do stays:
 /// none is further off than it was, and all keep what a slower speed has shown them. Every fifth of the signs, each at another place of the
 /// period; in the long form all of both.
 #[test]
 fn every_search_at_commensurate_speeds() {
+    let places = [0.013, 0.1, 0.125, 0.0];
+    let all = (0..16).flat_map(|signs| {
+        // Each of the signs at another place first.
+        let from = signs as usize;
+        (0..4).map(move |i| (signs, places[(from + i) % 4]))
+    });
+    let cases: Vec<(u32, f64)> = every(20, all).collect();
     for per_period in [4, 5, 6, 7, 8, 64] {
-        let worst = |spec: &Spec| {
-            let places = [0.013, 0.1, 0.125, 0.0];
-            let all = (0..16).flat_map(|signs| {
-                // Each of the signs at another place first.
-                let from = signs as usize;
-                (0..4).map(move |i| (signs, places[(from + i) % 4]))
-            });
-            every(20, all)
-                .map(|(signs, place)| {
-                    left(spec, f64::from(per_period), &sensor_for(spec, signs), place)
-                })
-                .fold([0.0; 3], larger)
-        };
-        let rows: Vec<(Variant, [f64; 3])> = searches_of(&for_long())
-            .into_par_iter()
-            .map(|variant| {
-                let left = worst(&variant.spec);
-                (variant, left)
-            })
-            .collect();
-        let mut groups = [[0.0f64; 3]; 4];
-        for (variant, left) in &rows {
-            let k = &variant.spec.calibration;
-            println!(
-                "{per_period} samples a period, {}, {} parameters: {left:.2?} mrad rms",
-                variant.what, k.parameters
-            );
-            let exact = k.method == CalibrationMethod::Exact;
-            let group = match (exact, k.has_bend(), k.squares()) {
-                (true, ..) => 0,
-                (_, false, _) => 1,
-                (_, true, false) => 2,
-                (_, true, true) => 3,
-            };
-            groups[group] = larger(groups[group], *left);
-        }
-        println!("{per_period} samples a period: {groups:.2?}");
-        let all = |limit: f64, of: &[[f64; 3]]| {
-            assert!(of.iter().flatten().all(|left| *left < limit), "{of:?}");
-        };
+        let groups = by_every_search(per_period, &cases);
         if per_period == 4 {
-            all(0.3, &groups[..1]);
+            all_below(0.3, &groups[..1]);
             let later = groups.map(|[_, beside, again]| [0.0, beside, again]);
-            all(0.6, &later);
+            all_below(0.6, &later);
         } else {
-            all(0.3, &groups);
+            all_below(0.3, &groups);
         }
-        let row = |group: [f64; 3]| group.map(|mrad| format!("{mrad:.2}")).join(", ");
-        figure_of_short(
-            &format!(
-                "exactly {per_period} samples a period, every fifth of the signs: miscalibration left from new, a little beside that speed, and at it again, mrad rms; exact gradient; final form, sum of squares and batch with four and five parameters; final form with eight and nine; sum of squares and batch with eight and nine"
-            ),
-            &groups.map(row).join("; "),
-            TEST,
+        keep(
+            &format!("exactly {per_period} samples a period, every fifth of the signs"),
+            groups,
         );
     }
+}
+
+/// Where eight samples a period begin a sixteenth of a period from the cosine's top, cos 4α is 0 at all of them: the bend that shows there only
+/// stays where it came to from new, until the speed is a little beside; what that has found is kept at that speed, but for what sums of squares
+/// forget. The ellipse is found there too. Every fifth of the signs; in the long form all.
+#[test]
+fn every_search_where_no_place_shows_cos_4_alpha() {
+    let cases: Vec<(u32, f64)> = every(5, (0..16).map(|signs| (signs, 1.0 / 16.0))).collect();
+    let groups = by_every_search(8, &cases);
+    all_below(0.3, &groups[..2]);
+    let [_, _, [by_final, ..], [by_squares, ..]] = groups;
+    assert!(by_final < 8.0 && by_squares < 60.0, "{groups:?}");
+    for (group, limit) in groups.iter().zip([0.3, 0.3, 0.3, 1.5]) {
+        let [_, beside, again] = *group;
+        assert!(beside < 0.3 && again < limit, "{groups:?}");
+    }
+    keep(
+        "exactly 8 samples a period, the first a sixteenth of a period from the cosine's top, every fifth of the signs",
+        groups,
+    );
 }
 
 /// Bends that the radius shows, 2 % of second and of third order, at so few samples that it cannot tell them: they rest, nothing is further off
 /// than it was, and the first slower speed shows them.
 #[test]
-fn bends_rest_where_a_period_has_seven_samples_or_fewer() {
+fn bends_rest_speeda_period_has_seven_samples_or_fewer() {
     let bent = |signs: u32, beta: f64| {
         let sensor = sensor_of(signs, beta);
         move |alpha: f64| {
