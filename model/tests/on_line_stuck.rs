@@ -199,12 +199,15 @@ fn a_loss_soon_after_lock() {
     };
     let final_form = |spec: &Spec| spec.calibration.is_linear_final();
     figure(
-        "either channel or both gone for 1, 20 or 3000 samples within 16 periods from power-up, what is worse within four periods than it is without, % of the first miscalibration: final form of four and five parameters; every search; and what is worse than before the loss from the first calm gear on",
+        "either channel or both gone for 1, 20 or 3000 samples within 16 periods from power-up, what is worse within four periods than it is without, % of the first miscalibration: final form of four and five parameters; every search; and what is worse than before the loss, of both: from the first calm gear on; earlier",
         &format!(
-            "{:.1}; {:.0}; {:.1}",
+            "{:.1}; {:.0}; {:.1}, {:.1}; {:.1}, {:.0}",
             worst(2, &final_form),
             worst(2, &|_| true),
-            worst(1, &|_| true)
+            worst(1, &final_form),
+            worst(1, &|_| true),
+            worst(0, &final_form),
+            worst(0, &|_| true)
         ),
         "model/tests/on_line_stuck.rs",
     );
