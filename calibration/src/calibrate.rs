@@ -73,7 +73,7 @@ pub fn calibrate(
     let gap = samples::gap(&fit.ellipse, c, s);
     let mut residual_rms = residual(method, &estimate.theta, c, s);
     let own_residual = residual(Method::Unbiased, &fit.ellipse.theta(), c, s);
-    if method.set().cubic() && collapsed(method, &estimate.theta, &fit, c, s) {
+    if method.searches() && collapsed(method, &estimate.theta, &fit, c, s) {
         let noise = white(&fit);
         estimate = Estimate::of(fit.ellipse, None);
         estimate.cannot_tell = vec![words::of_collapse(method, residual_rms, noise)];
@@ -81,7 +81,12 @@ pub fn calibrate(
         residual_rms = own_residual;
     }
 
+    // Error bars and noise would be those of the numbers' last digits.
+    let rounding = residual_rms.min(own_residual) < words::ROUNDING;
     let mut cannot_tell = estimate.cannot_tell;
+    if rounding {
+        cannot_tell.push(words::of_no_noise(residual_rms));
+    }
     if !estimate.theta.is_empty() {
         cannot_tell.extend(words::of_method(method));
     }
@@ -104,13 +109,13 @@ pub fn calibrate(
             *untold |= unseen[i / 2];
         }
     }
-    if estimate.adrift {
+    if estimate.adrift || rounding {
         untold = [true; 5];
     }
     // The geometric fit says itself how little it knows.
     let told = Told::of(
         method,
-        if method == Method::Unbiased {
+        if method == Method::Unbiased && !rounding {
             [false; 5]
         } else {
             untold
@@ -161,7 +166,9 @@ pub fn calibrate(
         .covariance
         .as_ref()
         .zip(estimate.theta_covariance.as_ref());
+    let bound = bound.filter(|_| !rounding);
     let bounds = match method.set() {
+        _ if rounding => None,
         Set::Five => bound
             .as_ref()
             .map(|b| (dynamic(&b.covariance), dynamic(&b.theta))),
@@ -190,15 +197,16 @@ pub fn calibrate(
             .map(|c| correlations(c, &told.theta)),
         ellipse: estimate.ellipse,
         theta: estimate.theta,
-        noise: Some(fit.noise),
-        noise_ratio_error: (options.noise_ratio.is_none()
+        noise: (!rounding).then_some(fit.noise),
+        noise_ratio_error: (!rounding
+            && options.noise_ratio.is_none()
             && !fit.ratio_assumed
             && !fit.ratio_extreme)
             .then(|| fit.log_ratio_error * fit.noise[1] / fit.noise[0])
             .filter(|e| e.is_finite()),
-        noise_ratio_extreme: fit.ratio_extreme,
-        shape: fit.shape.clone(),
-        scatter: fit.scatter,
+        noise_ratio_extreme: fit.ratio_extreme && !rounding,
+        shape: fit.shape.clone().filter(|_| own_residual > words::ROUNDING),
+        scatter: fit.scatter.filter(|_| !rounding),
         arc: 1.0 - gap,
         bound,
         cannot_tell,

@@ -61,6 +61,15 @@ impl Method {
         }
     }
 
+    /// Whether it is a search, which may end where nothing is calibrated.
+    #[must_use]
+    pub fn searches(self) -> bool {
+        matches!(
+            self,
+            Self::Sumsq4 | Self::Sumsq5 | Self::Poly8 | Self::Poly9
+        )
+    }
+
     /// Whether it finds the phase error β; the others take 0.
     #[must_use]
     pub fn finds_phase(self) -> bool {

@@ -1,7 +1,10 @@
 //! Why samples draw no ellipse, in plain words.
 
+use std::collections::HashMap;
+
 use crate::method::Error;
 use crate::places::seen_from_the_mean;
+use crate::samples::Samples;
 
 /// The samples as vectors from their mean.
 pub(crate) fn centred(cos: &[f64], sin: &[f64]) -> Vec<nalgebra::Vector2<f64>> {
@@ -18,6 +21,26 @@ fn slimness(centred: &[nalgebra::Vector2<f64>]) -> f64 {
     (values.min().max(0.0) / values.max().max(f64::MIN_POSITIVE)).sqrt()
 }
 
+/// The pair that many samples are to the last digit, and how many, where the others draw an ellipse.
+fn stuck(cos: &[f64], sin: &[f64]) -> Option<([f64; 2], usize)> {
+    /// Share of the samples.
+    const MANY: f64 = 0.05;
+    let mut counts: HashMap<[u64; 2], usize> = HashMap::new();
+    let pairs = || cos.iter().zip(sin).map(|(c, s)| [*c, *s]);
+    // 0 and -0 are one.
+    let bits = |pair: [f64; 2]| pair.map(|y| (y + 0.0).to_bits());
+    for pair in pairs() {
+        *counts.entry(bits(pair)).or_default() += 1;
+    }
+    let (most, count) = counts.into_iter().max_by_key(|(_, count)| *count)?;
+    let others = pairs().filter(|pair| bits(*pair) != most);
+    let (cos, sin): (Vec<f64>, Vec<f64>) = others.map(|[c, s]| (c, s)).unzip();
+    let many = count as f64 > MANY * (count + cos.len()) as f64;
+    let drawn =
+        many && cos.len() >= nonius_recording::MIN_SAMPLES && Samples::of(&cos, &sin).is_some();
+    drawn.then(|| (most.map(f64::from_bits), count))
+}
+
 /// Where the samples draw no ellipse at all.
 pub(crate) fn of_nothing(cos: &[f64], sin: &[f64], why: &Error) -> String {
     /// Slimmer than this is a line, rounder a cloud.
@@ -25,25 +48,37 @@ pub(crate) fn of_nothing(cos: &[f64], sin: &[f64], why: &Error) -> String {
     const MOVE: &str = "move the scale by a whole period or more while recording";
     let centred = centred(cos, sin);
     let (slimness, places) = (slimness(&centred), seen_from_the_mean(&centred));
-    let (seen, advice) = match why {
-        Error::NoEllipse if slimness < LINE => (
+    let stuck = match why {
+        Error::NoEllipse => stuck(cos, sin),
+        _ => None,
+    };
+    let (seen, advice) = match (why, stuck) {
+        (_, Some(([c, s], count))) => (
+            format!(
+                "the samples draw no ellipse, but they do without the {count} of {} that are {c}, {s} to the last digit: nothing was \
+                 connected then, the ADC did not run, or a gap was filled",
+                cos.len()
+            ),
+            "leave those out",
+        ),
+        (Error::NoEllipse, _) if slimness < LINE => (
             "the samples lie on a line within their noise: the arc is too short, or both channels carry one signal"
                 .into(),
             MOVE,
         ),
-        Error::NoEllipse if places > 2 => (
+        (Error::NoEllipse, _) if places > 2 => (
             format!(
                 "the samples stand at {places} places of the period only, which is too few: the speed was such that {places} samples \
                  make whole periods, or the axis stood there"
             ),
             "record at another speed",
         ),
-        Error::NoEllipse => (
+        (Error::NoEllipse, _) => (
             "the samples are a cloud and no ring: the scale stands still, or the signals are no sin/cos pair".into(),
             MOVE,
         ),
-        Error::Standstill(why) => (format!("the scale stands still: {why}"), MOVE),
-        other => (other.to_string(), MOVE),
+        (Error::Standstill(why), _) => (format!("the scale stands still: {why}"), MOVE),
+        (other, _) => (other.to_string(), MOVE),
     };
     format!(
         "a_c, b_c, a_s, b_s, beta, theta: {seen}; {advice}; the values are half the sums and differences of the extremes"

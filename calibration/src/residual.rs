@@ -22,8 +22,8 @@ pub(crate) fn white(fit: &Fit) -> f64 {
 }
 
 /// Whether Θ draws the samples together: J is smallest where all of them are one point of the circle, and a cubic reaches
-/// it on an arc. The residual is then far below the noise, and the corrected pairs are far closer to each other than the
-/// ellipse has them.
+/// it on an arc, gains and offsets on a short one. The residual is then far below the noise, and the corrected pairs are far closer to each
+/// other than the ellipse has them.
 pub(crate) fn collapsed(
     method: Method,
     theta: &[f64],

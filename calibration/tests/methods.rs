@@ -303,12 +303,17 @@ fn a_ratio_beyond_the_tested_range_is_said() {
     }
 }
 
-/// A cubic that maps an arc to one point leaves no residual, and is no calibration.
+/// A search that maps an arc to one point leaves no residual, and is no calibration: a cubic on any arc, gains and offsets on a short one.
 #[test]
-fn a_cubic_that_collapsed_on_an_arc_gives_no_values() {
-    for arc in [0.1, 0.25] {
+fn a_search_that_collapsed_on_an_arc_gives_no_values() {
+    let cubics = [Method::Poly8, Method::Poly9];
+    for (arc, methods) in [
+        (0.06, &[Method::Sumsq4][..]),
+        (0.1, &cubics[..]),
+        (0.25, &cubics[..]),
+    ] {
         let (cos, sin) = noisy(|k| 0.7 + std::f64::consts::TAU * arc * k / 4000.0);
-        for method in [Method::Poly8, Method::Poly9] {
+        for &method in methods {
             let found = calibrate(&cos, &sin, method, &Options::default()).expect("an answer");
             assert!(found.theta.is_empty() && found.parameters.len() == 5);
             assert!(found.parameters.iter().all(|p| p.std_error.is_none()));
@@ -320,4 +325,48 @@ fn a_cubic_that_collapsed_on_an_arc_gives_no_values() {
             );
         }
     }
+}
+
+/// Without noise the residual is the rounding of the numbers: nothing that is made of it is given, by any method, and no ratio estimated.
+#[test]
+fn the_rounding_of_the_numbers_is_no_noise() {
+    for method in ALL {
+        let (cos, sin) = signals(&crooked(0.0), 3.0, 3000);
+        let found = calibrate(&cos, &sin, method, &Options::default()).expect("a calibration");
+        assert!(
+            found
+                .parameters
+                .iter()
+                .all(|p| p.std_error.is_none() && p.bound.is_none())
+        );
+        assert_eq!((found.noise, found.noise_ratio_error), (None, None));
+        assert!(found.bound.is_none() && found.shape.is_none() && found.scatter.is_none());
+        let said = found.cannot_tell.join(" ");
+        assert!(
+            said.contains("the rounding of the numbers and no noise"),
+            "{method:?}: {said}"
+        );
+        assert!(
+            !nonius_calibration::report(&found, None).contains("ratio  "),
+            "{method:?}"
+        );
+    }
+}
+
+/// A row of one pair, as where the ADC did not run, beside a sound ellipse.
+#[test]
+fn a_row_of_one_pair_is_named() {
+    let (mut cos, mut sin) = noisy(|k| 0.7 + 40.3 * std::f64::consts::TAU * k / 4000.0);
+    for k in 0..cos.len() / 2 {
+        (cos[k], sin[k]) = (0.0, -0.0);
+    }
+    let why = calibrate(&cos, &sin, Method::Unbiased, &Options::default()).expect_err("no ellipse");
+    let said = undetermined(Method::Unbiased, &cos, &sin, &why)
+        .cannot_tell
+        .join(" ");
+    let named = "without the 2000 of 4000 that are 0, 0 to the last digit";
+    assert!(
+        said.contains(named) && !said.contains("stands still"),
+        "{said}"
+    );
 }
