@@ -6,7 +6,7 @@ use std::time::Duration;
 use anyhow::{Result, bail};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
-use nonius_model::spec::Multipliers;
+use nonius_model::spec::{Calibration, Multipliers, Spec};
 use nonius_package::{DesignJson, Event, PackageError, PullIn, ROWS, package_followed, write};
 use nonius_quantity::{counted, engineering, periods_per_second};
 use nonius_testvectors::stimulus;
@@ -179,6 +179,9 @@ fn summary(j: &DesignJson, output: &Path, shown: &str) {
             j.budget.arithmetic_allowed
         );
     }
+    for why in unseen(&j.spec) {
+        say!("  note        {why}");
+    }
     let uncorrected = uncorrected(j);
     if let Some(why) = &uncorrected {
         say!("  note        {why}");
@@ -202,6 +205,35 @@ fn summary(j: &DesignJson, output: &Path, shown: &str) {
     let waves = output.join("waves");
     let [vcd, gtkw] = ["vcd", "gtkw"].map(|kind| waves.join(format!("{shown}.{kind}")));
     say!("      gtkwave {} {}", vcd.display(), gtkw.display());
+}
+
+/// What the calibration cannot see at speeds that the design promises.
+fn unseen(spec: &Spec) -> Vec<String> {
+    let (k, mut notes) = (&spec.calibration, vec![]);
+    if !k.is_on() {
+        return notes;
+    }
+    let per_period = spec.adc.sample_rate_hz / spec.sensor.speed_max_periods_per_s;
+    // Fewer are refused; a thousandth beside is enough.
+    if per_period < 4.001 && !k.is_exact() {
+        notes.push(
+            "at exactly four samples a period, which is top speed, the radius does not show all parameters: a new sensor \
+             keeps a part of its error until the speed is a little beside"
+                .into(),
+        );
+    }
+    if k.has_bend() && per_period <= 8.0 {
+        let rest = if per_period < 1.0 / Calibration::BEND_RATE {
+            "; with fewer than 7.5 the bends rest, and an axis that is never slower does not learn them"
+        } else {
+            ""
+        };
+        notes.push(format!(
+            "at exactly eight samples a period, which is within the promised speed, bends cannot be told where cos 4 alpha \
+             is 0 at all eight, and some mrad stay until the speed is a little beside{rest}"
+        ));
+    }
+    notes
 }
 
 /// Why the accuracy is missed, where that is for errors of the sensor that stay.

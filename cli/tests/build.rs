@@ -76,6 +76,51 @@ fn a_promise_that_would_not_lock_is_told() {
     assert!(dir.path().join("out/design.json").is_file());
 }
 
+/// What the calibration does not see at top speed is noted, and nothing of it elsewhere.
+#[test]
+fn what_no_calibration_sees_at_top_speed_is_told() {
+    let dir = tempfile::tempdir().expect("scratch");
+    let text = fs::read_to_string(design()).expect("designs/optical.toml");
+    let (four, eight, rest) = (
+        "at exactly four samples a period",
+        "cos 4 alpha is 0 at all",
+        "the bends rest",
+    );
+    for (speed, calibration, told) in [
+        ("100e3 ", "parameters = 5", &[][..]),
+        ("100e3 ", "parameters = 9", &[]),
+        ("200e3 ", "parameters = 5", &[]),
+        ("250e3 ", "parameters = 5", &[four]),
+        ("250e3 ", "parameters = 0", &[]),
+        ("250e3 ", "parameters = 5\nmethod = \"exact\"", &[]),
+        ("125e3 ", "parameters = 9", &[eight]),
+        ("200e3 ", "parameters = 8", &[eight, rest]),
+        ("250e3 ", "parameters = 9", &[four, eight, rest]),
+    ] {
+        let text = text
+            .replacen("100e3 ", speed, 1)
+            .replacen("parameters = 5", calibration, 1);
+        fs::write(dir.path().join("d.toml"), text).expect("design");
+        let output = nonius(
+            dir.path(),
+            &["build", "d.toml", "-o", "out", "--rows", "10"],
+        );
+        let said = String::from_utf8_lossy(&output.stdout);
+        let errors = String::from_utf8_lossy(&output.stderr);
+        assert!(
+            said.contains("written"),
+            "{speed} {calibration}: {said} {errors}"
+        );
+        for words in [four, eight, rest] {
+            assert_eq!(
+                said.contains(words),
+                told.contains(&words),
+                "{speed} {calibration}, {words}: {said}"
+            );
+        }
+    }
+}
+
 #[test]
 fn build_refuses_before_anything_is_written() {
     let dir = tempfile::tempdir().expect("scratch");
