@@ -1,25 +1,32 @@
-//! The kept tables of docs/convergence are what the study says today.
+//! The kept tables, page and plots of docs/convergence are what the study says today.
 
 #[path = "../examples/study_convergence/costs.rs"]
 mod costs;
 #[path = "../examples/study_convergence/figure_7.rs"]
-#[allow(dead_code, reason = "the plot needs more of it")]
 mod figure_7;
+#[path = "../examples/study_convergence/figure_7_plot.rs"]
+mod figure_7_plot;
 #[path = "../examples/study_convergence/limit.rs"]
 mod limit;
 #[path = "../examples/study_convergence/method.rs"]
-#[allow(dead_code, reason = "the plots need more of it")]
 mod method;
 #[path = "../examples/study_convergence/on_chip.rs"]
 mod on_chip;
+#[path = "../examples/study_convergence/page.rs"]
+mod page;
+#[path = "../examples/study_convergence/plot.rs"]
+mod plot;
 #[path = "../examples/study_convergence/scenario.rs"]
-#[allow(dead_code, reason = "the plots need more of it")]
 mod scenario;
+#[path = "../examples/study_convergence/singular.rs"]
+mod singular;
 mod support;
 #[path = "../examples/study_convergence/table.rs"]
 mod table;
 #[path = "../examples/study_convergence/truth.rs"]
 mod truth;
+
+use std::path::Path;
 
 use support::shipped;
 
@@ -101,6 +108,25 @@ fn the_kept_table_is_fresh() {
     );
 }
 
+/// The page is made of the kept table, to the last character.
+#[test]
+fn the_kept_page_is_that_of_the_kept_table() {
+    let page = page::page(&kept("convergence/methods.csv"));
+    assert!(page == kept("convergence/methods.md"), "{COMMAND}");
+}
+
+/// A kept plot is drawn like this, within the pixel that another machine may round to.
+fn drawn(name: &str, svg: &str) {
+    let file = format!("{}/../docs/convergence/{name}", env!("CARGO_MANIFEST_DIR"));
+    nonius_kept::near(Path::new(&file), svg, |_| 1.0, COMMAND);
+}
+
+#[test]
+fn the_kept_plots_of_the_null_direction_are_fresh() {
+    drawn("null_direction.svg", &singular::effect().expect("a plot"));
+    drawn("third_harmonics.svg", &singular::order_2().expect("a plot"));
+}
+
 #[test]
 fn the_kept_figure_7_is_fresh() {
     let course = figure_7::figure_7(&support::optical()).expect("a shipped design");
@@ -111,6 +137,10 @@ fn the_kept_figure_7_is_fresh() {
             share: 0.0,
             more: 2e-6,
         },
+    );
+    drawn(
+        "figure_7.svg",
+        &figure_7_plot::plot(&course).expect("a plot"),
     );
     // And both are where Heydemann's least squares are: within what noise leaves of the last γ, and of a single one.
     let (_, [paper, chip, heydemann]) = course[course.len() - 1];

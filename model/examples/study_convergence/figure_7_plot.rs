@@ -1,7 +1,5 @@
 //! Figure 7 drawn.
 
-use std::path::Path;
-
 use plotters::chart::SeriesLabelPosition;
 use plotters::style::RGBColor;
 
@@ -9,10 +7,9 @@ use crate::figure_7::{Row, SOURCES};
 use crate::plot::{self, COLOURS, Line};
 
 /// The course of the parameters against periods travelled.
-pub(crate) fn plot(rows: &[Row], path: &Path) -> Result<(), Box<dyn std::error::Error>> {
+pub(crate) fn plot(rows: &[Row]) -> Result<String, Box<dyn std::error::Error>> {
     let drawn: Vec<Line> = (0..5 * SOURCES.len()).map(|n| line(n, rows)).collect();
     plot::lines(
-        path,
         "Five parameters: paper (thick), bit-true chip (thin, light), Heydemann (dashed)",
         ["periods travelled", "theta"],
         (0.0..80.0, -0.2..1.3),

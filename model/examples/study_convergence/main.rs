@@ -45,9 +45,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     std::fs::create_dir_all(folder)?;
     let course = figure_7::figure_7(&spec)?;
     write(folder, "figure_7.csv", &figure_7::csv(&course))?;
-    figure_7_plot::plot(&course, &folder.join("figure_7.svg"))?;
-    singular::effect(&folder.join("null_direction.svg"))?;
-    singular::order_2(&folder.join("third_harmonics.svg"))?;
+    write(folder, "figure_7.svg", &figure_7_plot::plot(&course)?)?;
+    write(folder, "null_direction.svg", &singular::effect()?)?;
+    write(folder, "third_harmonics.svg", &singular::order_2()?)?;
     let csv = table::methods(&Design::new(&spec)?, &Scenario::ALL, &costs);
     write(folder, "methods.csv", &csv)?;
     write(folder, "methods.md", &page::page(&csv))?;

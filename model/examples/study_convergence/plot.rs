@@ -1,7 +1,6 @@
 //! The plots.
 
 use std::ops::Range;
-use std::path::Path;
 
 use plotters::prelude::*;
 
@@ -26,13 +25,12 @@ pub(crate) const COLOURS: [RGBColor; 5] = [
 
 /// Lines over one axis, as SVG.
 pub(crate) fn lines(
-    path: &Path,
     title: &str,
     axes: [&str; 2],
     (x, y): (Range<f64>, Range<f64>),
     legend: SeriesLabelPosition,
     lines: &[Line],
-) -> Result<(), Box<dyn std::error::Error>> {
+) -> Result<String, Box<dyn std::error::Error>> {
     let mut svg = String::new();
     {
         let area = SVGBackend::with_string(&mut svg, (800, 420)).into_drawing_area();
@@ -71,8 +69,5 @@ pub(crate) fn lines(
             .draw()?;
         area.present()?;
     }
-    let unfinished = path.with_extension("unfinished");
-    std::fs::write(&unfinished, svg)?;
-    std::fs::rename(unfinished, path)?;
-    Ok(())
+    Ok(svg)
 }

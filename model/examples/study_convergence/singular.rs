@@ -2,7 +2,6 @@
 //! with and without the completion.
 
 use std::f64::consts::TAU;
-use std::path::Path;
 
 use nonius_model::reference::gate::Gate;
 use nonius_model::reference::gradient::{Form, Observation};
@@ -15,7 +14,7 @@ use crate::plot::{COLOURS, Line, lines};
 use crate::scenario::SPEED;
 
 /// Radial and tangential effect of v, per unit, against α; with β = 0 and 5°.
-pub(crate) fn effect(path: &Path) -> Result<(), Box<dyn std::error::Error>> {
+pub(crate) fn effect() -> Result<String, Box<dyn std::error::Error>> {
     let set = Parameters::ChebyshevNine;
     let mut drawn = Vec::new();
     for (beta, dashed) in [(0.0f64, false), (5.0, true)] {
@@ -50,7 +49,6 @@ pub(crate) fn effect(path: &Path) -> Result<(), Box<dyn std::error::Error>> {
         }
     }
     lines(
-        path,
         "What one unit of v does to the corrected pair",
         ["alpha, degrees", "change, radians or radii"],
         (0.0..360.0, -0.6..1.1),
@@ -60,7 +58,7 @@ pub(crate) fn effect(path: &Path) -> Result<(), Box<dyn std::error::Error>> {
 }
 
 /// Order 2 of the angle error while calibrating on signals with 3 % of third harmonics.
-pub(crate) fn order_2(path: &Path) -> Result<(), Box<dyn std::error::Error>> {
+pub(crate) fn order_2() -> Result<String, Box<dyn std::error::Error>> {
     let signals = |a: f64| {
         [
             a.cos() + 0.03 * (3.0 * a).cos(),
@@ -113,7 +111,6 @@ pub(crate) fn order_2(path: &Path) -> Result<(), Box<dyn std::error::Error>> {
         });
     }
     lines(
-        path,
         "Third harmonics of 3 %: order 2 of the angle error",
         ["periods travelled", "mrad"],
         (0.0..200.0, 0.0..80.0),
