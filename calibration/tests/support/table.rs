@@ -26,17 +26,21 @@ const OTHERS: [Sensor; 3] = [
     [1.0, -0.1, 0.5, 0.05, 0.1],
 ];
 
+/// As the others' sensor, but for the phase error, which methods without phase take to be 0.
+const IN_PHASE: Sensor = [1.0, 0.1, 0.83, -0.08, 0.0];
+
 /// Noise of 1.7 : 1 between the channels, either way.
 const UNEQUAL: f64 = 0.05 / 1.7;
 
 /// All cases, with the share of the seeds that each gets: what is promised gets all of them.
 pub(crate) fn cases() -> Vec<(Case, f64)> {
     let mut out = vec![];
-    let mut add = |method, noise, periods, share| {
+    let mut add = |method: Method, noise, periods, share| {
+        let without_phase = matches!(method, Method::Sumsq4 | Method::Poly8);
         out.push((
             Case {
                 method,
-                sensor: SENSOR,
+                sensor: if without_phase { IN_PHASE } else { SENSOR },
                 noise,
                 periods,
             },
@@ -55,6 +59,8 @@ pub(crate) fn cases() -> Vec<(Case, f64)> {
         Method::Heydemann,
         Method::Sumsq5,
         Method::Poly9,
+        Method::Sumsq4,
+        Method::Poly8,
         Method::Extremes,
     ] {
         for noise in [[0.001; 2], [0.01; 2], [0.05; 2], [UNEQUAL, 0.05]] {
