@@ -120,7 +120,12 @@ pub(crate) fn with_every_word() -> Vec<Variant> {
 
 /// The searches that only a design without completion has, which is rarely wanted.
 pub(crate) fn radius_alone() -> Vec<Variant> {
-    let searches = searches().into_iter();
+    radius_alone_of(&optical())
+}
+
+/// The same of another design.
+pub(crate) fn radius_alone_of(base: &Spec) -> Vec<Variant> {
+    let searches = searches_of(base).into_iter();
     let completed = searches.filter(|v| v.spec.calibration.completion && v.what != "completed");
     completed
         .map(|Variant { what, mut spec }| {
@@ -327,7 +332,14 @@ pub(crate) fn gears() -> Vec<Variant> {
 
 /// What the page of costs has, in its order.
 pub(crate) fn costed() -> Vec<Variant> {
-    [vec![fixed()], searches(), forgetful(), lagging()].concat()
+    [
+        vec![fixed()],
+        searches(),
+        radius_alone(),
+        forgetful(),
+        lagging(),
+    ]
+    .concat()
 }
 
 /// All of these.

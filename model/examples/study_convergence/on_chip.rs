@@ -10,7 +10,7 @@ use nonius_model::reference::{Parameters, Theta};
 use nonius_model::spec::Spec;
 
 use super::method::Said;
-use super::shipped::variants::searches_of;
+use super::shipped::variants::{radius_alone_of, searches_of};
 
 /// The bit-true chip of a design.
 pub(crate) struct OnChip {
@@ -21,7 +21,8 @@ pub(crate) struct OnChip {
 
 /// Every calibration that a chip of this design can be built with.
 pub(crate) fn all(base: &Spec) -> impl Iterator<Item = (String, OnChip)> {
-    searches_of(base).into_iter().map(|variant| {
+    let chips = [searches_of(base), radius_alone_of(base)].into_iter();
+    chips.flatten().map(|variant| {
         let set = match variant.spec.calibration.parameters {
             4 => "four",
             5 => "five",
