@@ -82,10 +82,11 @@ pub fn calibrate(
     }
 
     // Error bars and noise would be those of the numbers' last digits.
-    let rounding = residual_rms.min(own_residual) < words::ROUNDING;
+    let least = residual_rms.min(own_residual);
+    let rounding = least < words::ROUNDING;
     let mut cannot_tell = estimate.cannot_tell;
     if rounding {
-        cannot_tell.push(words::of_no_noise(residual_rms));
+        cannot_tell.push(words::of_no_noise(least));
     }
     if !estimate.theta.is_empty() {
         cannot_tell.extend(words::of_method(method));
@@ -122,12 +123,14 @@ pub fn calibrate(
         },
     );
     // The bound beside every method is made of the ratio, but only one weighs the channels by it.
-    if (method == Method::Unbiased || fit.ratio_extreme) && own_residual > words::ROUNDING {
+    if (method == Method::Unbiased || fit.ratio_extreme) && !rounding {
         cannot_tell.extend(words::of_ratio(&fit));
     }
-    cannot_tell.extend(words::of_residuals(method, &fit, own_residual));
+    if !rounding {
+        cannot_tell.extend(words::of_residuals(method, &fit, own_residual));
+    }
     cannot_tell.extend(places::on_the_curve(angles).and_then(words::of_places));
-    if own_residual > words::ROUNDING && !(fit.ratio_extreme || fit.ratio_assumed) {
+    if !(rounding || fit.ratio_extreme || fit.ratio_assumed) {
         let steps = [c, s].map(samples::code_step);
         cannot_tell.extend(words::of_rounding(fit.noise, steps));
     }

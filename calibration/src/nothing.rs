@@ -32,7 +32,9 @@ fn stuck(cos: &[f64], sin: &[f64]) -> Option<([f64; 2], usize)> {
     for pair in pairs() {
         *counts.entry(bits(pair)).or_default() += 1;
     }
-    let (most, count) = counts.into_iter().max_by_key(|(_, count)| *count)?;
+    let (most, count) = counts
+        .into_iter()
+        .max_by_key(|(bits, count)| (*count, *bits))?;
     let others = pairs().filter(|pair| bits(*pair) != most);
     let (cos, sin): (Vec<f64>, Vec<f64>) = others.map(|[c, s]| (c, s)).unzip();
     let many = count as f64 > MANY * (count + cos.len()) as f64;

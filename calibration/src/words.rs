@@ -163,7 +163,7 @@ fn percent(share: f64) -> String {
 /// Of a residual without noise.
 pub(crate) fn of_no_noise(residual: f64) -> String {
     format!(
-        "the residual is {residual:.0e} of the amplitude rms, which is the rounding of the numbers and no noise: standard errors, the noise, \
+        "the least residual is {residual:.0e} of the amplitude rms, which is the rounding of the numbers and no noise: standard errors, the noise, \
          its ratio and the bound would mean nothing"
     )
 }

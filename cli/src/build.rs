@@ -223,10 +223,13 @@ fn unseen(spec: &Spec) -> Vec<String> {
         );
     }
     if k.has_bend() && per_period <= 8.0 {
-        let rest = if per_period < 1.0 / Calibration::BEND_RATE {
-            "; with fewer than 7.5 the bends rest, and an axis that is never slower does not learn them"
+        let slowest = 1.0 / Calibration::BEND_RATE;
+        let rest = if per_period < slowest {
+            format!(
+                "; with fewer than {slowest:.1} the bends rest, and an axis that is never slower does not learn them"
+            )
         } else {
-            ""
+            String::new()
         };
         notes.push(format!(
             "at exactly eight samples a period, which is within the promised speed, bends cannot be told where cos 4 alpha \

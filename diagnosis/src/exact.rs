@@ -178,9 +178,9 @@ pub(crate) fn tangents_do(system: &System, fit: &Fit, accepted: &[Accepted], lea
         }
     }
     let middle = effect(system, &middle);
-    let seen = |moved: &[(usize, f64)], samples: usize, least: f64| {
+    let seen = |moved: &[(usize, f64)], every: usize, least: f64| {
         let left = || product(system, &middle, &effect(system, moved));
-        !moved.is_empty() && left() * (samples as f64).sqrt() > least
+        !moved.is_empty() && left() * (every as f64).sqrt() > least
     };
     // Amounts that all samples gave, a part of them gives with a larger error: that is not to be seen in it.
     !seen(&moved, system.tried(), least) && !seen(&moved_known, 1, SETTLED)
@@ -251,7 +251,8 @@ pub(crate) fn look<'a>(
     let motion = reference.map(|r| above_motion(context, &unwrapped(r.clone())));
     let mut catalogue = Catalogue::new(context, motion.is_some());
     enter(carried, &mut catalogue);
-    let every = every(context.samples());
+    let counts: f64 = context.weight.iter().sum();
+    let every = every(counts as usize);
     let system = System::new(context, motion, &mut catalogue, carried, every);
     (system, catalogue)
 }
@@ -276,7 +277,8 @@ fn settled(
         let mut carried = start.carried.clone();
         let (mut system, catalogue) = look(&context, &mut carried, recording);
         system.try_on_all();
-        let found = begin(&mut system, &catalogue, carried);
+        let mut found = begin(&mut system, &catalogue, carried);
+        found.fit = system.fit_tried(found.fit.shapes);
         score = system.halves(&found.fit.shapes).log_likelihood(&found.fit);
         // Free numbers and trials are paid for.
         let price = price(context.samples() as f64);

@@ -111,13 +111,13 @@ impl<'a> System<'a> {
         any.sort_unstable();
         any.dedup();
         let along = this.along_all(&any);
-        let mut left = this.samples.left(&broad::all(&this, &along, &any));
+        let mut left = this.samples.left(&broad::all(&this, (&along, &any)));
         this.flicker = flicker::find(context, &left[0]);
         if every > 1 && this.flicker.is_some() {
             this.flicker = flicker::find(context, &this.left_of_radius(&any));
         }
         let known: Vec<usize> = known.iter().map(|k| k.0).collect();
-        let known = broad::Known::new(&this, catalogue, &known, &plain);
+        let known = broad::Known::new(&this, catalogue, &known, &plain, (&along, &any));
         let mut more = this.samples.left(&known.amounts());
         let fast = if left[2].is_empty() {
             Row::Tangential
@@ -220,6 +220,7 @@ impl<'a> System<'a> {
     /// Looks at all samples.
     pub(crate) fn complete(&mut self) {
         (self.every, self.tried) = (1, 1);
+        self.samples.forget_the_part();
         let atoms: Vec<usize> = (0..self.samples.library.atoms.len()).collect();
         let moments = self.moments(&atoms, 1);
         self.total = self.units(&moments, &atoms, 1);
@@ -350,6 +351,9 @@ impl<'a> System<'a> {
 
     /// The shapes' best amounts where functions are tried.
     pub(crate) fn fit_tried(&mut self, shapes: Vec<Shape>) -> Fit {
+        if self.tried == self.every {
+            return self.fit(shapes);
+        }
         let atoms = atoms_of(&shapes);
         let own: Vec<Shape> = shapes.iter().map(|s| s.among(&atoms)).collect();
         let solution = self.among(&atoms).of(&own).solve();

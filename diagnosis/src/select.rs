@@ -94,6 +94,8 @@ fn tune(system: &mut System, catalogue: &Catalogue, found: &mut Selection) {
         let range = one.range();
         let others = found.fit.others(&range);
         let gain = found.fit.solution.gain() - system.fit(others.clone()).solution.gain();
+        // What all samples tell where they are tried, as far as a part of them shows it.
+        let gain = gain * (system.every() / system.tried()) as f64;
         exact::tuned(system, &others, one, gain);
         let mut shapes = found.fit.shapes.clone();
         shapes.splice(range, one.candidate.shapes.iter().cloned());
@@ -176,7 +178,7 @@ fn best_change(system: &System, fit: &Fit, scored: &[Scored]) -> f64 {
     })
 }
 
-/// The same, from what is known on.
+/// Accepts causes one after the other from what is known on, see [`select`].
 fn search(
     context: &Context,
     system: &mut System,

@@ -54,7 +54,7 @@ impl Spline {
         let count = pieces + 3;
         let mut normal = vec![[0.0; 4]; count];
         for (k, weight) in weight.iter().enumerate().take(samples) {
-            let (first, w) = Self::at(spacing, pieces, k);
+            let (first, w) = Self::piece(spacing, pieces, k as f64);
             let b = weights(w);
             for i in 0..4 {
                 for j in 0..=i {
@@ -117,10 +117,6 @@ impl Spline {
             own.map(|(c, b)| c * b).sum()
         };
         (sum(weights(x)), sum(slopes(x)) / self.spacing)
-    }
-
-    fn at(spacing: f64, pieces: usize, k: usize) -> (usize, f64) {
-        Self::piece(spacing, pieces, k as f64)
     }
 
     /// The piece that a place lies in, and how far in it.

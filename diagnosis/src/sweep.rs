@@ -85,10 +85,10 @@ impl<'a> Samples<'a> {
     ) -> Self {
         let weight = &context.weight;
         let spline = context.spline.as_ref();
-        let mut chosen = vec![0.0; if every > 1 { weight.len() } else { 0 }];
+        let mut looked_at = vec![0.0; if every > 1 { weight.len() } else { 0 }];
         if every > 1 {
             blocks(weight.len(), every)
-                .for_each(|range| chosen[range.clone()].copy_from_slice(&weight[range]));
+                .for_each(|range| looked_at[range.clone()].copy_from_slice(&weight[range]));
         }
         Self {
             context,
@@ -96,8 +96,13 @@ impl<'a> Samples<'a> {
             data,
             whiteners: Default::default(),
             whole: Motions::whole(spline, weight),
-            part: Motions::part(spline, &chosen, every, CHUNK),
+            part: Motions::part(spline, &looked_at, every, CHUNK),
         }
+    }
+
+    /// From now on all samples are looked at.
+    pub(crate) fn forget_the_part(&mut self) {
+        self.part = None;
     }
 
     /// Whether the motion of a part is fitted to that alone.

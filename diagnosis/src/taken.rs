@@ -95,3 +95,34 @@ impl<'a> Motions<'a> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Motions, Spline, Taken};
+
+    #[test]
+    fn what_is_taken_off_an_atom_goes_with_its_number() {
+        let mut motions = Motions::whole(None, &[1.0]);
+        let taken = |square: f64| Taken {
+            motion: vec![square],
+            square,
+        };
+        motions.set(0, taken(1.0));
+        motions.set(3, taken(4.0));
+        assert_eq!(motions.lacking(&[0, 1, 2, 3, 4]), [1, 2, 4]);
+        motions.retain(&[None, Some(0), None, Some(1), Some(2)]);
+        assert_eq!(motions.lacking(&[0, 1, 2]), [0, 2]);
+        assert_eq!(motions.of(1).map(|t| t.square), Some(4.0));
+    }
+
+    #[test]
+    fn a_block_of_few_knots_has_no_motion_of_its_own() {
+        let weight = vec![1.0; 20_000];
+        let part = |spacing: f64, every: usize| {
+            let spline = Spline::new(weight.len(), spacing, &weight);
+            Motions::part(Some(&spline), &weight, every, 1024).is_some()
+        };
+        assert!(part(400.0, 4) && !part(600.0, 4) && !part(400.0, 1));
+        assert!(Motions::part(None, &weight, 4, 1024).is_some());
+    }
+}

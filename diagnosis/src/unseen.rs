@@ -32,7 +32,12 @@ pub fn unseen(context: &Context) -> Vec<String> {
         ));
     } else if travelled < REPEATS {
         tell(
-            "within less than two scale periods, what repeats with the period and what changes with time are the same, and slow lines are not looked for; move over several periods",
+            "within less than two scale periods, what repeats with the period and what changes with time are the same; move over several periods",
+        );
+    }
+    if travelled > 0.0 && travelled < REPEATS {
+        tell(
+            "lines of fewer cycles than 32 for each scale period are not looked for within less than two; move over more of them",
         );
     }
     if travelled < DRIFTS {

@@ -33,7 +33,12 @@ pub(super) struct Search<'a> {
     pub(super) coloured: bool,
 }
 
-/// Cycles per sample below which nothing is a line: within a scale period that is not repeated, any error that goes with the angle
+/// Cycles per sample below which a line is drift.
+pub(super) fn slowest(context: &Context) -> f64 {
+    SLOWEST / context.samples() as f64
+}
+
+/// Cycles per sample below which no line is looked for: within a scale period that is not repeated, any error that goes with the angle
 /// would be one.
 pub(super) fn lowest(context: &Context) -> f64 {
     let periods = context.periods_travelled();

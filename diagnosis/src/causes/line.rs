@@ -164,7 +164,7 @@ impl Search<'_> {
 
 /// Whether a line has become as slow as a drift where its frequency was fitted.
 pub(crate) fn crawls(context: &Context, candidate: &Candidate) -> bool {
-    let lowest = frequencies::lowest(context) * context.rate;
+    let lowest = frequencies::slowest(context) * context.rate;
     candidate.domain == Domain::Line && candidate.inner().is_some_and(|hertz| hertz < lowest)
 }
 

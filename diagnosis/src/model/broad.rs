@@ -52,42 +52,28 @@ fn amounts(rows: &[Own; 3]) -> Vec<(usize, f64)> {
     all.copied().collect()
 }
 
-/// The best amounts of those of some atoms that stand in a row; where they stand in normal equations.
-fn fitted_of(
-    system: &System,
-    total: &Normal,
-    atoms: impl Iterator<Item = (usize, usize)>,
-    row: Row,
-) -> Own {
-    let own = |(_, i): &(usize, usize)| system.samples.library.atoms[*i].row == row;
-    let own: Vec<(usize, usize)> = atoms.filter(own).collect();
-    let shapes: Vec<Shape> = own.iter().map(|(at, _)| Shape(vec![(*at, 1.0)])).collect();
-    let solution = total.of(&shapes).solve();
-    let atoms = own.into_iter().map(|(_, i)| i);
+/// Normal equations, and the atoms whose they are, in the order of their numbers.
+type Of<'a> = (&'a Normal, &'a [usize]);
+
+/// The best amounts of those of some atoms that stand in a row.
+fn fitted(system: &System, (normal, all): Of, atoms: &[usize], row: Row) -> Own {
+    let own = |i: &&usize| system.samples.library.atoms[**i].row == row;
+    let mut atoms: Vec<usize> = atoms.iter().filter(own).copied().collect();
+    atoms.sort_unstable();
+    atoms.dedup();
+    let shape = |i: &usize| Shape(vec![(*i, 1.0)]).among(all);
+    let shapes: Vec<Shape> = atoms.iter().map(shape).collect();
+    let solution = normal.of(&shapes).solve();
     Own {
         freedom: solution.rank,
         explained: solution.explained,
-        amounts: atoms.zip(solution.x).collect(),
+        amounts: atoms.into_iter().zip(solution.x).collect(),
     }
 }
 
-/// The same of all functions.
-fn fitted(system: &System, atoms: &[usize], row: Row) -> Own {
-    let mut atoms = atoms.to_vec();
-    atoms.sort_unstable();
-    atoms.dedup();
-    fitted_of(
-        system,
-        &system.total,
-        atoms.into_iter().map(|i| (i, i)),
-        row,
-    )
-}
-
-/// The best amounts of all of these atoms, of which the normal equations are.
-pub(super) fn all(system: &System, total: &Normal, atoms: &[usize]) -> Vec<(usize, f64)> {
-    let places = || atoms.iter().copied().enumerate();
-    amounts(&ROWS.map(|row| fitted_of(system, total, places(), row)))
+/// The best amounts of all of these atoms.
+pub(super) fn all(system: &System, of: Of) -> Vec<(usize, f64)> {
+    amounts(&ROWS.map(|row| fitted(system, of, of.1, row)))
 }
 
 /// The five parameters and what is known, as they are taken off.
@@ -97,19 +83,21 @@ pub(super) struct Known {
 }
 
 impl Known {
-    /// With causes that are `known`; `plain` are the sums of products that the system was made of.
+    /// With causes that are `known`; `plain` are the sums of products that the system was made of, `of` equations that hold all of them
+    /// and every generic shape.
     pub(super) fn new(
         system: &System,
         catalogue: &Catalogue,
         known: &[usize],
         plain: &Moments,
+        of: Of,
     ) -> Self {
         let atoms_of = |shapes: &[Shape]| -> Vec<usize> {
             let all = shapes.iter().flat_map(|s| s.0.iter().map(|part| part.0));
             all.collect()
         };
         let atoms = [&atoms_of(&catalogue.parameters), known].concat();
-        let rows = ROWS.map(|row| fitted(system, &atoms, row));
+        let rows = ROWS.map(|row| fitted(system, of, &atoms, row));
         let counts: f64 = system.context.weight.iter().sum();
         let samples = counts / system.every as f64;
         let noise = ROWS.map(|row| {
@@ -117,7 +105,7 @@ impl Known {
             let left = |own: &Own| (1.0 - own.explained / power).max(1e-12);
             let without = &rows[row as usize];
             let explains = |domain: &Vec<Shape>| {
-                let with = fitted(system, &[&atoms[..], &atoms_of(domain)].concat(), row);
+                let with = fitted(system, of, &[&atoms[..], &atoms_of(domain)].concat(), row);
                 let gain = 0.5 * samples * (left(without) / left(&with)).ln();
                 let numbers = with.freedom.saturating_sub(without.freedom);
                 gain > at_most_of_noise(numbers)

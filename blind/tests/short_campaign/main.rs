@@ -2,7 +2,8 @@
 //!
 //! The long one, with its table: `cargo run --release -p nonius-blind --example campaign -- --help`.
 
-use std::path::Path;
+mod independent;
+mod kept;
 
 use nonius_blind::{Case, Kind, Outcome, Score, Summary, page, seal, verdict};
 use nonius_kept::every;
@@ -35,47 +36,7 @@ fn short_campaign() {
     assert!(alarms.is_empty(), "false alarms: {alarms:?}");
     assert_eq!(all.motion_blamed().hits, 0, "motion called a sensor error");
     assert!(all.coverage().fraction() >= 0.9, "{}", all.coverage());
-    verdicts_are_kept(&scores);
-}
-
-/// What is said of each case is what was said of it: on a machine with another sine, one that hangs on its last digits may differ.
-fn verdicts_are_kept(scores: &[Score]) {
-    const HOW: &str = "NONIUS_BLESS=1 cargo test -p nonius-blind short_campaign";
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/short_campaign.txt");
-    let said: String = scores.iter().map(said).collect();
-    if nonius_kept::blessed() {
-        nonius_kept::same(&file, &said, HOW);
-    }
-    let kept = std::fs::read_to_string(&file).unwrap_or_else(|why| panic!("{why}; {HOW}"));
-    assert_eq!(kept.lines().count(), said.lines().count(), "{HOW}");
-    let both = kept.lines().zip(said.lines());
-    let other: Vec<(&str, &str)> = both.filter(|(kept, said)| kept != said).collect();
-    assert!(other.len() <= 1, "kept, and said now: {other:#?}; {HOW}");
-}
-
-/// What was hidden in a case, and what was said of it, in a line.
-fn said(score: &Score) -> String {
-    let truth = &score.truth;
-    let hidden = truth
-        .hidden
-        .iter()
-        .map(|h| format!("{} ({:.1})", h.name, h.snr));
-    let hidden: Vec<String> = hidden.collect();
-    let left = if score.unexplained {
-        ", unexplained"
-    } else {
-        ""
-    };
-    format!(
-        "{} {:?} [{}]: {:?}, first {}, wrong {:?}, motion {:?}{left}\n",
-        truth.seed,
-        truth.kind,
-        hidden.join(", "),
-        score.outcomes,
-        score.first,
-        score.wrong,
-        score.motions,
-    )
+    kept::verdicts_are_kept(&scores);
 }
 
 /// Random cases in which a cause was named once that was not there: an axis that shakes went back to a code by itself, the
@@ -398,36 +359,4 @@ fn what_two_names_explain_keeps_one() {
         assert_eq!(names, [name], "{seed}");
         assert!(!verdict.unexplained, "{seed}: {}", verdict.signature);
     });
-}
-
-/// A generator that used the diagnosis' code would be the model looking at itself.
-#[test]
-fn nothing_that_simulates_uses_the_rest_of_the_project() {
-    let sources = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
-    let effects = sources.join("effects");
-    let files = [&sources, &effects].map(|folder| std::fs::read_dir(folder).expect("a folder"));
-    let mut read = 0;
-    for file in files
-        .into_iter()
-        .flatten()
-        .map(|f| f.expect("a file").path())
-    {
-        let name = file
-            .file_name()
-            .and_then(|n| n.to_str())
-            .unwrap_or("")
-            .to_owned();
-        // It calls the diagnosis with the file.
-        if file.is_dir() || name == "verdict.rs" {
-            continue;
-        }
-        read += 1;
-        let text = std::fs::read_to_string(&file).expect("a text");
-        let code = text.lines().filter(|l| !l.trim_start().starts_with("//"));
-        for line in code.filter(|l| l.contains("nonius_")) {
-            let transform = name == "spectrum.rs" && line.contains("nonius_fourier");
-            assert!(transform, "{name}: {line}");
-        }
-    }
-    assert!(read > 20, "{read} files");
 }
