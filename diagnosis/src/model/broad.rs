@@ -10,6 +10,9 @@ use crate::library::{ROWS, Row, Shape};
 use crate::solve::Normal;
 use crate::statistics::at_most_of_noise;
 
+/// So many times as many samples as a part has tell slow noise from amounts that are off.
+const MORE: usize = 8;
+
 impl System<'_> {
     /// Normal equations of atoms without the motion of all samples. What the motion of a part of them takes nearly off would have
     /// any amount there, and would be loud elsewhere.
@@ -21,13 +24,15 @@ impl System<'_> {
         self.units(&moments, atoms, 1)
     }
 
-    /// What the best amounts of some atoms leave of the radius, fitted to all samples. Amounts that were fitted to a part of them
-    /// are off by more than all samples would allow, and slow functions with such amounts leave what looks like slow noise.
+    /// What the best amounts of some atoms leave of the radius, fitted to several times as many samples as a part has. Amounts that were
+    /// fitted to a part are off by more than all samples would allow, and slow functions with such amounts leave what looks like
+    /// slow noise.
     pub(super) fn left_of_radius(&mut self, atoms: &[usize]) -> Vec<f64> {
         let radial = self.in_row(atoms, Row::Radial);
         let own: Vec<usize> = radial.map(|i| atoms[i]).collect();
-        let moments = self.moments(&own, 1);
-        let normal = self.units(&moments, &own, 1);
+        let every = self.every.div_ceil(MORE);
+        let moments = self.moments(&own, every);
+        let normal = self.units(&moments, &own, every);
         let shapes: Vec<Shape> = (0..own.len()).map(|i| Shape(vec![(i, 1.0)])).collect();
         let x = normal.of(&shapes).solve().x;
         let amounts: Vec<(usize, f64)> = own.into_iter().zip(x).collect();
