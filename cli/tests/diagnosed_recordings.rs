@@ -2,7 +2,6 @@
 //!
 //! They are kept in docs/diagnosed-recordings.md and the folder of that name; NONIUS_BLESS=1 writes them anew.
 
-use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
@@ -176,31 +175,15 @@ fn measured_recordings_are_diagnosed() {
 fn tables() -> Option<String> {
     let path = nonius_kept::recording("diagnosed_recordings", "optical_servo_tables.csv")?;
     let text = std::fs::read_to_string(&path).expect("a text");
-    let mut units: BTreeMap<usize, [Vec<f64>; 4]> = BTreeMap::new();
-    for row in text.lines().filter(|l| !l.starts_with('#')).skip(1) {
-        let values: Vec<f64> = row
-            .split(',')
-            .map(|v| v.parse().expect("a number"))
-            .collect();
-        let columns = units.entry(values[4] as usize).or_default();
-        columns
-            .iter_mut()
-            .zip(&values)
-            .for_each(|(c, v)| c.push(*v));
-    }
     let mut page = String::from(
         "## optical_servo_tables\n\n\
          Sixteen home-made reflective encoders: an averaged period of 512 points each, far from an ellipse. The points are averages over\n\
          the angle, so nothing in them goes with time, and none of the names may (a test looks). Angle error against the index, rms.\n\n\
          | unit | five parameters | with what was found | found (SNR) |\n|---|---|---|---|\n",
     );
-    for (unit, [time, cos, sin, reference]) in units {
-        let described = Overrides::default();
-        let recording = Recording::from_samples(time, cos, sin, &described).expect("a period");
-        let recording = Recording {
-            reference_rad: Some(reference),
-            ..recording
-        };
+    for (unit, one) in nonius_kept::units(&text).iter().enumerate() {
+        let recording = Recording::read_from(one.as_bytes(), "unit", &Overrides::default());
+        let recording = recording.expect("a period");
         let found = diagnose(&recording).expect("an ellipse");
         let name = |f: &Finding| {
             let order = f

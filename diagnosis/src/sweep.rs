@@ -16,7 +16,7 @@ use crate::taken::{Motions, Projector, Taken};
 use crate::whiten::{ORDER, Whitener};
 
 /// Interleaved blocks, every other one of which is held out.
-pub(crate) const BLOCKS: usize = 20;
+const BLOCKS: usize = 20;
 
 /// Whether a block is looked at where of so many one is: one of each group, and not always the same, for the motion may
 /// repeat itself.
@@ -28,7 +28,7 @@ fn chosen(block: usize, every: usize) -> bool {
 }
 
 /// Samples of either half of interleaved blocks: so many of the one, then of the other.
-fn half(samples: usize) -> usize {
+pub(crate) fn half(samples: usize) -> usize {
     samples.div_ceil(BLOCKS).max(1)
 }
 
@@ -85,18 +85,20 @@ impl<'a> Samples<'a> {
     ) -> Self {
         let weight = &context.weight;
         let spline = context.spline.as_ref();
-        let mut looked_at = vec![0.0; if every > 1 { weight.len() } else { 0 }];
-        if every > 1 {
-            blocks(weight.len(), every)
-                .for_each(|range| looked_at[range.clone()].copy_from_slice(&weight[range]));
-        }
+        let of_part = || {
+            let mut looked_at = vec![0.0; weight.len()];
+            for range in blocks(weight.len(), every) {
+                looked_at[range.clone()].copy_from_slice(&weight[range]);
+            }
+            Motions::part(spline, &looked_at, every, CHUNK)
+        };
         Self {
             context,
             library,
             data,
             whiteners: Default::default(),
             whole: Motions::whole(spline, weight),
-            part: Motions::part(spline, &looked_at, every, CHUNK),
+            part: (every > 1).then(of_part).flatten(),
         }
     }
 

@@ -6,7 +6,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::solve::{Normal, Solution};
-use crate::sweep::BLOCKS as INTERLEAVED;
+use crate::sweep::half;
 
 /// Steps of the scoring iteration; each is a regression on the products, weighted with the covariances of the one before.
 const STEPS: usize = 6;
@@ -227,13 +227,13 @@ impl Pairs<'_> {
     /// Log-likelihood of interleaved blocks by amounts that were fitted to the blocks between them: with the last shape less
     /// without it.
     pub(crate) fn held_out(&self, start: &[f64], shapes: &Shapes) -> f64 {
-        let length = self.weight.len().div_ceil(INTERLEAVED).max(1);
-        let half = |half: usize| -> Vec<f64> {
-            let own = |k: usize| f64::from(k / length % 2 == half);
+        let length = half(self.weight.len());
+        let of = |side: usize| -> Vec<f64> {
+            let own = |k: usize| f64::from(k / length % 2 == side);
             let weights = self.weight.iter().enumerate();
             weights.map(|(k, w)| w * own(k)).collect()
         };
-        let [first, second] = [half(0), half(1)];
+        let [first, second] = [of(0), of(1)];
         let part = |weight| Pairs {
             rows: self.rows.clone(),
             weight,

@@ -5,7 +5,7 @@ mod figures;
 mod recordings;
 
 pub use figures::{figure, figure_of_all, figure_of_short};
-pub use recordings::{recording, recordings};
+pub use recordings::{recording, recordings, units};
 
 use std::fs;
 use std::path::Path;

@@ -25,6 +25,20 @@ pub fn recording(check: &str, name: &str) -> Option<PathBuf> {
     None
 }
 
+/// One CSV for each value of the last column, with the header each: of several records in one file, whose time starts again.
+///
+/// # Panics
+/// There is no header.
+#[must_use]
+pub fn units(table: &str) -> Vec<String> {
+    let (header, rows) = table.split_once('\n').expect("a header");
+    let unit = |row: &str| row.rsplit(',').next().map(str::to_owned);
+    let rows: Vec<&str> = rows.lines().collect();
+    let parts = rows.chunk_by(|a, b| unit(a) == unit(b));
+    let one = |part: &[&str]| format!("{header}\n{}\n", part.join("\n"));
+    parts.map(one).collect()
+}
+
 /// Past the capture of test output, on a line of its own, whatever the test harness has begun. A test that cannot say so
 /// still must not fail for it.
 fn not_run(check: &str, name: &str) {

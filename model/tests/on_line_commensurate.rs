@@ -1,7 +1,7 @@
 //! Every search at exactly 4 to 8 and 64 samples a period.
 
 use crate::chip_support::loss::sensor_for;
-use crate::chip_support::{Bench, rms, sensor_of};
+use crate::chip_support::{Bench, larger, rms, sensor_of};
 use crate::on_line_speeds::{for_long, travel};
 use crate::support::shipped::variants::{Variant, searches_of};
 use nonius_kept::{every, figure_of_short};
@@ -51,11 +51,6 @@ fn left(
         "{per_period} samples a period from {place}: {first} mrad, then {now:?}"
     );
     now
-}
-
-/// The larger of each.
-fn larger(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [0, 1, 2].map(|i| a[i].max(b[i]))
 }
 
 /// What every search leaves at exactly so many samples a period, the worst of these signs and places: by the exact gradient; by others with four
@@ -160,7 +155,7 @@ fn every_search_where_no_place_shows_cos_4_alpha() {
 /// Bends that the radius shows, 2 % of second and of third order, at so few samples that it cannot tell them: they rest, nothing is further off
 /// than it was, and the first slower speed shows them.
 #[test]
-fn bends_rest_speeda_period_has_seven_samples_or_fewer() {
+fn bends_rest_where_a_period_has_seven_samples_or_fewer() {
     let bent = |signs: u32, beta: f64| {
         let sensor = sensor_of(signs, beta);
         move |alpha: f64| {

@@ -6,9 +6,9 @@
 
 use std::f64::consts::TAU;
 
-use crate::chip_support::Bench;
 use crate::chip_support::bent::{RATE, bent_sensor, noise, noise_in, parameters, slow};
 use crate::chip_support::shipped::variants::{Variant, searches};
+use crate::chip_support::{Bench, larger};
 use nonius_kept::{every, figure, figure_of_short, long};
 use nonius_model::spec::Calibration;
 use rayon::prelude::*;
@@ -232,9 +232,4 @@ fn a_vibration_before_gamma_has_settled_pulls() {
         &kept.join("; "),
         "model/tests/on_line_rest.rs",
     );
-}
-
-/// The larger of each.
-fn larger<const N: usize>(a: [f64; N], b: [f64; N]) -> [f64; N] {
-    std::array::from_fn(|i| a[i].max(b[i]))
 }

@@ -132,11 +132,9 @@ fn the_optical_tables_are_refused_whole_and_read_one_by_one() {
     );
 
     let whole = std::fs::read_to_string(file).expect("a file of text");
-    let (header, rows) = whole.split_once('\n').expect("a header");
-    for unit in 0..16 {
-        let of_unit = |row: &&str| row.rsplit(',').next() == Some(&unit.to_string());
-        let rows: Vec<&str> = rows.lines().filter(of_unit).collect();
-        let one = format!("{header}\n{}\n", rows.join("\n"));
+    let units = nonius_kept::units(&whole);
+    assert_eq!(units.len(), 16);
+    for (unit, one) in units.iter().enumerate() {
         let recording = Recording::read_from(one.as_bytes(), "one unit", &Overrides::default())
             .expect("a recording that can be read");
         assert_eq!(recording.samples(), 512);

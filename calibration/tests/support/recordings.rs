@@ -48,21 +48,10 @@ fn with_reference(folder: &Path) -> Vec<Named> {
 /// One recording for each value of the last column.
 fn units(path: &Path) -> Vec<Recording> {
     let text = std::fs::read_to_string(path).expect("a kept file");
-    let (header, rows) = text.split_once('\n').expect("there is one");
-    let unit = |row: &str| {
-        row.rsplit(',')
-            .next()
-            .expect("there is one")
-            .trim()
-            .to_owned()
-    };
-    let rows: Vec<&str> = rows.lines().collect();
-    let parts = rows.chunk_by(|a, b| unit(a) == unit(b));
-    let one = |part: &[&str]| {
-        let text = format!("{header}\n{}\n", part.join("\n"));
+    let one = |text: String| {
         Recording::read_from(text.as_bytes(), "unit", &Overrides::default()).expect("a recording")
     };
-    parts.map(one).collect()
+    nonius_kept::units(&text).into_iter().map(one).collect()
 }
 
 /// Rms of an angle against the reference in degrees; the best constant and the sense of the reference removed.

@@ -36,7 +36,7 @@ const UNEQUAL: f64 = 0.05 / 1.7;
 pub(crate) fn cases() -> Vec<(Case, f64)> {
     let mut out = vec![];
     let mut add = |method: Method, noise, periods, share| {
-        let without_phase = matches!(method, Method::Sumsq4 | Method::Poly8);
+        let without_phase = method.searches() && !method.finds_phase();
         out.push((
             Case {
                 method,

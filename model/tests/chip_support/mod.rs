@@ -153,6 +153,11 @@ pub(crate) fn rms(error: &[f64]) -> f64 {
     (error.iter().map(|e| e * e).sum::<f64>() / error.len() as f64).sqrt()
 }
 
+/// The larger of each.
+pub(crate) fn larger<const N: usize>(a: [f64; N], b: [f64; N]) -> [f64; N] {
+    std::array::from_fn(|i| a[i].max(b[i]))
+}
+
 /// Largest magnitude.
 pub(crate) fn largest(error: &[f64]) -> f64 {
     error.iter().fold(0.0, |m, e| m.max(e.abs()))
