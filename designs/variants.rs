@@ -187,6 +187,29 @@ pub(crate) fn poles() -> Vec<Variant> {
     ]
 }
 
+/// Speeds at which the radius does not show all, and the phase error is learned from.
+pub(crate) fn sparse() -> Vec<Variant> {
+    let of = |(parameters, method, start, per_period): (u32, _, _, f64)| {
+        Variant::of(format!("down to {per_period} samples a period"), |spec| {
+            spec.sensor.speed_max_periods_per_s = spec.adc.sample_rate_hz / per_period;
+            spec.calibration.parameters = parameters;
+            spec.calibration.method = method;
+            spec.calibration.start = start;
+        })
+    };
+    [
+        (4, Final, Gears, 4.0),
+        (5, Final, LeastSquares, 4.0),
+        (5, SumOfSquares, Gears, 4.0),
+        (9, Final, Gears, 4.0),
+        (9, Final, LeastSquares, 4.0),
+        (8, Batch, Gears, 4.0),
+        (9, SumOfSquares, Gears, 8.0),
+    ]
+    .map(of)
+    .into()
+}
+
 /// Loops with six gears and more above the designed one.
 pub(crate) fn narrow() -> Vec<Variant> {
     let of = |(method, bandwidth): (u32, f64)| {
@@ -351,6 +374,7 @@ pub(crate) fn everything() -> Vec<Variant> {
         radius_alone(),
         loops(),
         poles(),
+        sparse(),
         narrow(),
         adcs(),
         words(),

@@ -179,7 +179,7 @@ fn summary(j: &DesignJson, output: &Path, shown: &str) {
             j.budget.arithmetic_allowed
         );
     }
-    for why in unseen(&j.spec) {
+    if let Some(why) = unseen(&j.spec) {
         say!("  note        {why}");
     }
     let uncorrected = uncorrected(j);
@@ -208,35 +208,15 @@ fn summary(j: &DesignJson, output: &Path, shown: &str) {
 }
 
 /// What the calibration cannot see at speeds that the design promises.
-fn unseen(spec: &Spec) -> Vec<String> {
-    let (k, mut notes) = (&spec.calibration, vec![]);
-    if !k.is_on() {
-        return notes;
-    }
+fn unseen(spec: &Spec) -> Option<String> {
     let per_period = spec.adc.sample_rate_hz / spec.sensor.speed_max_periods_per_s;
-    // Fewer are refused; a thousandth beside is enough.
-    if per_period < 4.001 && !k.is_exact() {
-        notes.push(
-            "at exactly four samples a period, which is top speed, the radius does not show all parameters: a new sensor \
-             keeps a part of its error until the speed is a little beside"
-                .into(),
-        );
-    }
-    if k.has_bend() && per_period <= 8.0 {
-        let slowest = 1.0 / Calibration::BEND_RATE;
-        let rest = if per_period < slowest {
-            format!(
-                "; with fewer than {slowest:.1} the bends rest, and an axis that is never slower does not learn them"
-            )
-        } else {
-            String::new()
-        };
-        notes.push(format!(
-            "at exactly eight samples a period, which is within the promised speed, bends cannot be told where cos 4 alpha \
-             is 0 at all eight, and some mrad stay until the speed is a little beside{rest}"
-        ));
-    }
-    notes
+    let slowest = 1.0 / Calibration::BEND_RATE;
+    (spec.calibration.has_bend() && per_period < slowest).then(|| {
+        format!(
+            "with fewer than {slowest:.1} samples a period, which is within the promised speed, the bends rest: an axis that is never \
+             slower does not learn them"
+        )
+    })
 }
 
 /// Why the accuracy is missed, where that is for errors of the sensor that stay.

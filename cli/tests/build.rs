@@ -81,21 +81,13 @@ fn a_promise_that_would_not_lock_is_told() {
 fn what_no_calibration_sees_at_top_speed_is_told() {
     let dir = tempfile::tempdir().expect("scratch");
     let text = fs::read_to_string(design()).expect("designs/optical.toml");
-    let (four, eight, rest) = (
-        "at exactly four samples a period",
-        "cos 4 alpha is 0 at all",
-        "the bends rest",
-    );
+    let rest = "the bends rest";
     for (speed, calibration, told) in [
-        ("100e3 ", "parameters = 5", &[][..]),
-        ("100e3 ", "parameters = 9", &[]),
-        ("200e3 ", "parameters = 5", &[]),
-        ("250e3 ", "parameters = 5", &[four]),
-        ("250e3 ", "parameters = 0", &[]),
-        ("250e3 ", "parameters = 5\nmethod = \"exact\"", &[]),
-        ("125e3 ", "parameters = 9", &[eight]),
-        ("200e3 ", "parameters = 8", &[eight, rest]),
-        ("250e3 ", "parameters = 9", &[four, eight, rest]),
+        ("100e3 ", "parameters = 9", false),
+        ("250e3 ", "parameters = 5", false),
+        ("125e3 ", "parameters = 9", false),
+        ("200e3 ", "parameters = 8", true),
+        ("250e3 ", "parameters = 9", true),
     ] {
         let text = text
             .replacen("100e3 ", speed, 1)
@@ -111,13 +103,7 @@ fn what_no_calibration_sees_at_top_speed_is_told() {
             said.contains("written"),
             "{speed} {calibration}: {said} {errors}"
         );
-        for words in [four, eight, rest] {
-            assert_eq!(
-                said.contains(words),
-                told.contains(&words),
-                "{speed} {calibration}, {words}: {said}"
-            );
-        }
+        assert_eq!(said.contains(rest), told, "{speed} {calibration}: {said}");
     }
 }
 

@@ -111,6 +111,7 @@ fn every_other_variant_in_icarus_and_verilator() {
         // Every method and type, and each of the four ways to build it.
         variants::loops().into_iter().step_by(3).collect(),
         variants::poles(),
+        variants::sparse(),
         variants::adcs(),
         variants::multipliers(),
     ];

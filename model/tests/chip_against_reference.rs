@@ -118,7 +118,25 @@ fn structures() -> Vec<(String, Spec)> {
         spec.calibration.parameters = parameters;
         spec.sensor.speed_max_periods_per_s = 0.2 * spec.adc.sample_rate_hz;
         spec.tracking.bandwidth_hz = 0.01 * spec.adc.sample_rate_hz;
+        // Harmonics that no bend takes off are a signal that fades, to a sample in many: nobody tells the reference what is recalled then.
+        spec.calibration.recall = Some(false);
         let name = format!("{parameters} parameters, completed, up to six samples a period");
+        list.push((name, spec));
+    }
+    // So fast that the phase error shows what the radius does not.
+    for (search, parameters) in [
+        (CalibrationMethod::Final, 4),
+        (CalibrationMethod::Final, 5),
+        (CalibrationMethod::Final, 9),
+        (CalibrationMethod::SumOfSquares, 5),
+    ] {
+        let mut spec = optical();
+        spec.calibration.method = search;
+        spec.calibration.parameters = parameters;
+        spec.sensor.speed_max_periods_per_s = 0.25 * spec.adc.sample_rate_hz;
+        spec.tracking.bandwidth_hz = 0.01 * spec.adc.sample_rate_hz;
+        spec.calibration.recall = Some(false);
+        let name = format!("{search:?}, {parameters} parameters, up to four samples a period");
         list.push((name, spec));
     }
     let mut binary = optical();
@@ -134,7 +152,8 @@ fn structures() -> Vec<(String, Spec)> {
 
 /// A sweep with reversals up to the top speed; of a batch, which is full with 64 sectors, so slow that none is jumped over.
 fn sweep(spec: &Spec) -> impl Fn(f64) -> f64 {
-    let mut top = 0.8 * spec.sensor.speed_max_periods_per_s / spec.adc.sample_rate_hz;
+    let share = if spec.is_sparse() { 0.95 } else { 0.8 };
+    let mut top = share * spec.sensor.speed_max_periods_per_s / spec.adc.sample_rate_hz;
     if spec.calibration.is_batch() {
         top = top.min(1.0 / 80.0);
     }

@@ -40,8 +40,12 @@ fn left(
     } else {
         exactly
     };
-    // Where a period has few samples, each tells little.
-    let periods = if per_period < 64.0 { 6000 } else { 1000 };
+    // Where a period has few samples, each tells little; at four half of them tell of the radius, half of the angle.
+    let periods = match per_period {
+        ..5.0 => 12_000,
+        ..64.0 => 6000,
+        _ => 1000,
+    };
     let (new, bends) = run(periods, exactly);
     // However much the speed seems to change with the angle of a sensor that is not yet calibrated.
     assert!(per_period > 6.0 || bends == [0.0; 4], "{bends:?}");
@@ -102,10 +106,8 @@ fn keep(speed: &str, groups: [[f64; 3]; 4]) {
     );
 }
 
-/// At exactly 8 and 64 samples a period every search of every set finds its parameters from new, and keeps them, but for bends where cos 4α is 0
-/// at all eight places (below); at 5, 6 and 7 those of the ellipse, which is all that these sensors have. At exactly four the
-/// exact gradient does; the others, which learn from the radius, see too little of it there from new, and where bends rest what these do stays:
-/// none is further off than it was, and all keep what a slower speed has shown them. Every fifth of the signs, each at another place of the
+/// At exactly 4, 8 and 64 samples a period every search of every set finds its parameters from new, and keeps them; at 5, 6 and 7 those of the
+/// ellipse, which is all that these sensors have, and so at four, where bends rest. Every fifth of the signs, each at another place of the
 /// period; in the long form all of both.
 #[test]
 fn every_search_at_commensurate_speeds() {
@@ -118,13 +120,8 @@ fn every_search_at_commensurate_speeds() {
     let cases: Vec<(u32, f64)> = every(20, all).collect();
     for per_period in [4, 5, 6, 7, 8, 64] {
         let groups = by_every_search(per_period, &cases);
-        if per_period == 4 {
-            all_below(0.3, &groups[..1]);
-            let later = groups.map(|[_, beside, again]| [0.0, beside, again]);
-            all_below(0.6, &later);
-        } else {
-            all_below(0.3, &groups);
-        }
+        // At seven bends rest with the noise that they came with.
+        all_below(if per_period == 7 { 0.4 } else { 0.3 }, &groups);
         keep(
             &format!("exactly {per_period} samples a period, every fifth of the signs"),
             groups,
@@ -132,20 +129,13 @@ fn every_search_at_commensurate_speeds() {
     }
 }
 
-/// Where eight samples a period begin a sixteenth of a period from the cosine's top, cos 4α is 0 at all of them: the bend that shows there only
-/// stays where it came to from new, until the speed is a little beside; what that has found is kept at that speed, but for what sums of squares
-/// forget. The ellipse is found there too. Every fifth of the signs; in the long form all.
+/// Where eight samples a period begin a sixteenth of a period from the cosine's top, cos 4α is 0 at all of them: the bend that no radius
+/// shows there is found from the phase error. Every fifth of the signs; in the long form all.
 #[test]
 fn every_search_where_no_place_shows_cos_4_alpha() {
     let cases: Vec<(u32, f64)> = every(5, (0..16).map(|signs| (signs, 1.0 / 16.0))).collect();
     let groups = by_every_search(8, &cases);
-    all_below(0.3, &groups[..2]);
-    let [_, _, [by_final, ..], [by_squares, ..]] = groups;
-    assert!(by_final < 8.0 && by_squares < 60.0, "{groups:?}");
-    for (group, limit) in groups.iter().zip([0.3, 0.3, 0.3, 1.5]) {
-        let [_, beside, again] = *group;
-        assert!(beside < 0.3 && again < limit, "{groups:?}");
-    }
+    all_below(0.3, &groups);
     keep(
         "exactly 8 samples a period, the first a sixteenth of a period from the cosine's top, every fifth of the signs",
         groups,

@@ -112,8 +112,8 @@ fn locks_from_rest_at_any_promised_speed() {
     }
 }
 
-/// Four samples a period show four places of the period, which cannot tell all five parameters: what they tell stays, and
-/// nothing drives the rest but what is lost in rounding the steps. A quarter of a million periods after calibration, every sign of
+/// Four samples a period show four places of the period, at which the radius cannot tell all five parameters, and the phase error
+/// does: a quarter of a million periods after calibration it is as it was, whatever is lost in rounding the steps. Every sign of
 /// the errors.
 #[test]
 fn four_samples_a_period_leave_the_parameters() {
@@ -146,7 +146,7 @@ fn four_samples_a_period_leave_the_parameters() {
         println!(
             "4 samples a period, signs {signs}, place {place}: {before:.1e} -> {after:.1e} rad rms"
         );
-        assert!(bench.chip.state.locked && after < 1e-3, "{after}");
+        assert!(bench.chip.state.locked && after < 2e-4, "{after}");
         [before, after].map(|x| 1e3 * x)
     });
     let [before, after] = worst.reduce(|| [0.0; 2], |a, b| [a[0].max(b[0]), a[1].max(b[1])]);
@@ -157,8 +157,53 @@ fn four_samples_a_period_leave_the_parameters() {
     );
 }
 
-/// From new, at exactly four samples a period, the exact gradient learns what no radius at four places shows: it is in the phase
-/// error while the parameters move.
+/// So they are found behind loops of every method, type and width, which follow what changes from sample to sample as little as that: from
+/// new, at exactly four and exactly eight samples a period, five parameters and nine. A loop of type 1 lags: what is the same at all samples is
+/// no error of the sensor.
+#[test]
+fn any_loop_learns_at_four_and_eight_samples_a_period() {
+    let loops = [
+        (1, 2, 1e3),
+        (1, 2, 20e3),
+        (3, 2, 2e3),
+        (3, 2, 60e3),
+        (3, 2, 100e3),
+        (1, 1, 60e3),
+        (3, 1, 100e3),
+    ];
+    let cases = loops
+        .into_iter()
+        .flat_map(|of| [(of, 5, 4, 0.05), (of, 9, 8, 1.0 / 16.0)]);
+    let worst = cases
+        .collect::<Vec<_>>()
+        .into_par_iter()
+        .map(|((method, filter_type, bandwidth), parameters, per_period, place)| {
+            let mut spec = for_long();
+            spec.tracking.method = method;
+            spec.tracking.filter_type = filter_type;
+            spec.tracking.bandwidth_hz = bandwidth;
+            // Nearer to 1 than four samples a period are from what it lags there.
+            spec.tracking.pole = (filter_type == 1).then_some(0.9995);
+            spec.calibration.parameters = parameters;
+            let worst = [0, 5, 10, 15].map(|signs| {
+                let signals = sensor(signs);
+                let mut bench = Bench::new(&spec, u64::from(signs));
+                let mut turns = place;
+                travel(&mut bench, &signals, &mut turns, (200_000, 1.0 / f64::from(per_period)));
+                assert!(bench.chip.state.locked);
+                rms(&bench.miscalibration(&signals))
+            });
+            let worst = worst.into_iter().fold(0.0, f64::max);
+            println!(
+                "method {method} type {filter_type}, {bandwidth} Hz, {parameters} parameters at {per_period}: {worst:.1e} rad rms"
+            );
+            worst
+        })
+        .reduce(|| 0.0, f64::max);
+    assert!(worst < 4e-4, "{worst}");
+}
+
+/// From new, at exactly four samples a period, so does the exact gradient.
 #[test]
 fn the_exact_gradient_calibrates_at_four_samples_a_period() {
     for (signs, place) in [(0, 0.0), (5, 0.05), (10, 0.1), (15, 0.125)] {
@@ -177,11 +222,10 @@ fn the_exact_gradient_calibrates_at_four_samples_a_period() {
     }
 }
 
-/// From new, at exactly four samples a period: four places see the two offsets and the radius at each, and nothing stalls or runs
-/// away. At the places themselves the corrected pair comes to lie on the unit circle; what no radius there shows (one combination of
-/// gains and phase) stays where it was. A speed that is not exactly four then shows the rest.
+/// From new, at exactly four samples a period: the radius at each comes to 1, and what no radius there shows (one combination of
+/// gains and phase) is found from the phase error. A speed that is not exactly four finds nothing else.
 #[test]
-fn four_samples_a_period_calibrate_what_they_see() {
+fn four_samples_a_period_calibrate() {
     for (signs, place) in (0..16).zip([0.0, 0.05, 0.1, 0.125].into_iter().cycle()) {
         let signals = sensor(signs);
         let mut bench = Bench::new(&for_long(), u64::from(signs));
@@ -206,26 +250,21 @@ fn four_samples_a_period_calibrate_what_they_see() {
         println!(
             "4 samples a period, signs {signs}, place {place}: radius at the places {first:.1e} -> {half:.1e} -> {seen:.1e}, miscalibration {before:.1e} -> {left:.1e} -> {later:.1e} rad rms; at another speed {after:.1e}"
         );
-        // ρ is the pair's projection on the estimate: an angle that is wrong by δ leaves δ²/2.
-        assert!(seen < 0.1 * first && seen < 1.5e-2, "{seen}");
-        assert!((seen - half).abs() < 1e-3, "{half} {seen}");
-        assert!(
-            left < before && (later - left).abs() < 1.5e-3,
-            "{left} {later}"
-        );
-        assert!(after < 3e-4, "{after}");
+        assert!(seen < 1e-3 && half < 1e-3, "{half} {seen}");
+        assert!(left < 2e-4 && later < 2e-4, "{left} {later}");
+        assert!(after < 2e-4, "{after}");
     }
 }
 
-/// Nine parameters at exactly eight samples a period, where cos 4α is 0 at all of them: the common bend of third order shows nowhere, and
-/// what stands in for it stays, until the speed is a little beside.
+/// Nine parameters at exactly eight samples a period, where cos 4α is 0 at all of them: no radius shows the common bend of third order, and the
+/// phase error does.
 #[test]
-fn eight_places_without_cos_4_alpha_leave_a_bend() {
+fn eight_places_without_cos_4_alpha_show_the_bend() {
     let mut rows = vec![];
-    for (method, limit) in [
-        (CalibrationMethod::Final, 8.0),
-        (CalibrationMethod::SumOfSquares, 60.0),
-        (CalibrationMethod::Batch, 60.0),
+    for method in [
+        CalibrationMethod::Final,
+        CalibrationMethod::SumOfSquares,
+        CalibrationMethod::Batch,
     ] {
         let mut spec = nine();
         spec.calibration.method = method;
@@ -239,10 +278,10 @@ fn eight_places_without_cos_4_alpha_leave_a_bend() {
                 *worst = worst.max(rms(&bench.miscalibration(&signals)));
             }
         }
-        let [stays, beside] = worst.map(|rad| 1e3 * rad);
-        println!("{method:?}: {stays:.2} -> {beside:.2} mrad rms");
-        assert!(stays < limit && beside < 0.3, "{stays} {beside}");
-        rows.push(format!("{stays:.2}, {beside:.2}"));
+        let [seen, beside] = worst.map(|rad| 1e3 * rad);
+        println!("{method:?}: {seen:.2} -> {beside:.2} mrad rms");
+        assert!(seen < 0.3 && beside < 0.3, "{seen} {beside}");
+        rows.push(format!("{seen:.2}, {beside:.2}"));
     }
     figure(
         "final form, sum of squares and batch, nine parameters, exactly 8 samples a period, the first a sixteenth of a period from the cosine's top, 6000 periods from new, and 6000 a little beside: what is left of the miscalibration, mrad rms",
@@ -251,7 +290,7 @@ fn eight_places_without_cos_4_alpha_leave_a_bend() {
     );
 }
 
-/// Nine parameters: eight places of the period tell them all but where cos 4α is 0 there; five, six and seven tell the five of the ellipse,
+/// Nine parameters: eight places of the period tell them all; five, six and seven tell the five of the ellipse,
 /// and the bends rest. From new, a speed a little beside, and exactly so many samples a period again leave it alone. At 64 every fifth of
 /// the signs; in the long form all.
 #[test]

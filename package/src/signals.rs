@@ -117,7 +117,7 @@ const REASONS: &[(&[&str], &str, &[&str])] = &[
         &["formats.signal_fraction"],
     ),
     (
-        &["rho_limited"],
+        &["rho_limited", "e_alternating"],
         "residual: a quarter of the radius at most moves a parameter; resolution by the budget",
         &["formats.residual_fraction"],
     ),

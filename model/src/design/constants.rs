@@ -95,6 +95,8 @@ pub(super) fn constants(
         bend_near_bound: near_bound(structure.formats.deviation[7].format),
         // At exactly eight they learn: between seven and eight. Few bits make a short comparator.
         bend_rate: Constant::rounded(Calibration::BEND_RATE, 7),
+        sparse_rate: Constant::rounded(Calibration::SPARSE_RATE, 5),
+        sparse_bends_rate: Constant::rounded(Calibration::SPARSE_BENDS_RATE, 7),
         direction_rate: Constant::rounded(exp2(-i64::from(f)), words.phase_bits),
         lock_down: whole(-8),
         lock_full: whole(full),

@@ -241,6 +241,8 @@ pub(super) fn structure(
         sine: sine_table(words, follow)?,
         loop_gears: acquisition.gears,
         amplitude_shift: amplitude_shift(spec),
+        sparse: spec.is_sparse(),
+        sparse_bends: spec.has_sparse_bends(),
     })
 }
 

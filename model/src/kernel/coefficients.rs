@@ -130,6 +130,10 @@ coefficients! {
     bend_near_bound,
     /// Bends rest from this rate on, turns per sample.
     bend_rate,
+    /// From this rate on samples are few, turns per sample.
+    sparse_rate,
+    /// From this rate on the same for the third order, turns per sample.
+    sparse_bends_rate,
     /// Rate below which the direction does not change, turns per sample.
     direction_rate,
     /// What a bad sample adds to the lock level.

@@ -2,6 +2,7 @@
 
 use super::detector;
 use super::sensitivity::{self, Names, Sensitivity, names};
+use super::sparse::Sparse;
 use super::start::Polar;
 use super::{Coefficients, State, Structure};
 use crate::signal::{Formula, Signal, Wide};
@@ -46,14 +47,16 @@ pub struct Seen<S: Signal> {
     pub frame: (S, S),
     /// Phase error, radians.
     pub e: S,
-    /// Radial residual as it moves the parameters, for the sum of squares half that of the squared radius.
+    /// Radial residual as it moves the parameters, for the sum of squares half that of the squared radius; or what stands in its place.
     pub rho: S,
-    /// n ρ.
+    /// n ρ, or n⊥ e.
     pub along: (S, S),
     /// θ1 … θ5 as they were applied.
     pub theta: [S; 5],
     /// Where the design has a start by least squares: what that sees.
     pub start: Option<Polar<S>>,
+    /// Where speeds are promised at which the radius does not show all: what this sample teaches instead.
+    pub sparse: Option<Sparse<S>>,
 }
 
 /// ρ as it moves the parameters; where the design allows for what the loop lags, the radius less 1. More than a quarter of the radius is
@@ -76,6 +79,20 @@ pub fn limited<S: Signal>(rho: S, e: Option<S>, structure: &Structure) -> S {
 pub fn along<S: Signal>(rho: S, (cos, sin): (S, S), structure: &Structure) -> (S, S) {
     let to = &structure.formats.along;
     ((cos * rho).quantise(to), (sin * rho).quantise(to))
+}
+
+impl<S: Signal> Seen<S> {
+    /// n ρ as it moves the offsets: what is seen along the circle does not.
+    fn by_offset(&self, k: &Coefficients<S>) -> (S, S) {
+        let (rho_c, rho_s) = self.along;
+        let by_e = self.sparse.and_then(|sparse| sparse.ellipse);
+        by_e.map_or((rho_c, rho_s), |by_e| {
+            (
+                S::select(by_e, k.zero, rho_c).named("offset_residual_c"),
+                S::select(by_e, k.zero, rho_s).named("offset_residual_s"),
+            )
+        })
+    }
 }
 
 /// By θ1 … θ5 in the final form: Mᵀ n ρ. The last is 0 without phase. While the start runs, by δ1 … δ5 of a pair of
@@ -102,11 +119,12 @@ pub fn linear<S: Signal>(
         None if structure.calibration.has_phase() => y_c * rho_s,
         None => k.zero.widen(),
     };
+    let (offset_c, offset_s) = seen.by_offset(k);
     [
         y_c * rho_c,
-        rho_c.widen(),
+        offset_c.widen(),
         y_s * rho_s,
-        rho_s.widen(),
+        offset_s.widen(),
         fifth,
     ]
 }
@@ -140,16 +158,31 @@ pub fn bent<S: Signal>(
         &BENDS
     });
     let signal = &structure.formats.signal;
-    let ((cos_hat, sin_hat), (rho_c, rho_s)) = (seen.frame, seen.along);
+    let ((cos_hat, sin_hat), (rho_c, rho_s)) = (seen.frame, seen.by_offset(k));
     let w = (sin_hat * cos_hat).quantise(signal).named("half_sin_2");
     let half_cos_2 =
         ((cos_hat * cos_hat).quantise(signal).named("cos_square") - k.half).named("half_cos_2");
-    let half_cos_2 = shown.map_or(half_cos_2, |shown| {
+    let by_e = |part: fn(&Sparse<S>) -> Option<S::Bool>| seen.sparse.as_ref().and_then(part);
+    let phase = by_e(|sparse| sparse.ellipse).map_or(w, |by_e| {
+        S::select(by_e, half_cos_2, w).named("phase_direction")
+    });
+    let half_cos_2_shown = shown.map_or(half_cos_2, |shown| {
         S::select(shown, half_cos_2, k.zero).named("half_cos_2_shown")
     });
-    let square = (w * w).quantise(signal).named("half_sin_2_square");
-    let cos_4 = (k.one - square.scale(3)).quantise(signal).named("cos_4");
-    let (second_c, second_s) = (rho_c * half_cos_2, rho_s * half_cos_2);
+    // cos 4α̂ = 1 − 8 w²; along the circle −sin 4α̂ = −8 w (½ cos 2α̂).
+    let third = seen
+        .sparse
+        .and_then(|sparse| Some((sparse.third?, sparse.e)));
+    let (factor, one, residual) = third.map_or((w, k.one, seen.rho), |(by_e, e)| {
+        (
+            S::select(by_e, half_cos_2, w).named("third_factor"),
+            S::select(by_e, k.zero, k.one),
+            S::select(by_e, e, seen.rho).named("third_residual"),
+        )
+    });
+    let square = (w * factor).quantise(signal).named("half_sin_2_square");
+    let cos_4 = (one - square.scale(3)).quantise(signal).named("cos_4");
+    let (second_c, second_s) = (rho_c * half_cos_2_shown, rho_s * half_cos_2_shown);
     let twice = |rho: S| rho.widen().scale(1);
     Bent {
         offsets: [
@@ -157,7 +190,7 @@ pub fn bent<S: Signal>(
             twice(rho_s) + second_s.scale(2),
         ],
         phase: if structure.calibration.has_phase() {
-            w * seen.rho
+            phase * seen.rho
         } else {
             k.zero.widen()
         },
@@ -165,7 +198,7 @@ pub fn bent<S: Signal>(
             second_c.scale(3) - twice(rho_c),
             twice(-rho_s) - second_s.scale(3),
         ],
-        third: seen.rho * cos_4,
+        third: residual * cos_4,
         w,
     }
 }

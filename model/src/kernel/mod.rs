@@ -22,6 +22,7 @@ pub mod sample;
 pub mod sensitivity;
 pub mod sine;
 pub mod skew;
+pub mod sparse;
 pub mod start;
 pub mod state;
 pub mod step;
@@ -72,15 +73,20 @@ pub struct Structure {
     pub loop_gears: u32,
     /// The gradient by gains and phase carries the square of the amplitude, ¼ … 1; this power of two brings it near 1.
     pub amplitude_shift: u32,
+    /// Speeds are promised at which the radius does not show all, and the phase error is learned from there.
+    pub sparse: bool,
+    /// The same of the bend of third order that both channels have.
+    pub sparse_bends: bool,
 }
 
 impl Structure {
-    /// Neither bends, nor skew, nor harmonics, nor another gradient than the final form, nor another start than its gears.
+    /// Neither bends, nor skew, nor harmonics, nor another gradient than the final form, nor another start than its gears, nor so few samples a
+    /// period that the phase error must tell.
     #[must_use]
     pub fn is_plain(&self) -> bool {
         let c = &self.calibration;
         let known = self.skew.is_some() || self.harmonics.is_some();
-        c.is_linear_final() && !(known || c.starts())
+        c.is_linear_final() && !(known || c.starts() || self.sparse)
     }
 
     /// Samples in which the loop catches up with motion do not count. A loop of type 1 always lags.

@@ -1,5 +1,6 @@
 //! The whole sample: what the chip does between two strobes of the ADC.
 
+use super::sparse::Sparse;
 use super::{Coefficients, Input, Method, Probes, State, Structure};
 use super::{
     bend, calibration, catch_up, completion, correction, detector, gears, gradient, harmonics,
@@ -130,12 +131,26 @@ fn advance_of<S: Signal, const PLAIN: bool>(
     });
     let estimate = (cos_hat, sin_hat);
     let mut polar = None;
+    let bends_shown = if PLAIN {
+        None
+    } else {
+        bend::shown(state, k, structure)
+    };
+    let sparse = if PLAIN {
+        None
+    } else {
+        Sparse::of(e, &travel, (starting, bends_shown), state, k, structure)
+    };
+    let along_which = |residual: S, direction: (S, S)| {
+        sparse.map_or((residual, direction), |of| of.along(residual, direction, k))
+    };
     // What the gradient is made of: the residual, and the pair or its estimate.
     let (residual, frame, along) = if !PLAIN && structure.calibration.squares() {
         let epsilon = sum_of_squares::half_square(c, s, k.half, structure);
         let limited = gradient::limited(epsilon, None, structure);
-        let along = gradient::along(limited, (c, s), structure);
-        (limited, (c, s), along)
+        let (residual, direction) = along_which(limited, (c, s));
+        let along = gradient::along(residual, direction, structure);
+        (residual, (c, s), along)
     } else {
         let lags = structure.calibration.allows_for_lag().then_some(e);
         let limited = gradient::limited(rho, lags, structure);
@@ -145,8 +160,17 @@ fn advance_of<S: Signal, const PLAIN: bool>(
             Some(polar) => (polar.residual, polar.direction),
             None => (limited, estimate),
         };
+        let (rho, direction) = along_which(rho, direction);
         let along = gradient::along(rho, direction, structure);
-        (limited, estimate, along)
+        let residual = match (sparse, starting) {
+            (None, _) => limited,
+            (Some(_), None) => rho,
+            // The start's own is weighed.
+            (Some(_), Some(running)) => {
+                S::select(running, limited, rho).named("residual_not_weighed")
+            }
+        };
+        (residual, estimate, along)
     };
     let seen = gradient::Seen {
         y: (y_c, y_s),
@@ -156,11 +180,7 @@ fn advance_of<S: Signal, const PLAIN: bool>(
         along,
         theta,
         start: polar,
-    };
-    let bends_shown = if PLAIN {
-        None
-    } else {
-        bend::shown(state, k, structure)
+        sparse,
     };
     let gate = calibration::Gate {
         fresh,

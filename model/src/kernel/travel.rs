@@ -60,6 +60,8 @@ pub struct Travel<S: Signal> {
     pub ahead_used: S::Bool,
     /// The sectors behind it were.
     pub behind_used: S::Bool,
+    /// Whole periods of the position, modulo four: −2 … 1.
+    pub periods: S,
 }
 
 /// Whether this sample's sector is fresh, and the map after it. Not counting (`counting` false) clears the map. `measure`: where
@@ -181,5 +183,6 @@ pub fn travel<S: Signal>(
             behind,
             ["still_used_behind", "used_up_behind"],
         ),
+        periods,
     }
 }

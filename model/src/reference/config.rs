@@ -10,6 +10,7 @@ use super::harmonics::Harmonics;
 use super::hold::HoldConfig;
 use super::loops::LoopConfig;
 use super::recursive::StartConfig;
+use super::sparse::Sparse;
 use super::start::Start;
 use super::sum_of_squares::Smoothing;
 use super::{Parameters, Theta};
@@ -81,6 +82,8 @@ pub struct Config {
     pub allows_for_lag: bool,
     /// From this speed on, radians per sample, bends rest; infinite in the paper.
     pub bend_rate: f64,
+    /// What is learned from the phase error too, where samples are few; nothing in the paper.
+    pub sparse: Option<Sparse>,
     /// When a sample teaches nothing because the loop catches up; never in the paper.
     pub catch_up: Option<CatchUp>,
     /// γ.
@@ -111,6 +114,7 @@ impl Config {
             completion: None,
             allows_for_lag: false,
             bend_rate: f64::INFINITY,
+            sparse: None,
             catch_up: None,
             gamma: Gamma::constant(gamma),
             gate: Gate::EverySample,

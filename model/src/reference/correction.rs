@@ -83,6 +83,18 @@ impl Parameters {
         }
     }
 
+    /// What of the third orders both channels have in common, as a direction; zero where they have none in Chebyshev polynomials.
+    #[must_use]
+    pub fn common_third(self) -> Theta {
+        let mut theta = Theta::zeros();
+        match self {
+            Self::ChebyshevEight | Self::ChebyshevNine => (theta[2], theta[6]) = (0.5, 0.5),
+            Self::SplitEight | Self::SplitNine => theta[7] = 1.0,
+            Self::Four | Self::Five | Self::Eight | Self::Nine => {}
+        }
+        theta
+    }
+
     /// Θ for a sensor of this amplitude without errors.
     #[must_use]
     pub fn nominal(self, amplitude: f64) -> Theta {

@@ -12,7 +12,7 @@ use super::loops::LoopConfig;
 use super::poles::Poles;
 use super::start::Start;
 use super::sum_of_squares::Smoothing;
-use super::{CatchUp, Config, Parameters, ReferenceError, Steps, Theta};
+use super::{CatchUp, Config, Parameters, ReferenceError, Sparse, Steps, Theta};
 use crate::spec::{Calibration, CalibrationMethod, Spec};
 
 /// From the unit of the ADC's range to y: the middle becomes 0, the nominal amplitude 1.
@@ -133,6 +133,21 @@ fn completion(spec: &Spec) -> Option<CompletedConfig> {
     })
 }
 
+/// From which speeds on samples are few, where such are promised.
+#[must_use]
+pub fn sparse(spec: &Spec) -> Option<Sparse> {
+    let from = |needed: bool, rate: f64| if needed { TAU * rate } else { f64::INFINITY };
+    let (ellipse, bends) = (spec.is_sparse(), spec.has_sparse_bends());
+    (ellipse || bends).then_some(Sparse {
+        rate: from(ellipse, Calibration::SPARSE_RATE),
+        bends_rates: [
+            from(bends, Calibration::SPARSE_BENDS_RATE),
+            TAU * Calibration::BEND_RATE,
+        ],
+        most: 0.25,
+    })
+}
+
 /// What makes a step of the sum of squares as large as one of the residual: its gradient is eight times that along the
 /// radius, its sum under λ is the mean over 1 − λ, and a batch acts by a quarter.
 fn gathered(spec: &Spec) -> f64 {
@@ -195,6 +210,7 @@ pub fn config(spec: &Spec) -> Result<Config, ReferenceError> {
         completion: completion(spec),
         allows_for_lag: k.allows_for_lag(),
         bend_rate: TAU * Calibration::BEND_RATE,
+        sparse: sparse(spec),
         // A loop of type 1 always lags.
         catch_up: (k.is_on() && k.settles() && spec.tracking.filter_type == 2).then(|| CatchUp {
             settled: Calibration::SETTLED,

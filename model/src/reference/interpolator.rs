@@ -41,6 +41,8 @@ pub struct Reference {
     out_of_window: u32,
     /// Halvings of γ so far, and α̂ where the present one began.
     geared: (u32, f64),
+    /// e of the sample before, radians.
+    e_before: f64,
 }
 
 impl Reference {
@@ -72,6 +74,10 @@ impl Reference {
             behind: Behind::default(),
             out_of_window: 0,
             geared: (0, tracking.alpha_hat()),
+            e_before: match config.start {
+                Start::At { e_1, .. } => e_1,
+                Start::Arctangent { .. } => 0.0,
+            },
         })
     }
 
@@ -217,7 +223,23 @@ impl Reference {
         };
         let parameters = self.config.parameters;
         let followed = self.followed(seen);
-        let fast = self.tracking.speed().abs() * self.config.tracking.ts >= self.config.bend_rate;
+        let speed = self.tracking.speed() * self.config.tracking.ts;
+        let fast = speed.abs() >= self.config.bend_rate;
+        let instead = self.config.sparse.and_then(|sparse| {
+            let (turns, phase) = self.tracking.turns_and_phase();
+            let period = if phase < 0.0 { turns - 1 } else { turns };
+            let direction = match self.config.search {
+                Search::SumOfSquares(_) => seen.corrected,
+                _ => [seen.cos_hat, seen.sin_hat],
+            };
+            sparse.gradient(
+                parameters,
+                seen,
+                (speed, period),
+                (self.e_before, direction),
+            )
+        });
+        self.e_before = seen.e;
         let free = if fast {
             parameters.of_ellipse()
         } else {
@@ -229,7 +251,8 @@ impl Reference {
                 completion.step(parameters, &theta, seen, estimate.alpha_hat, completes);
         }
         let alpha_hat = estimate.alpha_hat;
-        self.pending += self.searching.step(&followed, alpha_hat, gamma, &free);
+        let by = (instead, &free);
+        self.pending += self.searching.step(&followed, alpha_hat, gamma, by);
         let Config {
             bound,
             theta: start,

@@ -44,6 +44,7 @@ mod searching;
 pub mod sensor;
 pub mod skew;
 pub mod solved;
+pub mod sparse;
 pub mod start;
 pub mod sum_of_squares;
 
@@ -51,6 +52,7 @@ pub use catch_up::CatchUp;
 pub use correction::{Jacobian, Parameters, Theta};
 pub use interpolator::{Config, Estimate, Reference, Steps};
 pub use sensor::Sensor;
+pub use sparse::Sparse;
 
 use thiserror::Error;
 

@@ -53,26 +53,26 @@ impl Searching {
         })
     }
 
-    /// What a sample at this α̂ (radians, unwrapped) moves Θ by, with this γ or not at all; `free` is 1 where a parameter learns, 0
-    /// where it rests.
+    /// What a sample at this α̂ (radians, unwrapped) moves Θ by, with this γ or not at all; `instead`: a gradient that it shows in the place of
+    /// the residual's; `free` is 1 where a parameter learns, 0 where it rests.
     pub(super) fn step(
         &mut self,
         seen: &Observation,
         alpha_hat: f64,
         gamma: Option<&Steps>,
-        free: &Theta,
+        (instead, free): (Option<Theta>, &Theta),
     ) -> Theta {
         let along =
             |gradient: Theta| gamma.map_or(Theta::zeros(), |g| -g * gradient.component_mul(free));
         let step = match self {
-            Self::Residual(gradient) => along(gradient.step(seen)),
+            Self::Residual(gradient) => along(instead.unwrap_or_else(|| gradient.step(seen))),
             // A closed gate takes no sample into the sum.
             Self::SumOfSquares(sum) if gamma.is_some() => {
-                along(sum.step_of(&seen.m, seen.corrected, free))
+                along(sum.step_of(&seen.m, seen.corrected, (instead, free)))
             }
             Self::Started(start) if gamma.is_some() => start
                 .step(seen, alpha_hat)
-                .unwrap_or_else(|| along(seen.final_form())),
+                .unwrap_or_else(|| along(instead.unwrap_or_else(|| seen.final_form()))),
             Self::None | Self::SumOfSquares(_) | Self::Started(_) => Theta::zeros(),
         };
         step.component_mul(free)

@@ -72,14 +72,21 @@ impl SumOfSquares {
         self.step_of(
             &parameters.jacobian(theta, y),
             parameters.corrected(theta, y),
-            &Theta::repeat(1.0),
+            (None, &Theta::repeat(1.0)),
         )
     }
 
-    /// The same of M and of a pair from which more than Θ has been taken; `free` is 1 where a parameter learns and 0 where it rests: what
+    /// The same of M and of a pair from which more than Θ has been taken, or of a gradient of the residual `instead`; `free` is 1 where a parameter learns and 0 where it rests: what
     /// was gathered of that stays as it is, and is not to be stepped by.
-    pub(super) fn step_of(&mut self, m: &Jacobian, corrected: [f64; 2], free: &Theta) -> Theta {
-        let gradient = gradient_of(m, corrected).component_mul(free);
+    pub(super) fn step_of(
+        &mut self,
+        m: &Jacobian,
+        corrected: [f64; 2],
+        (instead, free): (Option<Theta>, &Theta),
+    ) -> Theta {
+        // That of the squares is eight times as large where the radius is near 1.
+        let gradient = instead.map_or_else(|| gradient_of(m, corrected), |own| own * 8.0);
+        let gradient = gradient.component_mul(free);
         match self.smoothing {
             Smoothing::Forgetting { lambda } => {
                 let kept = free.map(|free| 1.0 - free * (1.0 - lambda));

@@ -108,6 +108,26 @@ impl Spec {
         least.log2().ceil().exp2()
     }
 
+    /// Speeds are promised at which samples are so few that the radius does not show all parameters, and the search sees
+    /// the radius only.
+    #[must_use]
+    pub fn is_sparse(&self) -> bool {
+        self.promises(Calibration::SPARSE_RATE)
+    }
+
+    /// The same of the third order of both channels.
+    #[must_use]
+    pub fn has_sparse_bends(&self) -> bool {
+        self.calibration.has_bend() && self.promises(Calibration::SPARSE_BENDS_RATE)
+    }
+
+    /// Whether speeds from this rate on, periods per sample, are promised to a search that sees the radius only.
+    fn promises(&self, rate: f64) -> bool {
+        let k = &self.calibration;
+        let most = self.sensor.speed_max_periods_per_s / self.adc.sample_rate_hz;
+        k.is_on() && !k.is_exact() && most >= rate
+    }
+
     /// |e|, radians, that hardly a sensor leaves whose search has begun: twice as much.
     #[must_use]
     pub fn far_error(&self) -> f64 {
@@ -135,6 +155,11 @@ impl Calibration {
     pub const PHASE_HALVINGS: u32 = 2;
     /// Bends rest from this rate on, periods per sample: exactly seven samples a period and fewer do not show them, eight do.
     pub const BEND_RATE: f64 = 17.0 / 128.0;
+    /// From this rate on, periods per sample, parameters are learned from the phase error too: exactly four samples a period do not show all
+    /// along the radius.
+    pub const SPARSE_RATE: f64 = 7.0 / 32.0;
+    /// The same for the third order of both channels: exactly eight samples need not show it along the radius.
+    pub const SPARSE_BENDS_RATE: f64 = 15.0 / 128.0;
 
     /// Any parameters are calibrated.
     #[must_use]

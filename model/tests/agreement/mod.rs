@@ -136,6 +136,7 @@ fn reference(design: &Design, registers: &State<f64>, position: f64) -> Referenc
             slowest: 0.0,
         }),
         bend_rate: TAU * Calibration::BEND_RATE,
+        sparse: from_spec::sparse(spec),
         // Of the final form only what stands along the radius; the other searches are compared without.
         allows_for_lag: spec.calibration.allows_for_lag(),
         start: Start::At {
