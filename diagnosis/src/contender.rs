@@ -24,6 +24,8 @@ use crate::unexplained::{Unnamed, What, like};
 
 /// Gain in log-likelihood (an SNR of 300) from which on a choice between causes is made where tangents are exact.
 const LARGE: f64 = 45_000.0;
+/// The same (an SNR of 95) of what goes with the speed: a delay and low passes are one to first order.
+const LARGE_WITH_SPEED: f64 = 4_500.0;
 /// Most others that are tried there.
 const OTHERS: usize = 3;
 /// Share of the best gain from which on another cause may stand in for one that does not hold.
@@ -73,7 +75,11 @@ pub(crate) fn contender(
     off_the_grid(system, fit, &mut scored);
     fewer_first(&mut scored);
     let most = scored[0].gain;
-    let large = most * system.every() as f64 > LARGE;
+    let large = match scored[0].candidate.domain {
+        Domain::Speed => LARGE_WITH_SPEED,
+        _ => LARGE,
+    };
+    let large = most * system.every() as f64 > large;
     let (mut first, mut named): (Option<Contender>, Option<Box<Accepted>>) = (None, None);
     let mut others = vec![];
     let mut tried: Vec<(&'static str, Domain)> = vec![];

@@ -289,9 +289,11 @@ fn search(
                     let before = found.fit;
                     found.accepted.push(*cause);
                     found.fit = fit;
-                    if !last
-                        && !exact::tangents_do(system, &found.fit, &found.accepted, exact::NAMED)
-                    {
+                    // Second orders may decide between causes long before they show beside one of them.
+                    let astray = |f: &Selection| {
+                        !exact::tangents_do(system, &f.fit, &f.accepted, exact::NAMED)
+                    };
+                    if !last && (!others.is_empty() || astray(&found)) {
                         found.again = starts(system, &before, &found, others);
                     }
                 }

@@ -5,6 +5,7 @@ mod edit;
 mod faults;
 mod recall;
 mod seen_by;
+mod sparse;
 
 use std::collections::HashMap;
 use std::sync::{Arc, LazyLock, Mutex};
@@ -20,6 +21,7 @@ use nonius_model::spec::Spec;
 use nonius_testvectors::stimulus::{self, Stimulus};
 use rayon::prelude::*;
 use recall::{moved_faults, recall_faults};
+use sparse::sparse_faults;
 
 /// As `nonius build` writes them.
 const ROWS: usize = nonius_package::ROWS;
@@ -248,6 +250,13 @@ fn vectors_catch_every_fault_in_dropping_periods_and_resting_bends() {
     let chip = Sound::new(&spec);
     all_caught("the dropping of periods", &chip, RTL, &dropping_faults());
     all_caught("the resting of bends", &chip, RTL, &resting_faults());
+}
+
+#[test]
+fn vectors_catch_every_fault_where_samples_are_few() {
+    let sparse = chip::shipped::variants::sparse();
+    let chip = Sound::new(&sparse[3].spec);
+    all_caught("what few samples teach", &chip, RTL, &sparse_faults());
 }
 
 #[test]

@@ -97,11 +97,14 @@ impl Halves {
         (sum.max(0.0) / count.max(1.0)).sqrt()
     }
 
-    /// Log-likelihood of what a fit leaves of either row, its noise free.
-    pub(crate) fn log_likelihood(&self, fit: &Fit) -> f64 {
+    /// Log-likelihood of what a fit leaves of either row, its noise free. What is left is a fraction of amplitudes, which go with what is
+    /// taken off the signals; fits about different ones are compared by what is left of the signals themselves, whose amplitude
+    /// has this logarithm. Along the circle more than that can be left: of the axis or of the reference, in radians.
+    pub(crate) fn log_likelihood(&self, fit: &Fit, log_amplitude: f64) -> f64 {
         let count = self.counts[0] + self.counts[1];
-        let of = |row| -0.5 * count * (self.square(fit, row) / count).max(1e-300).ln();
-        of(0) + of(1)
+        let [radial, tangential] = [0, 1].map(|row| (self.square(fit, row) / count).max(1e-300));
+        let of_signals = 1.0 + (radial / tangential).min(1.0);
+        -0.5 * count * (radial * tangential).ln() - count * of_signals * log_amplitude
     }
 
     /// Position error against the reference, rms in radians.

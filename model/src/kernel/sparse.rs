@@ -15,7 +15,7 @@ use crate::signal::{Formula, Logic, Signal};
 static SPARSE: Formula = Formula {
     title: "Few samples a period",
     equation: "of every four periods two teach by e_alternating = (e - e_1)/2 along the circle instead of by rho along the radius: gains and phase from a rate of \
-               7/32 on; theta_8 alone from 15/128 on, until bends rest",
+               7/32 on; theta_8 alone, by -sin(4 alpha_hat), from 15/128 on, until bends rest",
     source: "paper equation (11) where no loop follows, no part of its final form",
 };
 
