@@ -264,12 +264,12 @@ struct Settled {
     start: Start,
 }
 
-/// Looks from a start until its causes have come to rest.
+/// Looks from a start until its causes have come to rest. Amplitudes are compared with these.
 fn settled(
     context: &Context,
     mut start: Start,
     recording: &Recording,
-    spacing: Option<f64>,
+    (spacing, beside): (Option<f64>, Ellipse),
 ) -> Settled {
     let mut context = followed(context, &start, recording, spacing);
     let mut score = f64::MIN;
@@ -279,7 +279,8 @@ fn settled(
         system.try_on_all();
         let mut found = begin(&mut system, &catalogue, carried);
         found.fit = system.fit_tried(found.fit.shapes);
-        let amplitude = log_amplitude(&context, &system.residual(&found.fit).radial);
+        let left = system.residual(&found.fit).radial;
+        let amplitude = log_amplitude(&context, &beside, &left);
         let halves = system.halves(&found.fit.shapes);
         score = halves.log_likelihood(&found.fit, amplitude);
         // Free numbers and trials are paid for.
@@ -301,9 +302,9 @@ fn settled(
     }
 }
 
-/// Logarithm of the amplitude of both channels, each by its share of the noise that is left along the radius: of that of the cosine
+/// Logarithm of the amplitude of both channels over another, each by its share of the noise that is left along the radius: of that of the cosine
 /// 3/8 show with cos² and 1/8 with sin², of that of the sine the other way round.
-fn log_amplitude(context: &Context, radial: &[f64]) -> f64 {
+fn log_amplitude(context: &Context, beside: &Ellipse, radial: &[f64]) -> f64 {
     let (mut with_cos, mut with_sin) = (0.0, 0.0);
     for (k, left) in radial.iter().enumerate() {
         let square = context.weight[k] * left * left;
@@ -314,7 +315,9 @@ fn log_amplitude(context: &Context, radial: &[f64]) -> f64 {
         [3.0 * with_cos - with_sin, 3.0 * with_sin - with_cos].map(|s| s.max(0.0));
     let all = of_cos + of_sin;
     let share = if all > 0.0 { of_cos / all } else { 0.5 };
-    share * context.ellipse.a_c.ln() + (1.0 - share) * context.ellipse.a_s.ln()
+    // Of neither share more than a small part of this is known.
+    let own = &context.ellipse;
+    share * (own.a_c / beside.a_c).ln() + (1.0 - share) * (own.a_s / beside.a_s).ln()
 }
 
 /// Where to go on from: of several starts, the one that explains most once its causes have come to rest.
@@ -329,7 +332,7 @@ pub(crate) fn best(
     }
     let all: Vec<Settled> = starts
         .into_iter()
-        .map(|start| settled(context, start, recording, None))
+        .map(|start| settled(context, start, recording, (None, context.ellipse)))
         .collect();
     // Likelihoods of splines with other knots cannot be compared.
     let spacing = |s: &Settled| s.context.spline.as_ref().map_or(0.0, Spline::spacing);
@@ -337,7 +340,12 @@ pub(crate) fn best(
     all.into_iter()
         .map(|one| {
             if spacing(&one) < common {
-                settled(&one.context, one.start, recording, Some(common))
+                settled(
+                    &one.context,
+                    one.start,
+                    recording,
+                    (Some(common), context.ellipse),
+                )
             } else {
                 one
             }

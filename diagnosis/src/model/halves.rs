@@ -99,7 +99,7 @@ impl Halves {
 
     /// Log-likelihood of what a fit leaves of either row, its noise free. What is left is a fraction of amplitudes, which go with what is
     /// taken off the signals; fits about different ones are compared by what is left of the signals themselves, whose amplitude
-    /// has this logarithm. Along the circle more than that can be left: of the axis or of the reference, in radians.
+    /// over a common one has this logarithm. Along the circle more than that can be left: of the axis or of the reference, in radians.
     pub(crate) fn log_likelihood(&self, fit: &Fit, log_amplitude: f64) -> f64 {
         let count = self.counts[0] + self.counts[1];
         let [radial, tangential] = [0, 1].map(|row| (self.square(fit, row) / count).max(1e-300));
