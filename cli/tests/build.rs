@@ -83,8 +83,12 @@ fn what_no_calibration_sees_at_top_speed_is_told() {
     let text = fs::read_to_string(design()).expect("designs/optical.toml");
     let rest = "the bends rest";
     for (speed, calibration, told) in [
+        ("100e3 ", "parameters = 5", false),
         ("100e3 ", "parameters = 9", false),
+        ("200e3 ", "parameters = 5", false),
         ("250e3 ", "parameters = 5", false),
+        ("250e3 ", "parameters = 0", false),
+        ("250e3 ", "parameters = 5\nmethod = \"exact\"", false),
         ("125e3 ", "parameters = 9", false),
         ("200e3 ", "parameters = 8", true),
         ("250e3 ", "parameters = 9", true),

@@ -6,6 +6,7 @@ use serde::Serialize;
 use crate::calm;
 use crate::channels::Channels;
 use crate::checks::{self, Checked, TimeBase};
+use crate::choice;
 use crate::codes;
 use crate::contender::is_drift;
 use crate::context::{Context, ContextError};
@@ -217,7 +218,7 @@ fn search(
         }
         // Its samples are not needed any longer, and the next look has its own.
         drop(system);
-        let Some(known) = exact::best(&context, selection.again, recording) else {
+        let Some(known) = choice::best(&context, selection.again, recording) else {
             continue;
         };
         // A look that makes it worse has gone astray: the tangents have to do.

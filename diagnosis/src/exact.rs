@@ -12,10 +12,8 @@ use crate::causes::Catalogue;
 use crate::context::{Context, Known, unwrapped};
 use crate::library::{Row, Shape};
 use crate::model::{Fit, System, above_motion, atoms_of};
-use crate::select::{anew, begin};
 use crate::selection::Accepted;
 use crate::spline::Spline;
-use crate::statistics::price;
 use crate::sweep::Samples;
 
 /// Gain in log-likelihood from which on inner numbers can be fitted.
@@ -34,8 +32,6 @@ pub(crate) const NAMED: f64 = 3.0;
 pub(crate) const SEEN: f64 = 1.0;
 /// The same once it was looked at anew: below, estimates are right to a part of their errors.
 const SETTLED: f64 = 0.3;
-/// Looks at a recording until what is known of it has come to rest.
-const SETTLING: usize = 6;
 /// Times that the angle is followed anew with the same amounts.
 const FOLLOWED: usize = 3;
 
@@ -216,7 +212,7 @@ pub(crate) fn start(system: &System, fit: &Fit, accepted: &[Accepted]) -> Start 
 
 /// A context in which this is off the signals, and the angle followed without it, by a spline of the given spacing of
 /// knots or of its own choice; where only what is calm counts, by the one that it has.
-fn followed(
+pub(crate) fn followed(
     context: &Context,
     start: &Start,
     recording: &Recording,
@@ -255,103 +251,6 @@ pub(crate) fn look<'a>(
     let every = every(counts as usize);
     let system = System::new(context, motion, &mut catalogue, carried, every);
     (system, catalogue)
-}
-
-/// A start whose causes have come to rest.
-struct Settled {
-    score: f64,
-    context: Context,
-    start: Start,
-}
-
-/// Looks from a start until its causes have come to rest. Amplitudes are compared with these.
-fn settled(
-    context: &Context,
-    mut start: Start,
-    recording: &Recording,
-    (spacing, beside): (Option<f64>, Ellipse),
-) -> Settled {
-    let mut context = followed(context, &start, recording, spacing);
-    let mut score = f64::MIN;
-    for _ in 0..SETTLING {
-        let mut carried = start.carried.clone();
-        let (mut system, catalogue) = look(&context, &mut carried, recording);
-        system.try_on_all();
-        let mut found = begin(&mut system, &catalogue, carried);
-        found.fit = system.fit_tried(found.fit.shapes);
-        let left = system.residual(&found.fit).radial;
-        let amplitude = log_amplitude(&context, &beside, &left);
-        let halves = system.halves(&found.fit.shapes);
-        score = halves.log_likelihood(&found.fit, amplitude);
-        // Free numbers and trials are paid for.
-        let price = price(context.samples() as f64);
-        let paid = |a: &Accepted| price * a.x.len() as f64 + a.candidate.trials.ln();
-        score -= found.accepted.iter().map(paid).sum::<f64>();
-        let Some(next) = anew(&system, &found) else {
-            break;
-        };
-        start = next;
-        let next = followed(&context, &start, recording, spacing);
-        drop(system);
-        context = next;
-    }
-    Settled {
-        score,
-        context,
-        start,
-    }
-}
-
-/// Logarithm of the amplitude of both channels over another, each by its share of the noise that is left along the radius: of that of the cosine
-/// 3/8 show with cos² and 1/8 with sin², of that of the sine the other way round.
-fn log_amplitude(context: &Context, beside: &Ellipse, radial: &[f64]) -> f64 {
-    let (mut with_cos, mut with_sin) = (0.0, 0.0);
-    for (k, left) in radial.iter().enumerate() {
-        let square = context.weight[k] * left * left;
-        with_cos += square * context.cos[k].powi(2);
-        with_sin += square * context.sin[k].powi(2);
-    }
-    let [of_cos, of_sin] =
-        [3.0 * with_cos - with_sin, 3.0 * with_sin - with_cos].map(|s| s.max(0.0));
-    let all = of_cos + of_sin;
-    let share = if all > 0.0 { of_cos / all } else { 0.5 };
-    // Of neither share more than a small part of this is known.
-    let own = &context.ellipse;
-    share * (own.a_c / beside.a_c).ln() + (1.0 - share) * (own.a_s / beside.a_s).ln()
-}
-
-/// Where to go on from: of several starts, the one that explains most once its causes have come to rest.
-pub(crate) fn best(
-    context: &Context,
-    mut starts: Vec<Start>,
-    recording: &Recording,
-) -> Option<(Context, Vec<Accepted>)> {
-    if starts.len() == 1 {
-        let start = starts.remove(0);
-        return Some((followed(context, &start, recording, None), start.carried));
-    }
-    let all: Vec<Settled> = starts
-        .into_iter()
-        .map(|start| settled(context, start, recording, (None, context.ellipse)))
-        .collect();
-    // Likelihoods of splines with other knots cannot be compared.
-    let spacing = |s: &Settled| s.context.spline.as_ref().map_or(0.0, Spline::spacing);
-    let common = all.iter().map(&spacing).fold(0.0, f64::max);
-    all.into_iter()
-        .map(|one| {
-            if spacing(&one) < common {
-                settled(
-                    &one.context,
-                    one.start,
-                    recording,
-                    (Some(common), context.ellipse),
-                )
-            } else {
-                one
-            }
-        })
-        .max_by(|a, b| a.score.total_cmp(&b.score))
-        .map(|best| (best.context, best.start.carried))
 }
 
 /// What the causes do at the angles of a context.

@@ -13,6 +13,7 @@ mod cause;
 mod causes;
 mod channels;
 mod checks;
+mod choice;
 mod codes;
 mod contender;
 mod context;

@@ -105,11 +105,15 @@ fn tune(system: &mut System, catalogue: &Catalogue, found: &mut Selection) {
     keep_used(system, catalogue.atoms, found);
 }
 
+/// Whether the tangents do not do for what is known.
+fn astray(system: &System, found: &Selection) -> bool {
+    let (fit, accepted) = (&found.fit, &found.accepted);
+    !accepted.is_empty() && !exact::tangents_do(system, fit, accepted, exact::NAMED)
+}
+
 /// Where to look anew from, if the tangents do not do for what is known.
 pub(crate) fn anew(system: &System, found: &Selection) -> Option<Start> {
-    let (fit, accepted) = (&found.fit, &found.accepted);
-    let astray = !accepted.is_empty() && !exact::tangents_do(system, fit, accepted, exact::NAMED);
-    astray.then(|| exact::start(system, fit, accepted))
+    astray(system, found).then(|| exact::start(system, &found.fit, &found.accepted))
 }
 
 /// Accepts causes one after the other, beside those that are known; ends where the tangents do not do, unless this is
@@ -290,10 +294,7 @@ fn search(
                     found.accepted.push(*cause);
                     found.fit = fit;
                     // Second orders may decide between causes long before they show beside one of them.
-                    let astray = |f: &Selection| {
-                        !exact::tangents_do(system, &f.fit, &f.accepted, exact::NAMED)
-                    };
-                    if !last && (!others.is_empty() || astray(&found)) {
+                    if !last && (!others.is_empty() || astray(system, &found)) {
                         found.again = starts(system, &before, &found, others);
                     }
                 }

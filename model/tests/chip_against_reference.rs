@@ -112,31 +112,23 @@ fn structures() -> Vec<(String, Spec)> {
         let name = format!("method {method} type {filter_type}, {parameters} parameters, {with}");
         list.push((name, spec));
     }
-    // So fast that bends rest at times.
-    for parameters in [8, 9] {
-        let mut spec = optical();
-        spec.calibration.parameters = parameters;
-        spec.sensor.speed_max_periods_per_s = 0.2 * spec.adc.sample_rate_hz;
-        spec.tracking.bandwidth_hz = 0.01 * spec.adc.sample_rate_hz;
-        // Harmonics that no bend takes off are a signal that fades, to a sample in many: nobody tells the reference what is recalled then.
-        spec.calibration.recall = Some(false);
-        let name = format!("{parameters} parameters, completed, up to six samples a period");
-        list.push((name, spec));
-    }
-    // So fast that the phase error shows what the radius does not.
-    for (search, parameters) in [
-        (CalibrationMethod::Final, 4),
-        (CalibrationMethod::Final, 5),
-        (CalibrationMethod::Final, 9),
-        (CalibrationMethod::SumOfSquares, 5),
+    // So fast that bends rest at times, and that the phase error shows what the radius does not.
+    for (search, parameters, top) in [
+        (CalibrationMethod::Final, 8, 0.2),
+        (CalibrationMethod::Final, 9, 0.2),
+        (CalibrationMethod::Final, 4, 0.25),
+        (CalibrationMethod::Final, 5, 0.25),
+        (CalibrationMethod::Final, 9, 0.25),
+        (CalibrationMethod::SumOfSquares, 5, 0.25),
     ] {
         let mut spec = optical();
         spec.calibration.method = search;
         spec.calibration.parameters = parameters;
-        spec.sensor.speed_max_periods_per_s = 0.25 * spec.adc.sample_rate_hz;
+        spec.sensor.speed_max_periods_per_s = top * spec.adc.sample_rate_hz;
         spec.tracking.bandwidth_hz = 0.01 * spec.adc.sample_rate_hz;
+        // Harmonics that no bend takes off are a signal that fades, to a sample in many: nobody tells the reference what is recalled then.
         spec.calibration.recall = Some(false);
-        let name = format!("{search:?}, {parameters} parameters, up to four samples a period");
+        let name = format!("{search:?}, {parameters} parameters, up to {top} periods a sample");
         list.push((name, spec));
     }
     let mut binary = optical();

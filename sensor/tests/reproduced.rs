@@ -96,15 +96,17 @@ fn apart(sensor: &Sensor, recording: &Recording, simulated: &Samples) -> [f64; 2
 /// What of a recording its simulation does not reproduce, along the radius: there motion, which is only as smooth as its knots, has
 /// no part, and what is left is the noise of both, which is white.
 fn along_the_radius(sensor: &Sensor, recording: &Recording, simulated: &Samples) -> Vec<f64> {
-    let s = &sensor.signals;
-    let rows =
-        (recording.cos.iter().zip(&recording.sin)).zip(simulated.cos.iter().zip(&simulated.sin));
-    rows.map(|((c, s_), (of_c, of_s))| {
-        let (cos, sin) = ((c - s.b_c) / s.a_c, (s_ - s.b_s) / s.a_s);
-        let radius = cos.hypot(sin);
-        ((c - of_c) / s.a_c * cos + (s_ - of_s) / s.a_s * sin) / radius
-    })
-    .collect()
+    let of = &sensor.signals;
+    let one = |k: usize| {
+        let (c, s) = (recording.cos[k], recording.sin[k]);
+        let (cos, sin) = ((c - of.b_c) / of.a_c, (s - of.b_s) / of.a_s);
+        let left = (
+            (c - simulated.cos[k]) / of.a_c,
+            (s - simulated.sin[k]) / of.a_s,
+        );
+        (left.0 * cos + left.1 * sin) / cos.hypot(sin)
+    };
+    (0..recording.samples()).map(one).collect()
 }
 
 /// How far a spectrum is from a white one: by Kolmogorov and Smirnov, its running sum from a straight line, 1.95 by chance once in a

@@ -48,8 +48,8 @@ fn short_campaign() {
 /// a lost sample, one sample of a jittering clock was a glitch, a drift was a line, and what the model of a large hysteresis leaves
 /// was hum. A low pass in one channel was a delay for sure, by what a shaking axis does along the circle alone, a drift was a high pass
 /// by how that was when the recording began, and flicker noise that is hardly seen was a drift.
-/// A code at which the ADC jumps was a lost or a repeated sample, and cogging where the axis turns back was a repeated one. A harmonic that grows with the speed was a jittering clock, a crest of
-/// a lamp whose frequency wanders was hum, and what two names left slow was flicker noise. Every sixth; in the long form all.
+/// A code at which the ADC jumps was a lost or a repeated sample, and cogging where the axis turns back was a repeated one. A harmonic
+/// that grows with the speed was a jittering clock, a crest of a lamp whose frequency wanders was hum, and what two names left slow was flicker noise. Every sixth; in the long form all.
 #[test]
 fn wrong_names_do_not_come_back() {
     let seeds = [

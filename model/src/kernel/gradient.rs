@@ -82,11 +82,15 @@ pub fn along<S: Signal>(rho: S, (cos, sin): (S, S), structure: &Structure) -> (S
 }
 
 impl<S: Signal> Seen<S> {
+    /// Gains and phase are taught along the circle.
+    fn ellipse_by_e(&self) -> Option<S::Bool> {
+        self.sparse?.ellipse
+    }
+
     /// n ρ as it moves the offsets: what is seen along the circle does not.
     fn by_offset(&self, k: &Coefficients<S>) -> (S, S) {
         let (rho_c, rho_s) = self.along;
-        let by_e = self.sparse.and_then(|sparse| sparse.ellipse);
-        by_e.map_or((rho_c, rho_s), |by_e| {
+        self.ellipse_by_e().map_or((rho_c, rho_s), |by_e| {
             (
                 S::select(by_e, k.zero, rho_c).named("offset_residual_c"),
                 S::select(by_e, k.zero, rho_s).named("offset_residual_s"),
@@ -162,8 +166,7 @@ pub fn bent<S: Signal>(
     let w = (sin_hat * cos_hat).quantise(signal).named("half_sin_2");
     let half_cos_2 =
         ((cos_hat * cos_hat).quantise(signal).named("cos_square") - k.half).named("half_cos_2");
-    let by_e = |part: fn(&Sparse<S>) -> Option<S::Bool>| seen.sparse.as_ref().and_then(part);
-    let phase = by_e(|sparse| sparse.ellipse).map_or(w, |by_e| {
+    let phase = seen.ellipse_by_e().map_or(w, |by_e| {
         S::select(by_e, half_cos_2, w).named("phase_direction")
     });
     let half_cos_2_shown = shown.map_or(half_cos_2, |shown| {

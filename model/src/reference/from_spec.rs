@@ -144,7 +144,6 @@ pub fn sparse(spec: &Spec) -> Option<Sparse> {
             from(bends, Calibration::SPARSE_BENDS_RATE),
             TAU * Calibration::BEND_RATE,
         ],
-        most: 0.25,
     })
 }
 

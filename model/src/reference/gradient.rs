@@ -94,7 +94,13 @@ impl Observation {
     /// (10): w = (−sin α̂, cos α̂) M, the derivative of e with respect to Θ at fixed α̂.
     #[must_use]
     pub fn w(&self) -> RowSVector<f64, 9> {
-        RowSVector::from_fn(|_, i| -self.sin_hat * self.m[(0, i)] + self.cos_hat * self.m[(1, i)])
+        self.w_across([self.cos_hat, self.sin_hat])
+    }
+
+    /// The same across another direction (cos, sin).
+    #[must_use]
+    pub fn w_across(&self, [cos, sin]: [f64; 2]) -> RowSVector<f64, 9> {
+        RowSVector::from_fn(|_, i| -sin * self.m[(0, i)] + cos * self.m[(1, i)])
     }
 
     /// (sin α̂, −cos α̂): how the residual changes with α̂.

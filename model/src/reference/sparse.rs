@@ -5,10 +5,11 @@
 //! turn the pair forward at one sample and back at the next, which no loop follows: there (w − ∇α̂)ᵀ e of the exact gradient is wᵀ e.
 //! Of every four periods two teach so, and two along the radius; of e counts what changes from sample to sample.
 
-use nalgebra::RowSVector;
-
 use super::gradient::Observation;
 use super::{Parameters, Theta};
+
+/// More than this of e is no measurement, radians.
+const MOST: f64 = 0.25;
 
 /// When samples are few.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,8 +18,6 @@ pub struct Sparse {
     pub rate: f64,
     /// The third order that both channels have is between these, the latter where bends begin to rest.
     pub bends_rates: [f64; 2],
-    /// More than this is no measurement, radians.
-    pub most: f64,
 }
 
 impl Sparse {
@@ -38,12 +37,12 @@ impl Sparse {
         if period.rem_euclid(4) < 2 || !of_bends && speed < self.rate {
             return None;
         }
-        let e = ((seen.e - e_before) / 2.0).clamp(-self.most, self.most);
+        let e = ((seen.e - e_before) / 2.0).clamp(-MOST, MOST);
         if of_bends {
             let sin_4 = 8.0 * sin * cos * (cos * cos - 0.5);
             return Some(parameters.common_third() * (-sin_4 * e));
         }
-        let w = RowSVector::<f64, 9>::from_fn(|_, i| -sin * seen.m[(0, i)] + cos * seen.m[(1, i)]);
+        let w = seen.w_across([cos, sin]);
         let mut gradient = Theta::zeros();
         let [gain_c, _, gain_s, _] = parameters.linear();
         (gradient[gain_c], gradient[gain_s]) = (w[gain_c] * e, w[gain_s] * e);

@@ -76,8 +76,8 @@ impl SumOfSquares {
         )
     }
 
-    /// The same of M and of a pair from which more than Θ has been taken, or of a gradient of the residual `instead`; `free` is 1 where a parameter learns and 0 where it rests: what
-    /// was gathered of that stays as it is, and is not to be stepped by.
+    /// The same of M and of a pair from which more than Θ has been taken, or of a gradient of the residual `instead`; `free` is 1 where a
+    /// parameter learns and 0 where it rests: what was gathered of that stays as it is, and is not to be stepped by.
     pub(super) fn step_of(
         &mut self,
         m: &Jacobian,
