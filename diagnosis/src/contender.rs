@@ -254,8 +254,8 @@ fn off_the_grid(system: &mut System, fit: &Fit, scored: &mut [Scored]) {
 /// What needs far fewer numbers for nearly as much as the best explains goes first: many numbers bend to anything, and the
 /// tangents of a large cause are off by about a hundredth.
 fn fewer_first(scored: &mut [Scored]) {
-    /// So many fewer.
-    const FEWER: usize = 3;
+    /// So many fewer: a bend of both channels has two numbers, a harmonic of the scale four.
+    const FEWER: usize = 2;
     /// Share of what the best explains.
     const AS_MUCH: f64 = 0.99;
     let Some(best) = scored.first() else { return };

@@ -11,6 +11,8 @@ use crate::statistics::{at_most_of_noise, log_tail};
 
 /// A cause that adds less than this probability says nothing new.
 const NOTHING_NEW: f64 = 1e-3;
+/// The same of one that explains no more alone than the other does.
+const HARDLY_NEW: f64 = 1e-5;
 /// Log-likelihood by which a rival is beaten, if others are left: twenty to one.
 const BEATEN: f64 = 3.0;
 
@@ -38,7 +40,8 @@ pub(crate) fn among(
         let own = (other.gain, other.freedom);
         let shapes = &other.candidate.shapes;
         let as_much = best.gain - other.gain < BEATEN;
-        let adds = nothing_new(beside, &best.candidate, shapes, own).or_else(|| {
+        let least = if as_much { HARDLY_NEW } else { NOTHING_NEW };
+        let adds = adds(beside, &best.candidate, shapes, own, least).or_else(|| {
             let unseen = as_much && only_along_the_circle(system, fit, &best.candidate, shapes);
             unseen.then_some(0.0)
         });
@@ -63,22 +66,23 @@ pub(crate) fn other_order(beside: &Beside, best: &Scored, others: &[&Scored]) ->
     let alike = others.iter().filter(|other| {
         let as_much = other.candidate.order.is_some() && best.gain - other.gain < BEATEN;
         let known = (other.gain, other.freedom);
-        as_much && nothing_new(beside, own, &other.candidate.shapes, known).is_some()
+        as_much && adds(beside, own, &other.candidate.shapes, known, NOTHING_NEW).is_some()
     });
     let nearest = alike.max_by(|a, b| a.gain.total_cmp(&b.gain))?;
     nearest.candidate.order
 }
 
-/// How much a cause adds to shapes that explain so much with so many numbers, where that says nothing new.
-fn nothing_new(
+/// How much a cause adds to shapes that explain so much with so many numbers, where that is no less probable than `least`.
+fn adds(
     beside: &Beside,
     cause: &Candidate,
     shapes: &[Shape],
     (gain, freedom): (f64, usize),
+    least: f64,
 ) -> Option<f64> {
     let (together, rank) = beside.gain(&both(shapes, &cause.shapes));
     let (adds, more) = (together - gain, rank.saturating_sub(freedom));
-    (more == 0 || log_tail(2.0 * adds, more) > NOTHING_NEW.ln()).then_some(adds)
+    (more == 0 || log_tail(2.0 * adds, more) > least.ln()).then_some(adds)
 }
 
 /// Whether the radius does not show what a cause adds to shapes: where the axis vibrates, that may be what its prediction does
@@ -110,7 +114,8 @@ fn along_the_circle(beside: &Beside, best: &Scored, catalogue: &Catalogue) -> Op
     }
     let alike = |c: &&Candidate| {
         let harmonic = c.domain == Domain::Angle && c.exact.is_none();
-        harmonic && nothing_new(beside, own, &c.shapes, beside.gain(&c.shapes)).is_some()
+        let known = || beside.gain(&c.shapes);
+        harmonic && adds(beside, own, &c.shapes, known(), NOTHING_NEW).is_some()
     };
     let alike = catalogue.candidates.iter().filter(alike);
     let fewest = alike.min_by_key(|c| c.shapes.len());

@@ -2,7 +2,6 @@
 //! so does what grows with the speed where that only rises.
 
 use crate::beside::Beside;
-use crate::cause::Domain;
 use crate::causes::{AC_COUPLING, HYSTERESIS};
 use crate::channels::Channels;
 use crate::contender::GAIN_DRIFT;
@@ -14,21 +13,21 @@ use crate::select::both;
 use crate::statistics::price;
 use crate::steps::{self, Change};
 
-/// Log-likelihood that steps explain beside the cause alone, and with other causes there that look like some, if there are any;
+/// Log-likelihood that steps explain beside the cause alone, and with other causes there, if there are any: what turns over with the
+/// direction looks like steps, and what repeats with the revolution, another drift, or what stands with the speed may look like some.
 /// `among` says it, given the shapes of the fit, of the cause, and of those.
 fn explained(
     system: &System,
     fit: &Fit,
     own: &Scored,
     rest: &[&Scored],
-    like_steps: impl Fn(&Scored) -> bool,
     among: impl Fn(&[Shape]) -> Option<f64>,
 ) -> Option<f64> {
     let mut named = both(&fit.shapes, &own.candidate.shapes);
     let alone = among(&named)?;
     let before = named.len();
     stand_beside(system, &mut named, rest, |o| {
-        like_steps(o) && o.candidate.name != own.candidate.name
+        o.candidate.name != own.candidate.name
     });
     if named.len() == before {
         return Some(alone);
@@ -48,10 +47,8 @@ pub(crate) fn instead_of_drift(
     } else {
         &[Change::Offsets]
     };
-    // What turns over with the direction looks like steps, and what another drift does may look like some.
-    let slow = |o: &Scored| o.candidate.domain == Domain::Time || o.candidate.name == HYSTERESIS;
     // The five parameters and other causes as they are beside the drift: without it they are off by what they take of it.
-    explained(system, fit, drift, rest, slow, |named| {
+    explained(system, fit, drift, rest, |named| {
         let mut amounts = system.fit(named.to_vec()).solution.x;
         let range = fit.shapes.len()..fit.shapes.len() + drift.candidate.shapes.len();
         amounts[range].fill(0.0);
@@ -76,23 +73,16 @@ pub(crate) fn instead_of_speed(
         return None;
     }
     let paid = price(system.context.samples() as f64) * own.freedom as f64;
-    explained(
-        system,
-        fit,
-        own,
-        rest,
-        |_| true,
-        |named| {
-            let mut others = named.to_vec();
-            others.drain(fit.shapes.len()..fit.shapes.len() + own.candidate.shapes.len());
-            let gain = Beside::new(&system.total, &others)
-                .gain(&own.candidate.shapes)
-                .0;
-            let left = system.residual(&system.fit(others));
-            let steps = steps::instead(Channels::of(system, &left), system.noise(), &ANY)?;
-            (steps > (1.0 + CLEARLY) * gain - paid).then_some(steps)
-        },
-    )
+    explained(system, fit, own, rest, |named| {
+        let mut others = named.to_vec();
+        others.drain(fit.shapes.len()..fit.shapes.len() + own.candidate.shapes.len());
+        let gain = Beside::new(&system.total, &others)
+            .gain(&own.candidate.shapes)
+            .0;
+        let left = system.residual(&system.fit(others));
+        let steps = steps::instead(Channels::of(system, &left), system.noise(), &ANY)?;
+        (steps > (1.0 + CLEARLY) * gain - paid).then_some(steps)
+    })
 }
 
 /// Whether a cause can stand in for steps that a drift was taken for: it has to explain as much as the drift did, by itself or

@@ -349,6 +349,27 @@ fn a_vibration_faster_than_the_knots_shows() {
     });
 }
 
+/// A drift of the gains beside what repeats with the revolution, which looks like steps on an axis that turns back; and a latency beside
+/// what makes the radius smaller, as a low pass would do.
+#[test]
+fn two_that_look_like_a_third_are_both_found() {
+    let seeds = [
+        149_002_156,
+        149_001_285,
+        149_002_736,
+        149_000_945,
+        149_003_845,
+    ];
+    seeds.into_par_iter().for_each(|seed| {
+        let case = Case::draw(seed, 20_000).expect("a case can be drawn");
+        let score = Score::of(case.truth.clone(), &case, &asked(seed));
+        let missed = |o: &Outcome| !matches!(o, Outcome::First | Outcome::Later | Outcome::Group);
+        let outcomes = &score.outcomes;
+        assert!(!outcomes.iter().any(missed), "{seed}: {outcomes:?}");
+        assert!(score.wrong.is_empty(), "{seed}: {:?}", score.wrong);
+    });
+}
+
 /// A drift that is named twice, by its ends and by how it went, is one that each of the two explains without the other: one of them stays.
 #[test]
 fn what_two_names_explain_keeps_one() {

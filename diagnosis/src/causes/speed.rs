@@ -160,6 +160,12 @@ fn time_constant(tau: &Parameter) -> String {
     )
 }
 
+/// Least time constant that one on the grid stands for. It is known twice, by how much there is of it and by its law; a little of a
+/// long one is none.
+fn least(speed: &Speed, i: usize) -> f64 {
+    i.checked_sub(1).map_or(0.0, |i| REACHES[i] / speed.top)
+}
+
 /// Late by d: the angle shown is that of d before.
 fn latency(speed: &Speed) -> Candidate {
     let angle = [Trig::constant(0.0), Trig::constant(1.0)];
@@ -172,17 +178,17 @@ fn latency(speed: &Speed) -> Candidate {
 
 /// A low pass in both channels, seen against a reference.
 fn late_bandwidths(speed: &Speed, library: &mut Library) -> Vec<Candidate> {
-    let one = |reach: f64| {
+    let one = |i: usize| {
         let make = |tau: f64, library: &mut Library| {
             let fill = move |block: &Block, out: &mut [f64]| falls_behind(block, tau, out);
             vec![library.add(1, Use::Rows, Rc::new(fill)).both(0)]
         };
-        let tau = reach / speed.top;
+        let tau = REACHES[i] / speed.top;
         let shapes = make(tau, library);
         Candidate {
             trials: REACHES.len() as f64,
             exact: follows(tau, make),
-            sign: Sign::Positive,
+            sign: Sign::Known(least(speed, i)),
             evidence: Rc::new(|p| {
                 format!(
                     "both channels lag the reference and lose amplitude with speed, as behind a low pass with {}",
@@ -192,7 +198,7 @@ fn late_bandwidths(speed: &Speed, library: &mut Library) -> Vec<Candidate> {
             ..cause("common_bandwidth", shapes, &["tau_s"], "s")
         }
     };
-    REACHES.map(one).into()
+    (0..REACHES.len()).map(one).collect()
 }
 
 fn skew(speed: &Speed) -> Candidate {
@@ -222,10 +228,8 @@ fn skew(speed: &Speed) -> Candidate {
 /// A low pass in one channel.
 fn mismatches(speed: &Speed, library: &mut Library) -> Vec<Candidate> {
     let names: [&'static [&'static str]; 2] = [&["tau_cos_s"], &["tau_sin_s"]];
-    // A time constant is known twice, by how much there is of it and by its law; a little of a long one is none.
     let mut one = |which: usize, i: usize| {
         let tau = REACHES[i] / speed.top;
-        let least = i.checked_sub(1).map_or(0.0, |i| REACHES[i] / speed.top);
         let make = move |tau: f64, library: &mut Library| {
             vec![library.pair(move |block: &Block, c, s| {
                 block.channel(which, &low_pass(block, which, tau), c, s);
@@ -235,7 +239,7 @@ fn mismatches(speed: &Speed, library: &mut Library) -> Vec<Candidate> {
         Candidate {
             trials: (2 * REACHES.len()) as f64,
             exact: follows(tau, make),
-            sign: Sign::Known(least),
+            sign: Sign::Known(least(speed, i)),
             evidence: Rc::new(move |p| {
                 let [own, other] = [["cos", "sin"], ["sin", "cos"]][which];
                 format!(
