@@ -337,7 +337,7 @@ pub(crate) fn gears() -> Vec<Variant> {
             spec.calibration.parameters = parameters;
             spec.calibration.method = method;
             spec.calibration.gamma_first = first;
-            spec.calibration.gamma_last = last;
+            spec.calibration.gamma_last = Some(last);
             spec.calibration.gear_periods = Some(1);
             spec.chip.multipliers = multipliers;
         })
@@ -348,6 +348,7 @@ pub(crate) fn gears() -> Vec<Variant> {
         (4, SumOfSquares, (9, 9), one),
         (5, Exact, (8, 9), Multipliers::Count(2)),
         (5, Batch, (3, 18), one),
+        (8, Batch, (4, 9), one),
     ]
     .map(of)
     .into()

@@ -48,7 +48,7 @@ pub(crate) fn purpose(spec: &Spec) -> Vec<String> {
         (true, gears) => format!(
             " gamma, how far, is 2^-{} at first and 2^-{} after {gears} gear{}.",
             c.gamma_first,
-            c.gamma_last,
+            c.gamma_last(),
             if gears == 1 { "" } else { "s" }
         ),
     };

@@ -32,7 +32,7 @@ proptest! {
         spec.adc.full_scale *= full_scale;
         let c = &mut spec.calibration;
         if c.is_on() {
-            (c.gamma_first, c.gamma_last) = (gamma_first, (gamma_first + gears).min(18));
+            (c.gamma_first, c.gamma_last) = (gamma_first, Some((gamma_first + gears).min(18)));
             c.gear_periods = Some(gear_periods);
             (c.restart_residual, c.hold_residual) = residuals;
             c.recall = c.recall.filter(|recall| !recall || c.settles());

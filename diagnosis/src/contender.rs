@@ -72,6 +72,10 @@ pub(crate) fn contender(
     left: &Residual,
     mut scored: Vec<Scored>,
 ) -> Contender {
+    let harmonics = |s: &Scored| is_of_orders(system.context, &s.candidate);
+    if !scored.iter().all(harmonics) {
+        scored.retain(|s| !harmonics(s));
+    }
     off_the_grid(system, fit, &mut scored);
     fewer_first(&mut scored);
     let most = scored[0].gain;
@@ -254,8 +258,8 @@ fn off_the_grid(system: &mut System, fit: &Fit, scored: &mut [Scored]) {
 /// What needs far fewer numbers for nearly as much as the best explains goes first: many numbers bend to anything, and the
 /// tangents of a large cause are off by about a hundredth.
 fn fewer_first(scored: &mut [Scored]) {
-    /// So many fewer: a bend of both channels has two numbers, a harmonic of the scale four.
-    const FEWER: usize = 2;
+    /// So many fewer.
+    const FEWER: usize = 3;
     /// Share of what the best explains.
     const AS_MUCH: f64 = 0.99;
     let Some(best) = scored.first() else { return };
@@ -272,10 +276,29 @@ fn fewer_first(scored: &mut [Scored]) {
 /// Whether, at a speed that hardly changes, a line stands where something that goes with the angle would: at half orders of
 /// the scale period, or at whole ones beside a fourth or half of the sample rate, where a multiplexer puts them.
 fn goes_with_angle(context: &Context, candidate: &Candidate) -> bool {
+    let halves = (1..2 * TOP).step_by(2).map(|m| (0.0, 0.5 * f64::from(m)));
+    let beside_rate = (-TOP..=TOP).flat_map(|m| [0.25, 0.5].map(|share| (share, f64::from(m))));
+    stands_at(context, candidate, halves.chain(beside_rate))
+}
+
+/// Whether, at a speed that hardly changes, a line with its harmonics stands where harmonics of the scale period do: together they look
+/// like that, and each of them is told by itself.
+fn is_of_orders(context: &Context, candidate: &Candidate) -> bool {
+    let harmonics = candidate.name == causes::INTERFERENCE && candidate.shapes.len() > 4;
+    harmonics && stands_at(context, candidate, (1..=TOP).map(|m| (0.0, f64::from(m))))
+}
+
+/// Highest order of the scale period at which a line may stand.
+const TOP: i32 = 8;
+
+/// Whether a line stands, at a speed that hardly changes, at a share of the sample rate and an order of the scale period from there.
+fn stands_at(
+    context: &Context,
+    candidate: &Candidate,
+    mut places: impl Iterator<Item = (f64, f64)>,
+) -> bool {
     /// Cycles per recording by which it may be off.
     const NEAR: f64 = 0.7;
-    /// Highest order.
-    const TOP: i32 = 8;
     /// Fewest scale periods, so that hardly a line stands there by chance.
     const FEWEST: f64 = 50.0;
     // Vibration too: where it goes with the angle it may be an error of the sensor.
@@ -287,13 +310,9 @@ fn goes_with_angle(context: &Context, candidate: &Candidate) -> bool {
     };
     let duration = context.samples() as f64 / context.rate;
     let turning = context.periods_travelled() / duration;
-    let near = |f: f64| (hertz - f).abs() * duration < NEAR;
-    let halves = (1..2 * TOP)
-        .step_by(2)
-        .map(|m| 0.5 * f64::from(m) * turning);
-    let beside_rate = (-TOP..=TOP)
-        .flat_map(|m| [0.25, 0.5].map(|share| share * context.rate + f64::from(m) * turning));
-    halves.chain(beside_rate).any(near)
+    places.any(|(share, order)| {
+        (hertz - share * context.rate - order * turning).abs() * duration < NEAR
+    })
 }
 
 /// Log-likelihood that a cause explains where noise of the channels is looked for, its numbers paid for: what it explains along

@@ -11,8 +11,10 @@ use crate::statistics::{at_most_of_noise, log_tail};
 
 /// A cause that adds less than this probability says nothing new.
 const NOTHING_NEW: f64 = 1e-3;
-/// The same of one that explains no more alone than the other does.
+/// The same of a clear one that explains no more alone than the other does.
 const HARDLY_NEW: f64 = 1e-5;
+/// Gain in log-likelihood (an SNR of 24) from which on it is clear: of a weak one this would be most.
+const CLEAR: f64 = 300.0;
 /// Log-likelihood by which a rival is beaten, if others are left: twenty to one.
 const BEATEN: f64 = 3.0;
 
@@ -40,12 +42,16 @@ pub(crate) fn among(
         let own = (other.gain, other.freedom);
         let shapes = &other.candidate.shapes;
         let as_much = best.gain - other.gain < BEATEN;
-        let least = if as_much { HARDLY_NEW } else { NOTHING_NEW };
-        let adds = adds(beside, &best.candidate, shapes, own, least).or_else(|| {
+        let least = if as_much && best.gain > CLEAR {
+            HARDLY_NEW
+        } else {
+            NOTHING_NEW
+        };
+        let more = adds(beside, &best.candidate, shapes, own, least).or_else(|| {
             let unseen = as_much && only_along_the_circle(system, fit, &best.candidate, shapes);
             unseen.then_some(0.0)
         });
-        if let Some(adds) = adds {
+        if let Some(adds) = more {
             // Of several choices of one name the nearest counts.
             match found.iter_mut().find(|(known, _)| *known == name) {
                 Some((_, nearest)) => *nearest = nearest.min(adds),

@@ -119,7 +119,14 @@ impl Selection {
                 ..self.accepted[i].clone()
             })
         });
-        self.of(findings.collect(), system)
+        let mut names = self.of(findings.collect(), system);
+        // What stands in for what has no name, and names that were dropped, took of them.
+        let owns = names.accepted.iter().map(|one| names.own(one, system));
+        let owns: Vec<Option<Own>> = owns.collect();
+        for (one, own) in names.accepted.iter_mut().zip(owns) {
+            one.own = own.unwrap_or(one.own);
+        }
+        names
     }
 
     /// Of some names the one that is likeliest where the rest of them is not there; nothing where none is likely, or where there are not

@@ -49,7 +49,7 @@ pub fn unseen(context: &Context) -> Vec<String> {
     let moves = |sign: f64| context.speed.iter().any(|v| v * sign > stands);
     if !speed_varies(context) {
         tell(
-            "at this constant speed, channel_skew, bandwidth_mismatch, common_bandwidth and delayed_crosstalk look like phase and gain errors, and amplitude_noise and clock_jitter like white noise; record several speeds",
+            "at this constant speed, channel_skew, bandwidth_mismatch, common_bandwidth and delayed_crosstalk look like phase and gain errors, harmonics like lines, and amplitude_noise and clock_jitter like white noise; record several speeds",
         );
     }
     if !(moves(1.0) && moves(-1.0)) {

@@ -178,7 +178,7 @@ fn vectors_catch_every_fault_in_the_recall_of_what_has_moved() {
     let mut spec = chip::shipped::variants::recalls()[1].spec.clone();
     // Gains that follow a fade of some periods, and are held for all of it.
     let c = &mut spec.calibration;
-    (c.gamma_first, c.gamma_last, c.hold_periods) = (3, 7, Some(100));
+    (c.gamma_first, c.gamma_last, c.hold_periods) = (3, Some(7), Some(100));
     let chip = Sound::new(&spec);
     all_caught("the recall of what has moved", &chip, RTL, &moved_faults());
 }

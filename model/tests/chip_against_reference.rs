@@ -191,7 +191,7 @@ fn calibrated(spec: &Spec, found: &Difference) {
         assert!(found.updates > 600 && found.moved > 0.05, "{found:?}");
         assert_eq!(
             found.gears,
-            spec.calibration.gamma_last - spec.calibration.gamma_first
+            spec.calibration.gamma_last() - spec.calibration.gamma_first
         );
         assert_eq!(
             found.completions > 20,

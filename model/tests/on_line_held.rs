@@ -6,7 +6,6 @@ use crate::chip_support::loss::{PERIOD, sensor_for};
 use crate::chip_support::shipped::variants::{Variant, searches};
 use crate::chip_support::{Bench, largest, optical};
 use nonius_kept::long;
-use nonius_model::spec::Calibration;
 use rand::{Rng, SeedableRng, rngs::StdRng};
 use rayon::prelude::*;
 
@@ -79,7 +78,7 @@ fn every_second_period_disturbed_counts_as_each() {
 #[test]
 fn one_gear_begins_once() {
     let mut spec = optical();
-    spec.calibration.gamma_last = spec.calibration.gamma_first;
+    spec.calibration.gamma_last = Some(spec.calibration.gamma_first);
     spec.calibration.gear_periods = Some(4);
     let signals = sensor_for(&spec, 5);
     let mut running = Bench::new(&spec, 5);
@@ -119,7 +118,7 @@ fn a_period_that_is_dropped_counts_for_no_gear() {
         }
     };
     let gear = |bench: &Bench| bench.chip.state.gamma_gear.raw(0);
-    while gear(&bench) < i64::from(Calibration::SETTLED) {
+    while gear(&bench) < i64::from(bench.design.spec.calibration.settled_gears()) {
         travel(&mut bench, &mut at, 1, |_, a| signals(a), |_| ());
     }
     let settled = gear(&bench);

@@ -10,7 +10,6 @@ use crate::chip_support::bent::{RATE, bent_sensor, noise, noise_in, parameters, 
 use crate::chip_support::shipped::variants::{Variant, searches};
 use crate::chip_support::{Bench, larger};
 use nonius_kept::{every, figure, figure_of_short, long};
-use nonius_model::spec::Calibration;
 use rayon::prelude::*;
 
 /// A vibration: amplitude in periods, frequency in hertz.
@@ -202,7 +201,10 @@ fn a_vibration_before_gamma_has_settled_pulls() {
                 }
             }
             let gear = running.chip.state.gamma_gear.raw(0) as u32;
-            assert!(locked.is_some() && gear < Calibration::SETTLED, "{gear}");
+            assert!(
+                locked.is_some() && gear < running.design.spec.calibration.settled_gears(),
+                "{gear}"
+            );
             let noise = noise_in(&running.design, gear);
             let of = |hertz: f64| {
                 let far = shaken(&running, &signals, turns, (0.1, hertz), 10, &noise);

@@ -33,10 +33,10 @@ fn what_cannot_work_names_the_field() {
             s.calibration.method = CalibrationMethod::Batch;
             s.calibration.start = CalibrationStart::LeastSquares;
         }),
-        // Parameters are held, and recalled, only after four gears.
+        // Parameters are held, and recalled, only after four gears, or three.
         ("calibration.recall", |s| {
             s.calibration.recall = Some(true);
-            s.calibration.gamma_last = s.calibration.gamma_first + 3;
+            s.calibration.gamma_last = Some(s.calibration.gamma_first + 3);
         }),
         ("correction.channel_skew_s", |s| {
             s.correction.channel_skew_s = f64::NAN;
@@ -58,9 +58,8 @@ fn what_cannot_work_names_the_field() {
             s.accuracy.rms_periods = 1e-3;
         }),
         ("adc.bits", |s| s.adc.bits = 24),
-        // The last one is not said.
         ("calibration.gamma_first", |s| {
-            s.calibration.gamma_first = 11
+            s.calibration.gamma_first = 13
         }),
         ("accuracy.rms_periods", |s| s.accuracy.rms_periods = 1e-6),
         ("formats.phase_bits", |s| s.formats.phase_bits = Some(60)),

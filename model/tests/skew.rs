@@ -23,7 +23,7 @@ fn spec(parameters: u32, corrected: f64) -> Spec {
     spec.correction.channel_skew_s = corrected;
     if parameters > 0 {
         // A phase that is calibrated follows part of what skew does; here it is to follow little.
-        spec.calibration.gamma_last = 11;
+        spec.calibration.gamma_last = Some(11);
     }
     spec
 }

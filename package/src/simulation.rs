@@ -49,7 +49,7 @@ pub fn simulate(design: &Design) -> Simulation {
     let top = spec.sensor.speed_max_periods_per_s / spec.adc.sample_rate_hz;
     let fast = (top / 2.0).min(0.00713);
     // At the last gamma the slowest mode settles by an e-th in about 2/(64 gamma) periods.
-    let last = 2f64.powi(spec.calibration.gamma_last as i32);
+    let last = 2f64.powi(spec.calibration.gamma_last() as i32);
     let periods = 60.0 + 10.0 * last / 64.0 * 2.0;
     // A slow machine moves up to its top speed, and takes its time; where that would take for ever, it is simulated faster
     // than it is.

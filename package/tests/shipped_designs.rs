@@ -40,8 +40,8 @@ fn shipped_designs_reach_the_accuracy_they_ask_for() {
 fn the_budget_predicts_what_is_simulated() {
     for name in shipped::NAMES {
         let mut spec = shipped::spec(name);
-        for gamma_last in [5, spec.calibration.gamma_last] {
-            spec.calibration.gamma_last = gamma_last;
+        for gamma_last in [5, spec.calibration.gamma_last()] {
+            spec.calibration.gamma_last = Some(gamma_last);
             let design = Design::new(&spec).expect("a shipped design");
             let (predicted, found) = (
                 design.budget.total(),

@@ -212,14 +212,22 @@ pub(crate) fn diagnosed_of(case: &Case, samples: usize) -> Result<Diagnosis, Con
 
 /// A recording of a part of a period, one way, and the true offset of the sine and amplitude of the cosine.
 pub(crate) fn arc(periods: f64, seed: u64) -> (Diagnosis, [f64; 2]) {
+    let known = Drive::known();
+    (
+        evenly(&PLAIN, periods, seed),
+        [known.offset[1], known.amplitude[0]],
+    )
+}
+
+/// A recording of so many periods, one way at a speed that does not change.
+pub(crate) fn evenly(case: &Case, periods: f64, seed: u64) -> Diagnosis {
     let mut random = StdRng::seed_from_u64(seed);
     let drive = Drive {
         swing: 0.0,
         run: periods * TAU / LENGTH,
         ..Drive::known()
     };
-    let found = of_rows(&PLAIN, &simulated(&PLAIN, &drive, SAMPLES, &mut random));
-    (found, [drive.offset[1], drive.amplitude[0]])
+    of_rows(case, &simulated(case, &drive, SAMPLES, &mut random))
 }
 
 fn of_rows(case: &Case, rows: &Rows) -> Diagnosis {

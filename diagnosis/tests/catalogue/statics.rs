@@ -1,6 +1,10 @@
 //! Static causes of each channel.
 
-use crate::harness::{Case, LSB, PLAIN, alone, damaged, finds, names, near, shows, within_errors};
+use std::f64::consts::FRAC_PI_2;
+
+use crate::harness::{
+    Case, LSB, PLAIN, alone, damaged, evenly, finds, names, near, shows, within_errors,
+};
 
 #[test]
 fn bends_and_harmonics() {
@@ -34,6 +38,45 @@ fn bends_and_harmonics() {
         },
     );
     near(&found, "amplitude_cos", 0.002);
+}
+
+/// A strong harmonic whose phase is nearly a bend's is no bend: what that leaves of it is far beyond chance.
+#[test]
+fn a_harmonic_beside_a_bend_is_a_harmonic() {
+    let found = finds(
+        "spatial_harmonic",
+        &Case {
+            channels: |c, s, _, a, _| {
+                let third = |phase: f64| 0.0015 * (3.0 * a + phase).cos();
+                (c + third(0.07), s + third(0.07 + FRAC_PI_2))
+            },
+            ..PLAIN
+        },
+    );
+    near(&found, "amplitude_cos", 0.0015);
+}
+
+/// At a speed that does not change, orders two and four of the scale period have the frequencies of a line and of its harmonic: they are
+/// never that alone.
+#[test]
+fn harmonics_at_one_speed_are_not_only_a_line() {
+    let found = evenly(
+        &Case {
+            channels: |c, s, _, a, _| {
+                let both = 0.002 * (2.0 * a + 0.3).cos() + 0.001 * (4.0 * a + 1.0).cos();
+                (c + both, s)
+            },
+            ..PLAIN
+        },
+        400.3,
+        1,
+    );
+    assert!(!found.findings.is_empty());
+    for one in &found.findings {
+        let harmonic = |name: &str| name == "spatial_harmonic";
+        let other = one.confounded_with.iter().any(|name| harmonic(name));
+        assert!(harmonic(&one.cause) || other, "{:?}", names(&found));
+    }
 }
 
 #[test]

@@ -20,7 +20,7 @@ use super::scenario::{SAMPLES, SENSOR, SPEED, Scenario};
 pub(crate) fn bounds(design: &Design, scenario: Scenario) -> Vec<(String, SetBound)> {
     let spec = &design.spec;
     let lsb = 2.0 * spec.adc.full_scale / 2f64.powi(spec.adc.bits as i32) / spec.sensor.amplitude;
-    let averaged = 4usize << spec.calibration.gamma_last;
+    let averaged = 4usize << spec.calibration.gamma_last();
     let all = SAMPLES as usize;
     let bits = spec.adc.bits;
     let mut rows = vec![(

@@ -78,7 +78,7 @@ fn calibration(spec: &Spec, adc_radians: f64) -> f64 {
         _ => four + bends + 4.0 * 3.0 / 8.0,
     };
     let disturbs = spec.sensor.noise_rms.powi(2) + adc_radians.powi(2);
-    let gamma = exp2(-i64::from(c.gamma_last));
+    let gamma = exp2(-i64::from(c.gamma_last()));
     (gamma * steps / 2.0 * disturbs).sqrt() / TAU
 }
 
@@ -148,7 +148,7 @@ fn accumulator(words: &Words, spec: &Spec) -> f64 {
     if !spec.calibration.is_on() {
         return 0.0;
     }
-    exp2(spec.calibration.gamma_last.into()) * dead_band(words.accumulator_fraction)
+    exp2(spec.calibration.gamma_last().into()) * dead_band(words.accumulator_fraction)
 }
 
 /// Largest error that may be asked for, periods rms.

@@ -3,10 +3,10 @@
 use super::DesignError;
 use super::budget::{RMS_MOST, SHARE_LEAST};
 use super::keywords::{KEYWORDS, SYSTEM_KEYWORDS};
-use super::refuse::{at_most, between, refuse};
+use super::refuse::{between, refuse};
 use super::search;
 use crate::graph::Graph;
-use crate::spec::{Calibration, Multipliers, Spec};
+use crate::spec::{Multipliers, Spec};
 
 /// Checks every field for sense.
 pub(super) fn check(spec: &Spec) -> Result<(), DesignError> {
@@ -144,16 +144,7 @@ pub(super) fn check(spec: &Spec) -> Result<(), DesignError> {
         12.0,
         "the sum of gamma over the 64 sectors of a period must stay below 8",
     )?;
-    let (first, last) = (spec.calibration.gamma_first, spec.calibration.gamma_last);
-    // What is not said is not to blame.
-    if last == Calibration::default().gamma_last && first > last {
-        return refuse(
-            "calibration.gamma_first",
-            first,
-            at_most(last.into()),
-            "the last gamma, gamma_last, is not larger than the first",
-        );
-    }
+    let (first, last) = (spec.calibration.gamma_first, spec.calibration.gamma_last());
     between(
         "calibration.gamma_last",
         last.into(),

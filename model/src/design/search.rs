@@ -41,9 +41,9 @@ pub(super) fn check(spec: &Spec) -> Result<(), DesignError> {
             true,
             format!(
                 "false, or gamma_last at least {}",
-                c.gamma_first.saturating_add(Calibration::SETTLED)
+                c.gamma_first.saturating_add(c.settled_gears())
             ),
-            "parameters are held only after four gears: with fewer there is nothing to recall",
+            "parameters are held only once gamma has settled: before there is nothing to recall",
         );
     }
     if c.completed().is_some() && spec.sensor.periods_per_revolution == Some(1.0) {
@@ -122,6 +122,7 @@ fn without(c: &Calibration) -> Result<(), DesignError> {
     let keys = |c: &Calibration| {
         let worked_out = Calibration {
             parameters: 0,
+            gamma_last: Some(c.gamma_last()),
             gear_periods: Some(c.gear_periods()),
             hold_periods: Some(c.hold_periods.unwrap_or(Calibration::HELD_KNOWN)),
             recall: Some(c.recall.unwrap_or(true)),

@@ -189,7 +189,7 @@ pub fn config(spec: &Spec) -> Result<Config, ReferenceError> {
         let mut steps = first;
         let less = 0.5f64.powi(Calibration::PHASE_HALVINGS as i32);
         steps.row_mut(at).scale_mut(less);
-        (Calibration::SETTLED, steps)
+        (k.settled_gears(), steps)
     });
     // A loop settles within some multiples of 1/ω0.
     let omega = TAU * spec.tracking.bandwidth_hz / spec.adc.sample_rate_hz;
@@ -212,7 +212,7 @@ pub fn config(spec: &Spec) -> Result<Config, ReferenceError> {
         sparse: sparse(spec),
         // A loop of type 1 always lags.
         catch_up: (k.is_on() && k.settles() && spec.tracking.filter_type == 2).then(|| CatchUp {
-            settled: Calibration::SETTLED,
+            settled: k.settled_gears(),
             e: spec.small_error(),
         }),
         gamma: Gamma {
@@ -220,7 +220,7 @@ pub fn config(spec: &Spec) -> Result<Config, ReferenceError> {
             halvings: k.gears(),
             periods: k.gear_periods().into(),
             settled,
-            waits: k.waits().then_some(Calibration::SETTLED),
+            waits: k.waits().then_some(k.settled_gears()),
         },
         gate: if k.is_on() {
             Gate::Travelled(window)
@@ -231,7 +231,7 @@ pub fn config(spec: &Spec) -> Result<Config, ReferenceError> {
         hold: k.settles().then(|| HoldConfig {
             residual: spec.hold_residual(),
             restart: k.restart_residual,
-            settled: Calibration::SETTLED,
+            settled: k.settled_gears(),
             periods: [Calibration::HELD, k.hold_periods()],
             steady: spec.steady_gain(),
             recall: k.recalls().then_some(RecallConfig {

@@ -32,9 +32,9 @@ pub struct Calibration {
     /// First γ is 2^-`gamma_first`.
     #[serde(default = "gamma_first")]
     pub gamma_first: u32,
-    /// Last γ is 2^-`gamma_last`.
-    #[serde(default = "gamma_last")]
-    pub gamma_last: u32,
+    /// Last γ is 2^-`gamma_last`. Default: see [`gamma_last`](Self::gamma_last).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gamma_last: Option<u32>,
     /// Periods of travel between gears. Default: see [`gear_periods`](Self::gear_periods).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gear_periods: Option<u32>,
@@ -69,9 +69,6 @@ fn completion_gamma() -> u32 {
 }
 fn gamma_first() -> u32 {
     4
-}
-fn gamma_last() -> u32 {
-    9
 }
 fn restart() -> f64 {
     0.25
@@ -143,8 +140,6 @@ impl Spec {
 }
 
 impl Calibration {
-    /// Halvings of γ after which it has settled: parameters move where a period of travel ends then.
-    pub const SETTLED: u32 = 4;
     /// Periods of travel that parameters are held of which nothing better is known, before the search begins again.
     pub const HELD: u32 = 32;
     /// Periods of travel in the first gear, with bends near their bounds, after which a search that began again with each gives up.
@@ -182,13 +177,25 @@ impl Calibration {
     /// Halvings of γ from the first to the last.
     #[must_use]
     pub fn gears(&self) -> u32 {
-        self.gamma_last.saturating_sub(self.gamma_first)
+        self.gamma_last().saturating_sub(self.gamma_first)
+    }
+
+    /// Batches of eight and nine parameters: one step a period, half as large as one of other searches with the same γ, that lags what
+    /// drifts by a period more.
+    fn is_slowest(&self) -> bool {
+        self.is_batch() && self.has_bend()
+    }
+
+    /// Halvings of γ after which it has settled: parameters move where a period of travel ends then.
+    #[must_use]
+    pub fn settled_gears(&self) -> u32 {
+        if self.is_slowest() { 3 } else { 4 }
     }
 
     /// γ is halved often enough to settle.
     #[must_use]
     pub fn settles(&self) -> bool {
-        self.gears() >= Self::SETTLED
+        self.gears() >= self.settled_gears()
     }
 
     /// Once γ has settled the parameters move where a period of travel ends, by all that it taught: what lasts less than a period,
@@ -302,6 +309,19 @@ impl Calibration {
         self.method == CalibrationMethod::Final && !self.has_bend()
     }
 
+    /// Last γ is 2^-this: as the design says, or what follows the drift of a sensor that warms up, and has settled. A step of the exact
+    /// gradient and of batches is half as large as one of the others with the same γ.
+    #[must_use]
+    pub fn gamma_last(&self) -> u32 {
+        let follows = match self.method {
+            _ if self.is_slowest() => 7,
+            CalibrationMethod::Exact | CalibrationMethod::Batch => 8,
+            CalibrationMethod::Final | CalibrationMethod::SumOfSquares => 9,
+        };
+        let settled = self.gamma_first.saturating_add(self.settled_gears());
+        self.gamma_last.unwrap_or(follows.max(settled))
+    }
+
     /// Periods of travel between gears: as the design says, or what is soonest below 1 % of the first miscalibration. The final
     /// form with four and five parameters is still quick in the fourth period; the others swing or are noisy there.
     #[must_use]
@@ -360,7 +380,7 @@ impl Default for Calibration {
             completion_gamma: completion_gamma(),
             lag: None,
             gamma_first: gamma_first(),
-            gamma_last: gamma_last(),
+            gamma_last: None,
             gear_periods: None,
             restart_residual: restart(),
             hold_residual: hold(),

@@ -61,7 +61,7 @@ pub(crate) fn noise(design: &Design) -> [f64; 9] {
 pub(crate) fn noise_in(design: &Design, gear: u32) -> [f64; 9] {
     let (k, by) = (&design.spec.calibration, Equaliser::of(&design.structure));
     let (gain, offset, bend) = (by.gain, by.offset, by.bend);
-    let less = if k.phase_settles() && gear >= Calibration::SETTLED {
+    let less = if k.phase_settles() && gear >= k.settled_gears() {
         Calibration::PHASE_HALVINGS
     } else {
         0
