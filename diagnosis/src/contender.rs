@@ -32,6 +32,8 @@ const OTHERS: usize = 3;
 const NEARLY: f64 = 0.8;
 /// Share from which on a drift explains as much as what may be one.
 const AS_WELL: f64 = 0.95;
+/// Highest order of the scale period at which a line may stand.
+const TOP: i32 = causes::ORDERS as i32;
 /// A drift of the offsets.
 const DRIFT: &str = "offset_drift";
 /// A drift of the gains.
@@ -284,12 +286,9 @@ fn goes_with_angle(context: &Context, candidate: &Candidate) -> bool {
 /// Whether, at a speed that hardly changes, a line with its harmonics stands where harmonics of the scale period do: together they look
 /// like that, and each of them is told by itself.
 fn is_of_orders(context: &Context, candidate: &Candidate) -> bool {
-    let harmonics = candidate.name == causes::INTERFERENCE && candidate.shapes.len() > 4;
-    harmonics && stands_at(context, candidate, (1..=TOP).map(|m| (0.0, f64::from(m))))
+    causes::has_harmonics(candidate)
+        && stands_at(context, candidate, (1..=TOP).map(|m| (0.0, f64::from(m))))
 }
-
-/// Highest order of the scale period at which a line may stand.
-const TOP: i32 = 8;
 
 /// Whether a line stands, at a speed that hardly changes, at a share of the sample rate and an order of the scale period from there.
 fn stands_at(

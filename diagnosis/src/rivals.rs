@@ -5,16 +5,14 @@ use crate::cause::{Candidate, Domain};
 use crate::causes::{self, Catalogue};
 use crate::library::Shape;
 use crate::model::{Fit, System};
-use crate::score::{RIVALS, Scored};
+use crate::score::{CLEAR, RIVALS, Scored};
 use crate::select::both;
 use crate::statistics::{at_most_of_noise, log_tail};
 
 /// A cause that adds less than this probability says nothing new.
 const NOTHING_NEW: f64 = 1e-3;
-/// The same of a clear one that explains no more alone than the other does.
+/// The same of a clear one that explains no more alone than the other does; of a weak one this would be most.
 const HARDLY_NEW: f64 = 1e-5;
-/// Gain in log-likelihood (an SNR of 24) from which on it is clear: of a weak one this would be most.
-const CLEAR: f64 = 300.0;
 /// Log-likelihood by which a rival is beaten, if others are left: twenty to one.
 const BEATEN: f64 = 3.0;
 
@@ -120,8 +118,7 @@ fn along_the_circle(beside: &Beside, best: &Scored, catalogue: &Catalogue) -> Op
     }
     let alike = |c: &&Candidate| {
         let harmonic = c.domain == Domain::Angle && c.exact.is_none();
-        let known = || beside.gain(&c.shapes);
-        harmonic && adds(beside, own, &c.shapes, known(), NOTHING_NEW).is_some()
+        harmonic && adds(beside, own, &c.shapes, beside.gain(&c.shapes), NOTHING_NEW).is_some()
     };
     let alike = catalogue.candidates.iter().filter(alike);
     let fewest = alike.min_by_key(|c| c.shapes.len());

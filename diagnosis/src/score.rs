@@ -20,6 +20,8 @@ const LARGEST: f64 = 0.1;
 const SEEN: f64 = 0.05;
 /// Gain in log-likelihood (an SNR of 4) that a cause has to have beyond how it was when the recording began.
 pub(crate) const ITSELF: f64 = 8.0;
+/// Gain in log-likelihood (an SNR of 24) from which on a cause is clear.
+pub(crate) const CLEAR: f64 = 300.0;
 /// Share of the best gain below which another cause is no rival.
 pub(crate) const RIVALS: f64 = 0.6;
 

@@ -11,7 +11,7 @@ use crate::exact::{self, Start};
 use crate::flicker::{self, records::Records};
 use crate::library::Shape;
 use crate::model::{Fit, Residual, System, atoms_of};
-use crate::score::{SHOWN, Scored, likely, score, worth};
+use crate::score::{CLEAR, SHOWN, Scored, likely, score, worth};
 use crate::selection::{Accepted, Selection};
 use crate::simpler::simpler;
 use crate::statistics::{by_chance, price};
@@ -21,8 +21,6 @@ use crate::unexplained::{Unnamed, What};
 const MOST: usize = 8;
 /// Share of what could not be named that a cause has to explain beside it to be named.
 const BEYOND_UNKNOWN: f64 = 0.5;
-/// Gain in log-likelihood (an SNR of 24) from which on a part of a long recording is enough to name a cause.
-const CLEAR: f64 = 300.0;
 /// Shapes of one list, then of the other.
 pub(crate) fn both(a: &[Shape], b: &[Shape]) -> Vec<Shape> {
     a.iter().chain(b).cloned().collect()
@@ -244,6 +242,7 @@ fn search(
             break;
         }
         let partial = system.every() > 1;
+        // In a part of a long recording only what is clear is named.
         if partial && most < CLEAR {
             break;
         }

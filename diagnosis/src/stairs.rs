@@ -14,7 +14,7 @@ use crate::statistics::price;
 use crate::steps::{self, Change};
 
 /// Log-likelihood that steps explain beside the cause alone, and with other causes there, if there are any: what turns over with the
-/// direction looks like steps, and what repeats with the revolution, another drift, or what stands with the speed may look like some.
+/// direction looks like steps, and what repeats with the revolution, another drift, or what goes with the speed may look like some.
 /// `among` says it, given the shapes of the fit, of the cause, and of those.
 fn explained(
     system: &System,

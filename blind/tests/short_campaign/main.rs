@@ -5,7 +5,7 @@
 mod independent;
 mod kept;
 
-use nonius_blind::{Case, Kind, Outcome, Score, Summary, page, seal, verdict};
+use nonius_blind::{Case, Kind, Outcome, Score, Summary, Verdict, page, seal, verdict};
 use nonius_kept::every;
 use rayon::prelude::*;
 
@@ -49,7 +49,8 @@ fn short_campaign() {
 /// was hum. A low pass in one channel was a delay for sure, by what a shaking axis does along the circle alone, a drift was a high pass
 /// by how that was when the recording began, and flicker noise that is hardly seen was a drift.
 /// A code at which the ADC jumps was a lost or a repeated sample, and cogging where the axis turns back was a repeated one. A harmonic
-/// that grows with the speed was a jittering clock, a crest of a lamp whose frequency wanders was hum, and what two names left slow was flicker noise. Every sixth; in the long form all.
+/// that grows with the speed was a jittering clock, a crest of a lamp whose frequency wanders was hum, and what two names left slow was
+/// flicker noise. Every sixth; in the long form all.
 #[test]
 fn wrong_names_do_not_come_back() {
     let seeds = [
@@ -103,9 +104,7 @@ fn wrong_names_do_not_come_back() {
         98_000_554,
     ];
     for seed in every(6, seeds) {
-        let case = Case::draw(seed, 20_000).expect("a case can be drawn");
-        let verdict = verdict(&case.csv()).unwrap_or_else(|why| panic!("{seed}: {why}"));
-        let score = Score::of(case.truth.clone(), &case, &verdict);
+        let score = scored(seed);
         assert!(score.wrong.is_empty(), "{seed}: {:?}", score.wrong);
     }
 }
@@ -177,24 +176,13 @@ fn what_was_missed_is_found() {
         97_000_756,
         98_000_504,
     ];
-    for seed in every(6, seeds) {
-        let case = Case::draw(seed, 20_000).expect("a case can be drawn");
-        let verdict = verdict(&case.csv()).unwrap_or_else(|why| panic!("{seed}: {why}"));
-        let score = Score::of(case.truth.clone(), &case, &verdict);
-        let missed = |o: &Outcome| !matches!(o, Outcome::First | Outcome::Later);
-        let outcomes = &score.outcomes;
-        assert!(!outcomes.iter().any(missed), "{seed}: {outcomes:?}");
-    }
+    every(6, seeds).for_each(all_named);
 }
 
 /// A random case that ended the program once: a large error of the channels beside cogging that a reference shows.
 #[test]
 fn large_errors_beside_real_motion_and_a_reference_are_both_named() {
-    let case = Case::draw(83_000_145, 20_000).expect("a case can be drawn");
-    let verdict = verdict(&case.csv()).expect("a verdict");
-    let score = Score::of(case.truth.clone(), &case, &verdict);
-    let missed = |o: &Outcome| !matches!(o, Outcome::First | Outcome::Later);
-    assert!(!score.outcomes.iter().any(missed), "{:?}", score.outcomes);
+    all_named(83_000_145);
 }
 
 /// The score itself: silence, a wrong name, a group.
@@ -312,10 +300,29 @@ fn what_a_cause_brings_is_no_wrong_name_and_not_its_own() {
     assert_eq!(score.wrong, ["latency"]);
 }
 
-/// What the diagnosis says of the case of a seed.
-fn asked(seed: u64) -> nonius_blind::Verdict {
+/// The case of a seed, and what the diagnosis says of it.
+fn answered(seed: u64) -> (Case, Verdict) {
     let case = Case::draw(seed, 20_000).expect("a case can be drawn");
-    verdict(&case.csv()).unwrap_or_else(|why| panic!("{seed}: {why}"))
+    let verdict = verdict(&case.csv()).unwrap_or_else(|why| panic!("{seed}: {why}"));
+    (case, verdict)
+}
+
+/// What the diagnosis says of the case of a seed.
+fn asked(seed: u64) -> Verdict {
+    answered(seed).1
+}
+
+/// How that scores.
+fn scored(seed: u64) -> Score {
+    let (case, verdict) = answered(seed);
+    Score::of(case.truth.clone(), &case, &verdict)
+}
+
+/// All that the case of a seed hides has its name.
+fn all_named(seed: u64) {
+    let outcomes = scored(seed).outcomes;
+    let missed = |o: &Outcome| !matches!(o, Outcome::First | Outcome::Later);
+    assert!(!outcomes.iter().any(missed), "{seed}: {outcomes:?}");
 }
 
 /// Samples lost on slow axes that shake, or near where they turn back, which were silent once.
@@ -363,8 +370,7 @@ fn what_looks_like_a_third_is_found() {
         150_000_124,
     ];
     seeds.into_par_iter().for_each(|seed| {
-        let case = Case::draw(seed, 20_000).expect("a case can be drawn");
-        let score = Score::of(case.truth.clone(), &case, &asked(seed));
+        let score = scored(seed);
         let missed = |o: &Outcome| !matches!(o, Outcome::First | Outcome::Later | Outcome::Group);
         let outcomes = &score.outcomes;
         assert!(!outcomes.iter().any(missed), "{seed}: {outcomes:?}");

@@ -43,6 +43,9 @@ pub(crate) fn wave(hertz: f64) -> Fill {
     })
 }
 
+/// Shapes of a line in the channels: cos and sin in either.
+const IN_CHANNELS: usize = 4;
+
 /// cos and sin of a line in one channel, then in the other.
 fn in_channels(hertz: f64, library: &mut Library) -> Vec<Shape> {
     let fill = wave(hertz);
@@ -50,15 +53,15 @@ fn in_channels(hertz: f64, library: &mut Library) -> Vec<Shape> {
         let n = block.len();
         let mut waves = vec![0.0; 2 * n];
         fill(block, &mut waves);
-        let (c, s) = out.split_at_mut(4 * n);
-        for i in 0..4 {
+        let (c, s) = out.split_at_mut(IN_CHANNELS * n);
+        for i in 0..IN_CHANNELS {
             let at = i * n..(i + 1) * n;
             let change = &waves[(i % 2) * n..][..n];
             block.channel(i / 2, change, &mut c[at.clone()], &mut s[at]);
         }
     };
-    let place = library.add(4, Use::Pairs, Rc::new(pairs));
-    (0..4).map(|i| place.both(i)).collect()
+    let place = library.add(IN_CHANNELS, Use::Pairs, Rc::new(pairs));
+    (0..IN_CHANNELS).map(|i| place.both(i)).collect()
 }
 
 fn two(place: Place, shape: fn(&Place, usize) -> Shape) -> Vec<Shape> {
@@ -160,6 +163,11 @@ impl Search<'_> {
             ..self.candidate(super::VIBRATION, Domain::Motion, hertz, make, library)
         }
     }
+}
+
+/// Whether it is a line with its harmonics.
+pub(crate) fn has_harmonics(candidate: &Candidate) -> bool {
+    candidate.name == INTERFERENCE && candidate.shapes.len() > IN_CHANNELS
 }
 
 /// Whether a line has become as slow as a drift where its frequency was fitted.

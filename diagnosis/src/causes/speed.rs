@@ -97,6 +97,17 @@ impl Speed {
         }
     }
 
+    /// The time constants on the grid, seconds, each with the least that it stands for. It is known twice, by how much there is of it and
+    /// by its law; a little of a long one is none.
+    fn time_constants(&self) -> impl Iterator<Item = (f64, f64)> {
+        let least = std::iter::once(0.0).chain(REACHES);
+        let top = self.top;
+        REACHES
+            .into_iter()
+            .zip(least)
+            .map(move |(reach, least)| (reach / top, least / top))
+    }
+
     /// The speed times a change of one channel.
     fn times(&self, which: usize, change: &Trig) -> Shape {
         let shape = self.by.shape(ODD, &channel(self.beta, which, change));
@@ -160,12 +171,6 @@ fn time_constant(tau: &Parameter) -> String {
     )
 }
 
-/// Least time constant that one on the grid stands for. It is known twice, by how much there is of it and by its law; a little of a
-/// long one is none.
-fn least(speed: &Speed, i: usize) -> f64 {
-    i.checked_sub(1).map_or(0.0, |i| REACHES[i] / speed.top)
-}
-
 /// Late by d: the angle shown is that of d before.
 fn latency(speed: &Speed) -> Candidate {
     let angle = [Trig::constant(0.0), Trig::constant(1.0)];
@@ -178,17 +183,16 @@ fn latency(speed: &Speed) -> Candidate {
 
 /// A low pass in both channels, seen against a reference.
 fn late_bandwidths(speed: &Speed, library: &mut Library) -> Vec<Candidate> {
-    let one = |i: usize| {
+    let one = |(tau, least): (f64, f64)| {
         let make = |tau: f64, library: &mut Library| {
             let fill = move |block: &Block, out: &mut [f64]| falls_behind(block, tau, out);
             vec![library.add(1, Use::Rows, Rc::new(fill)).both(0)]
         };
-        let tau = REACHES[i] / speed.top;
         let shapes = make(tau, library);
         Candidate {
             trials: REACHES.len() as f64,
             exact: follows(tau, make),
-            sign: Sign::Known(least(speed, i)),
+            sign: Sign::Known(least),
             evidence: Rc::new(|p| {
                 format!(
                     "both channels lag the reference and lose amplitude with speed, as behind a low pass with {}",
@@ -198,7 +202,7 @@ fn late_bandwidths(speed: &Speed, library: &mut Library) -> Vec<Candidate> {
             ..cause("common_bandwidth", shapes, &["tau_s"], "s")
         }
     };
-    (0..REACHES.len()).map(one).collect()
+    speed.time_constants().map(one).collect()
 }
 
 fn skew(speed: &Speed) -> Candidate {
@@ -228,8 +232,7 @@ fn skew(speed: &Speed) -> Candidate {
 /// A low pass in one channel.
 fn mismatches(speed: &Speed, library: &mut Library) -> Vec<Candidate> {
     let names: [&'static [&'static str]; 2] = [&["tau_cos_s"], &["tau_sin_s"]];
-    let mut one = |which: usize, i: usize| {
-        let tau = REACHES[i] / speed.top;
+    let mut one = |which: usize, (tau, least): (f64, f64)| {
         let make = move |tau: f64, library: &mut Library| {
             vec![library.pair(move |block: &Block, c, s| {
                 block.channel(which, &low_pass(block, which, tau), c, s);
@@ -239,7 +242,7 @@ fn mismatches(speed: &Speed, library: &mut Library) -> Vec<Candidate> {
         Candidate {
             trials: (2 * REACHES.len()) as f64,
             exact: follows(tau, make),
-            sign: Sign::Known(least(speed, i)),
+            sign: Sign::Known(least),
             evidence: Rc::new(move |p| {
                 let [own, other] = [["cos", "sin"], ["sin", "cos"]][which];
                 format!(
@@ -252,8 +255,8 @@ fn mismatches(speed: &Speed, library: &mut Library) -> Vec<Candidate> {
     };
     let all = [0, 1]
         .into_iter()
-        .flat_map(|which| (0..REACHES.len()).map(move |i| (which, i)));
-    all.map(|(which, i)| one(which, i)).collect()
+        .flat_map(|which| speed.time_constants().map(move |tau| (which, tau)));
+    all.map(|(which, tau)| one(which, tau)).collect()
 }
 
 /// A low pass in both channels, seen in the radius.
