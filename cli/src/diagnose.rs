@@ -141,7 +141,7 @@ fn summary(found: &Diagnosis, output: &Path) {
         say!("{}{snr}", finding.named_evidence());
     }
     match found.unexplained.parts.as_slice() {
-        [] => say!("left: {}", found.unexplained.signature),
+        [] => say!("{}", found.unexplained.signature),
         parts => parts.iter().for_each(|part| say!("unexplained: {part}")),
     }
     for sentence in nonius_diagnosis::unseen(&found.context) {

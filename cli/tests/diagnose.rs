@@ -141,3 +141,22 @@ fn a_harmonic_of_either_order_is_not_corrected() {
         ],
     );
 }
+
+/// At standstill nothing can be told from offset and gain: no names, but what to record.
+#[test]
+fn a_standstill_is_refused() {
+    let dir = tempfile::tempdir().expect("scratch");
+    let mut noise = noise();
+    let mut text = String::from("# sample_rate_hz: 1000\ncos,sin\n");
+    for _ in 0..4000 {
+        let (cos, sin) = (0.5 + 0.001 * noise(), 0.3 + 0.001 * noise());
+        text += &format!("{cos:.6},{sin:.6}\n");
+    }
+    fs::write(dir.path().join("r.csv"), text).expect("recording");
+    let output = nonius(dir.path(), &["diagnose", "r.csv", "-o", "out"]);
+    refused(
+        &output,
+        &["r.csv", "standstill", "move the scale by a whole period"],
+    );
+    assert!(!dir.path().join("out").exists(), "half-written");
+}

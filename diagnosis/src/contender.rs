@@ -130,6 +130,7 @@ pub(crate) fn contender(
         if rivals.is_empty() {
             rivals.extend(rivals::hidden(system, &beside, &own, catalogue));
         }
+        let richer = rivals::richer(&beside, &own, &rest);
         let wider = rivals::wider(&beside, &own, &rest);
         let other_order = rivals::other_order(&beside, &own, &rest);
         if own.candidate.as_drift {
@@ -159,7 +160,7 @@ pub(crate) fn contender(
             && !(locked || crawling || wandering);
         if nameable && slow && !ahead.outdone && rivals.len() <= 1 && held.refusal.is_none() {
             if rivals.is_empty() {
-                rivals.extend(wider);
+                rivals.extend(richer.or(wider));
             }
             system.retain(|i| i < mark);
             cause.confounded = rivals;

@@ -5,6 +5,7 @@
 use crate::beside::Beside;
 use crate::cause::Domain;
 use crate::causes::Catalogue;
+use crate::curves;
 use crate::generic::HOLDS;
 use crate::held::share;
 use crate::library::Shape;
@@ -39,7 +40,11 @@ pub(crate) fn home(domain: Domain) -> Domain {
 }
 
 /// Takes names back that do not hold, and returns the domains that have none for what is in them.
-pub(crate) fn doubt(system: &System, catalogue: &Catalogue, found: &mut Selection) -> Vec<Domain> {
+pub(crate) fn doubt(
+    system: &mut System,
+    catalogue: &Catalogue,
+    found: &mut Selection,
+) -> Vec<Domain> {
     let mut closed = vec![];
     for domain in [
         Domain::Angle,
@@ -71,6 +76,8 @@ pub(crate) fn doubt(system: &System, catalogue: &Catalogue, found: &mut Selectio
     }
     let traces = traces(system, found);
     found.unnamed.extend(traces);
+    let curves = curves::of_drifts(system, found);
+    found.unnamed.extend(curves);
     closed
 }
 
@@ -144,7 +151,7 @@ pub(crate) fn gain_of(system: &System, found: &Selection, own: &[usize]) -> f64 
 }
 
 /// What is taken back, and why; `gain` is what its name explained.
-fn unnamed(domain: Domain, nearest: &str, gain: f64, but: &str) -> Unnamed {
+pub(crate) fn unnamed(domain: Domain, nearest: &str, gain: f64, but: &str) -> Unnamed {
     Unnamed {
         log_p: -gain,
         gain,

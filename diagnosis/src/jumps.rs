@@ -254,7 +254,8 @@ pub(crate) fn jumps(recording: &Recording, checked: &Checked) -> Vec<(usize, usi
             replaced(look, j) || corners.explain(look.near(j), &look.weights)
         };
         let look = Look::new(&angle, side, order);
-        let far = look.far().into_iter().filter(|j| !other(&look, j));
+        let far = look.far().into_iter();
+        let far = far.filter(|j| !other(&look, j) && !goes_on(reference.as_deref(), j));
         found.extend(whole(&look, &shorter[0], far.collect(), checked, &found));
         if let Some((reference, apart)) = reference.as_ref().zip(apart.as_ref()) {
             let exact = Look::new(reference, side, order);
@@ -299,6 +300,30 @@ fn through_noise(
     believed(seen, look.side(), checked, found)
 }
 
+/// Whether a reference shows that the axis goes on as before where the sensor jumps: what lies beside such a place is a glitch.
+fn goes_on(reference: Option<&[f64]>, sensor: &Jump) -> bool {
+    let Some(reference) = reference else {
+        return false;
+    };
+    let looks = sides(reference.len()).filter_map(|side| at(reference, sensor.before, side));
+    let surest = looks.min_by(|a, b| a.1.total_cmp(&b.1));
+    surest.is_some_and(|(size, sigma)| {
+        size + TOGETHER * sigma.hypot(sensor.sigma) < sensor.size.abs()
+    })
+}
+
+/// How far values jump before a sample, by curves through so many on either side, and the standard deviation of that.
+fn at(values: &[f64], k: usize, (side, order): (usize, i32)) -> Option<(f64, f64)> {
+    if !(side..=values.len().saturating_sub(side)).contains(&k) {
+        return None;
+    }
+    let reach = (AROUND + 1) * side;
+    let near = k.saturating_sub(reach)..(k + reach).min(values.len());
+    let look = Look::new(&values[near.clone()], side, order);
+    let here = k - near.start;
+    Some((look.sizes[here].abs(), look.sigma(here)))
+}
+
 /// Whether the sensor jumps with its reference: what is between them does not jump, and would if the reference alone did.
 fn together(apart: &[f64], reference: &Jump) -> bool {
     /// What is between them has no motion that long curves would have to follow.
@@ -306,18 +331,11 @@ fn together(apart: &[f64], reference: &Jump) -> bool {
     /// So many times the samples on a side tell how large the noise is.
     const ENOUGH: usize = 6;
     let k = reference.before;
-    let jumps = |(side, order): (usize, i32)| {
-        let reach = (AROUND + 1) * side;
-        let near = k.saturating_sub(reach)..(k + reach).min(apart.len());
-        let look = Look::new(&apart[near.clone()], side, order);
-        let here = k - near.start;
-        (look.sizes[here].abs(), look.sigma(here))
-    };
     let still = STILL
         .into_iter()
         .filter(|(side, _)| apart.len() >= ENOUGH * side);
-    let inside = still.filter(|(side, _)| (*side..apart.len() - side).contains(&k));
-    let looks = sides(apart.len()).chain(inside).map(jumps);
+    let looks = sides(apart.len()).chain(still);
+    let looks = looks.filter_map(|side| at(apart, k, side));
     let surest = looks.min_by(|a, b| a.1.total_cmp(&b.1));
     surest.is_some_and(|(size, sigma)| size + TOGETHER * sigma < reference.size.abs())
 }

@@ -18,6 +18,7 @@ mod codes;
 mod contender;
 mod context;
 mod correlate;
+mod curves;
 mod delays;
 mod diagnose;
 mod doubt;

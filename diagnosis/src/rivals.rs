@@ -148,6 +148,25 @@ fn of_the_place(
     (!needs_radius).then(|| causes::GRADUATION_ERROR.to_owned())
 }
 
+/// A cause of the same kind that has more numbers, explains more with them, and to which the best adds nothing: it is dearer and so
+/// goes second, but nothing tells that it is not the one.
+pub(crate) fn richer(beside: &Beside, best: &Scored, others: &[&Scored]) -> Option<String> {
+    let own = &best.candidate;
+    let as_well = |other: &&&Scored| {
+        let c = &other.candidate;
+        let richer = c.domain == own.domain && c.name != own.name && other.freedom > best.freedom;
+        let known = (other.gain, other.freedom);
+        richer
+            && other.gain >= best.gain
+            && adds(beside, own, &c.shapes, known, NOTHING_NEW).is_some()
+            // A harmonic holds every bend, and is told by [`wider`].
+            && c.order.is_none()
+    };
+    let most = others.iter().filter(as_well);
+    let most = most.max_by(|a, b| a.gain.total_cmp(&b.gain))?;
+    Some(most.candidate.name.to_owned())
+}
+
 /// A cause of the same place that has more parameters and is this one for some of their values, as a harmonic of the scale
 /// is a bend of the channels at one phase: the simpler one goes first, but nothing in a recording tells them apart.
 pub(crate) fn wider(beside: &Beside, best: &Scored, others: &[&Scored]) -> Option<String> {
