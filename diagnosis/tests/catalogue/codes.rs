@@ -114,6 +114,43 @@ fn a_quiet_adc_shows_nothing() {
     }
 }
 
+/// A bit that weighs too much steps wherever it changes; beside mid-scale it is none of the five parameters.
+#[test]
+fn the_weight_of_a_bit() {
+    for bit in [13, 12, 11] {
+        let codes: [fn(i64, usize) -> i64; 3] = [
+            |code, which| {
+                code + if which == 0 {
+                    14 * ((code >> 13) & 1)
+                } else {
+                    0
+                }
+            },
+            |code, which| {
+                code + if which == 0 {
+                    14 * ((code >> 12) & 1)
+                } else {
+                    0
+                }
+            },
+            |code, which| {
+                code + if which == 0 {
+                    14 * ((code >> 11) & 1)
+                } else {
+                    0
+                }
+            },
+        ];
+        let heavy = Seen {
+            periods: reversing,
+            code: codes[13 - bit],
+            ..PLAIN
+        };
+        let found = diagnosed(&heavy, 0);
+        assert_eq!(names(&found), ["adc_nonlinearity"], "bit {bit}");
+    }
+}
+
 /// Of an ADC that never gives some codes, the codes beside them come more often. One seed; in the long form three.
 #[test]
 fn codes_that_never_come() {

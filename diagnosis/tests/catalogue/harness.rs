@@ -35,6 +35,8 @@ pub(crate) struct Case {
     pub(crate) noise: fn(u: f64, slope: f64, speed: f64, normal: [f64; 2]) -> f64,
     pub(crate) reference: bool,
     pub(crate) revolution: bool,
+    /// °C after a time in seconds, where there is such a column.
+    pub(crate) temperature: Option<fn(t: f64) -> f64>,
 }
 
 pub(crate) const PLAIN: Case = Case {
@@ -45,6 +47,7 @@ pub(crate) const PLAIN: Case = Case {
     noise: |_, _, _, normal| NOISE * normal[0],
     reference: false,
     revolution: false,
+    temperature: None,
 };
 
 /// Periods per revolution are known.
@@ -174,15 +177,21 @@ fn recording(case: &Case, rows: &Rows) -> Recording {
     if case.revolution {
         text += &format!("# periods_per_revolution: {PERIODS}\n");
     }
-    text += if case.reference {
-        "time_s,cos,sin,reference_rad\n"
-    } else {
-        "time_s,cos,sin\n"
-    };
+    text += "time_s,cos,sin";
+    if case.reference {
+        text += ",reference_rad";
+    }
+    if case.temperature.is_some() {
+        text += ",temperature_c";
+    }
+    text += "\n";
     for [t, c, s, r] in rows {
         text += &format!("{t:.7},{c},{s}");
         if case.reference {
             text += &format!(",{r:.9}");
+        }
+        if let Some(temperature) = case.temperature {
+            text += &format!(",{:.3}", temperature(*t));
         }
         text += "\n";
     }

@@ -2,7 +2,9 @@
 
 use std::f64::consts::TAU;
 
-use crate::harness::{Case, PERIODS, REVOLVING, alone, finds, near, within_errors};
+use crate::harness::{
+    Case, PERIODS, REVOLVING, alone, diagnosed, finds, names, near, within_errors,
+};
 
 /// The amplitude of both channels changes once a revolution, by a depth of so many per mille.
 fn eccentric<const PER_MILLE: u32>() -> Case {
@@ -53,6 +55,21 @@ fn graduation() {
     let before = gain.position_error_rms_before_rad.expect("a reference");
     let after = gain.position_error_rms_after_rad.expect("a reference");
     assert!(after < 0.6 * before, "{before} → {after}");
+}
+
+/// Without a reference an error of the graduation is motion: it may be called cogging, which moves the axis, and nothing of the sensor.
+#[test]
+fn no_graduation_without_a_reference() {
+    let unseen = Case {
+        seen: |a, _| {
+            let e = a + 0.003 * (3.0 * a / PERIODS).cos();
+            (e, e)
+        },
+        ..REVOLVING
+    };
+    let found = diagnosed(&unseen, 7);
+    let names = names(&found);
+    assert!(names.iter().all(|name| *name == "cogging"), "{names:?}");
 }
 
 #[test]

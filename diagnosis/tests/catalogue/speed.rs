@@ -1,8 +1,8 @@
 //! Causes that grow with the speed or turn over with its sign.
 
 use crate::harness::{
-    Case, LSB, NOISE, PLAIN, alone, diagnosed, finds, finds_beside, names, near, shows,
-    within_errors,
+    Case, LSB, NOISE, PLAIN, alone, diagnosed, finds, finds_beside, finds_nothing, names, near,
+    shows, within_errors,
 };
 use crate::motion::rumble;
 
@@ -27,6 +27,16 @@ fn late<const MICROSECONDS: u32>() -> Case {
         reference: true,
         ..PLAIN
     }
+}
+
+/// Without a reference a delay is the motion a little later, whatever its size.
+#[test]
+fn no_latency_without_a_reference() {
+    let late = Case {
+        reference: false,
+        ..late::<30>()
+    };
+    finds_nothing(&late, 7);
 }
 
 #[test]

@@ -40,6 +40,33 @@ fn bends_and_harmonics() {
     near(&found, "amplitude_cos", 0.002);
 }
 
+/// Every order of the catalogue, of any phase.
+#[test]
+fn harmonics_of_every_order() {
+    type Channels = fn(f64, f64, f64, f64, f64) -> (f64, f64);
+    fn of<const ORDER: u32>(c: f64, s: f64, _: f64, a: f64, _: f64) -> (f64, f64) {
+        let turned = f64::from(ORDER) * a;
+        (
+            c + 0.002 * (turned + 1.0).cos(),
+            s + 0.003 * (turned - 0.4).sin(),
+        )
+    }
+    let orders: [(f64, Channels); 6] = [
+        (2.0, of::<2>),
+        (3.0, of::<3>),
+        (4.0, of::<4>),
+        (5.0, of::<5>),
+        (6.0, of::<6>),
+        (7.0, of::<7>),
+    ];
+    for (order, channels) in orders {
+        let found = finds("spatial_harmonic", &Case { channels, ..PLAIN });
+        assert_eq!(found.findings[0].parameter("order"), Some(order));
+        near(&found, "amplitude_cos", 0.002);
+        near(&found, "amplitude_sin", 0.003);
+    }
+}
+
 /// A strong harmonic whose phase is nearly a bend's is no bend: what that leaves of it is far beyond chance.
 #[test]
 fn a_harmonic_beside_a_bend_is_a_harmonic() {

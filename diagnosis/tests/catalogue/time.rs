@@ -51,6 +51,43 @@ fn slow_changes() {
     );
 }
 
+/// A heater that goes on and off, to and fro by 3 °C, five times while the recording lasts.
+fn heated(t: f64) -> f64 {
+    40.0 + 6.0 * ((t / 0.08).rem_euclid(1.0) - 0.5).abs()
+}
+
+/// What follows the temperature is no polynomial of time, and says what drives it.
+#[test]
+fn drifts_with_temperature() {
+    let offsets = Case {
+        channels: |c, s, t, _, _| {
+            let warmer = heated(t) - 41.5;
+            (c + 0.0003 * warmer, s - 0.0002 * warmer)
+        },
+        temperature: Some(heated),
+        ..PLAIN
+    };
+    let gains = Case {
+        channels: |c, s, t, _, _| {
+            let warmer = heated(t) - 41.5;
+            (c * (1.0 + 0.0005 * warmer), s * (1.0 - 0.0003 * warmer))
+        },
+        temperature: Some(heated),
+        ..PLAIN
+    };
+    // From one standard deviation below the mean to one above: twice 3 °C/√12.
+    let change = 3f64.sqrt();
+    for (name, case, per_degree) in [
+        ("offset_drift", offsets, 0.0003),
+        ("gain_drift", gains, 0.0005),
+    ] {
+        let found = finds(name, &case);
+        within_errors(&found, "change_cos", per_degree * change);
+        let said = &found.findings[0].evidence;
+        assert!(said.contains("drift with temperature"), "{said}");
+    }
+}
+
 /// A machine that warms up: a capacitor that is discharged looks the same, and says so. It is no high pass of which
 /// nothing else is seen.
 #[test]
