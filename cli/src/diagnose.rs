@@ -54,13 +54,14 @@ struct About {
 }
 
 pub(crate) fn run(args: &Diagnose) -> Result<bool> {
+    nonius_package::may_write(&args.output)?;
     let recording = Recording::read(&args.recording, &args.recording_args.overrides())?;
+    let hash = hash(&args.recording)?;
     let given = args.design.as_deref();
     let design = given.map(crate::design_file::read).transpose()?;
     let found = diagnose(&recording)
         .map_err(|error| anyhow::anyhow!("{}: {error}", args.recording.display()))?;
     crate::notes(&found.notes);
-    let hash = hash(&args.recording)?;
     let json = serde_json::to_string_pretty(&Findings {
         schema: "nonius.findings/1",
         recording: About {

@@ -102,6 +102,11 @@ fn nothing_of_the_users_is_written_over() {
     );
     fs::create_dir(at("other")).expect("a folder");
     fs::write(at("other/design.json"), "{}").expect("somebody's");
+    // Before anything is read, for a diagnosis takes its time.
+    refused(
+        &nonius(dir.path(), &["diagnose", "missing.csv", "-o", "other"]),
+        &["other"],
+    );
     refused(
         &nonius(dir.path(), &["build", &design, "-o", "other"]),
         &["other"],

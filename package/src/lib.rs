@@ -23,7 +23,7 @@ pub use pull_in::{BOTH_WAYS, PullIn, Worst, pull_in, pull_in_followed};
 pub use signals::{Signal, signals};
 pub use simulation::{Accuracy, Simulation, simulate};
 pub use sine::{SineError, sine_error};
-pub use write::{WriteError, write};
+pub use write::{WriteError, may_write, write};
 
 use nonius_model::chip::Chip;
 use nonius_model::design::{Design, DesignError};

@@ -26,31 +26,62 @@ pub enum WriteError {
 /// Names of the files that were written, one a line: what else stands in the folder is the user's.
 const MANIFEST: &str = ".nonius-files";
 
+/// Where a folder is written: through a link, and what it holds of ours.
+struct Place {
+    output: PathBuf,
+    there: bool,
+    manifest: Option<String>,
+}
+
+impl Place {
+    fn of(output: &Path) -> Result<Self, WriteError> {
+        let meta = output.symlink_metadata().ok();
+        let there = meta.is_some();
+        if there && runs_in(output) {
+            return Err(WriteError::Inside(output.to_owned()));
+        }
+        // A link stays one: what it leads to is replaced.
+        let output = match meta {
+            Some(meta) if meta.is_symlink() => fs::canonicalize(output).map_err(refuse(output))?,
+            _ => output.to_owned(),
+        };
+        let manifest = fs::read_to_string(output.join(MANIFEST)).ok();
+        if there && manifest.is_none() && !is_empty(&output) {
+            return Err(WriteError::NotOurs(output));
+        }
+        Ok(Self {
+            output,
+            there,
+            manifest,
+        })
+    }
+}
+
+fn refuse(path: &Path) -> impl FnOnce(io::Error) -> WriteError {
+    let path = path.to_owned();
+    move |error| WriteError::Io { path, error }
+}
+
+/// Whether [`write`] would write into the folder `output`: to be asked before work that takes long.
+///
+/// # Errors
+/// A folder of somebody else, or the one that the command runs in.
+pub fn may_write(output: &Path) -> Result<(), WriteError> {
+    Place::of(output).map(|_| ())
+}
+
 /// Writes the files into the folder `output`. A folder that was written so before is replaced; what stood in it is
 /// there until the new one is complete, and files that were not written here stay.
 ///
 /// # Errors
 /// A folder of somebody else, the one that the command runs in, or what the operating system says.
 pub fn write(files: &[(String, Vec<u8>)], output: &Path) -> Result<(), WriteError> {
-    let refuse = |path: &Path| {
-        let path = path.to_owned();
-        move |error| WriteError::Io { path, error }
-    };
-    let meta = output.symlink_metadata().ok();
-    let there = meta.is_some();
-    if there && runs_in(output) {
-        return Err(WriteError::Inside(output.to_owned()));
-    }
-    // A link stays one: what it leads to is replaced.
-    let target = match meta {
-        Some(meta) if meta.is_symlink() => Some(fs::canonicalize(output).map_err(refuse(output))?),
-        _ => None,
-    };
-    let output = target.as_deref().unwrap_or(output);
-    let manifest = fs::read_to_string(output.join(MANIFEST));
-    if there && manifest.is_err() && !is_empty(output) {
-        return Err(WriteError::NotOurs(output.to_owned()));
-    }
+    let Place {
+        output,
+        there,
+        manifest,
+    } = Place::of(output)?;
+    let output = output.as_path();
     let parent = output
         .parent()
         .filter(|p| !p.as_os_str().is_empty())
@@ -71,7 +102,7 @@ pub fn write(files: &[(String, Vec<u8>)], output: &Path) -> Result<(), WriteErro
     let names: Vec<&str> = files.iter().map(|(path, _)| path.as_str()).collect();
     let list = fresh.join(MANIFEST);
     fs::write(&list, names.join("\n") + "\n").map_err(refuse(&list))?;
-    if let Ok(manifest) = manifest {
+    if let Some(manifest) = manifest {
         let ours: Vec<PathBuf> = manifest.lines().map(|name| output.join(name)).collect();
         keep(output, &fresh, &ours)?;
     }
