@@ -138,7 +138,7 @@ fn shifted(sensor: fn(f64) -> (f64, f64), signs: (f64, f64)) -> impl Fn(f64) -> 
 }
 
 /// The figures at amplitudes of the normalised pair from 0.51 to 0.99 (just above a half of the ADC's range it is not doubled
-/// any more), with offsets of 10 %, behind loops of half, once and twice the signal's frequency: cubic terms, from 15 mrad to at
+/// any more), with offsets of 10 %, behind loops of a quarter to twice the signal's frequency: cubic terms, from 15 mrad to at
 /// most 0.15 and above 7 without the completion; third harmonics down by at least 25, where the radius alone makes them grow.
 #[test]
 fn the_figures_hold_at_every_amplitude_and_offset() {
@@ -151,6 +151,7 @@ fn the_figures_hold_at_every_amplitude_and_offset() {
         (0.495, (1.0, 1.0), 2.0),
         (0.495, (0.0, -1.0), 0.5),
         (0.70, (-1.0, 1.0), 2.0),
+        (0.42, (1.0, -1.0), 0.25),
     ] {
         for parameters in [8, 9] {
             let with = |completion| {
@@ -167,7 +168,10 @@ fn the_figures_hold_at_every_amplitude_and_offset() {
                 "{parameters} parameters, amplitude {amplitude} of the range, offsets {signs:?}, loop {bandwidth} f: cubic {completed:.3} (alone {alone:.1}), third {before:.1} -> {mended:.3} mrad (alone {grown:.1})"
             );
             assert!(completed <= 0.15 && alone > 7.0, "{completed} {alone}");
-            assert!(mended * 25.0 <= 30.0 && grown > before, "{mended} {grown}");
+            assert!(
+                mended * 25.0 <= before && grown > before,
+                "{mended} {grown}"
+            );
         }
     }
 }
