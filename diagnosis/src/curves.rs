@@ -1,20 +1,18 @@
-//! Whether a weak error of speed is what a drift's polynomials leave of its curve. What crosses over late is a gain that goes with
+//! Whether a weak error of speed, or weak noise that is slow, is what a drift's polynomials leave of its curve. What crosses over late is a gain that goes with
 //! the speed, and that is slow itself: beside a drift of any curve it may say nothing new.
 
 use crate::beside::Beside;
 use crate::cause::Domain;
-use crate::doubt::{gain_of, unnamed};
+use crate::doubt::{TRACE, gain_of, so_small, unnamed};
 use crate::generic;
 use crate::library::Shape;
 use crate::model::{System, atoms_of};
+use crate::rivals::NOTHING_NEW;
 use crate::score::CLEAR;
 use crate::select::both;
 use crate::selection::Selection;
 use crate::statistics::log_tail;
 use crate::unexplained::Unnamed;
-
-/// A cause that adds less than this probability to such curves says nothing new.
-const NOTHING_NEW: f64 = 1e-3;
 
 /// Takes back the names of weak errors of speed to which drifts of other curves leave nothing.
 pub(crate) fn of_drifts(system: &mut System, found: &mut Selection) -> Vec<Unnamed> {
@@ -40,6 +38,21 @@ pub(crate) fn of_drifts(system: &mut System, found: &mut Selection) -> Vec<Unnam
         }
     }
     list
+}
+
+/// Why slow noise of so much gain in log-likelihood beside a drift has no name: it is so weak that it may be what the drift's model leaves.
+pub(crate) fn instead_of_noise(system: &System, found: &Selection, gain: f64) -> Option<Unnamed> {
+    let sure = |i: &usize| {
+        let one = &found.accepted[*i];
+        !one.doubted && one.candidate.domain == Domain::Time
+    };
+    let drifts = (0..found.accepted.len()).filter(sure);
+    let gains = drifts.map(|i| (gain_of(system, found, &[i]), i));
+    let (most, i) = gains.max_by(|a, b| a.0.total_cmp(&b.0))?;
+    (gain < TRACE * most).then(|| {
+        let but = so_small(gain, most, found.accepted[i].candidate.name);
+        unnamed(Domain::Time, "flicker_noise", gain, &but)
+    })
 }
 
 /// Whether a cause adds something where the curves of drifts may be any.

@@ -10,6 +10,7 @@ use crate::choice;
 use crate::codes;
 use crate::contender::is_drift;
 use crate::context::{Context, ContextError};
+use crate::curves;
 use crate::exact;
 use crate::finding::{Finding, Gain};
 use crate::flicker::{self, Flicker};
@@ -283,7 +284,11 @@ fn conclude(
     if silent && !selection.coded && strange.is_empty() && flicker.is_none() {
         strange = left::no_noise(context, &system.residual(&extended.fit).radial);
     }
-    match flicker.as_ref().map(Flicker::finding) {
+    let traces = |f: &Flicker| curves::instead_of_noise(system, selection, f.gain);
+    match flicker
+        .as_ref()
+        .map(|f| traces(f).map_or_else(|| f.finding(), Err))
+    {
         Some(Ok(finding)) => noisy.push(finding),
         Some(Err(unnamed)) => strange.push(unnamed),
         None => {}

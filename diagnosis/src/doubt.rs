@@ -18,6 +18,8 @@ use crate::unexplained::{Unnamed, What, explains_only, like};
 /// model leaves: an SNR between a fourth and a fifth of its.
 const LEFTOVER: f64 = 0.05;
 
+/// Share of what the strongest explains below which something may be what its model leaves: an SNR of a tenth of its.
+pub(crate) const TRACE: f64 = 0.01;
 /// Gain in log-likelihood (an SNR of 5) below which nothing is left of it.
 const ANYTHING: f64 = 12.5;
 /// Share of what one of them explains alone from which on another is as strong.
@@ -84,8 +86,6 @@ pub(crate) fn doubt(
 /// Weak names of any kind beside an error of the sensor that is ten times as large: its model is not known to the last per cent of
 /// its power, and what that leaves goes with the time as with the angle.
 fn traces(system: &System, found: &mut Selection) -> Vec<Unnamed> {
-    /// Share of what the strongest explains: an SNR of a tenth of its.
-    const TRACE: f64 = 0.01;
     /// Log-likelihood (an SNR of 8) from which on it is something by itself.
     const WEAK: f64 = 32.0;
     if found.accepted.len() < 2 {
@@ -135,7 +135,7 @@ fn traces(system: &System, found: &mut Selection) -> Vec<Unnamed> {
 }
 
 /// Why something weak is no error of its own.
-fn so_small(gain: f64, most: f64, strongest: &str) -> String {
+pub(crate) fn so_small(gain: f64, most: f64, strongest: &str) -> String {
     format!(
         "its SNR of {:.0} is so small beside the {:.0} of {} that it may be what that model leaves",
         (2.0 * gain).sqrt(),

@@ -46,7 +46,7 @@ pub(crate) struct Flicker {
     density: [f64; 2],
     /// Where it is as large as the white noise, hertz.
     pub(crate) corner: f64,
-    gain: f64,
+    pub(crate) gain: f64,
     /// Log-likelihood of lines of the spectrum that were not fitted.
     held_out: f64,
     /// Log-likelihood that it explains of what is seen sample by sample, its number paid for.

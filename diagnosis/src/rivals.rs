@@ -10,7 +10,7 @@ use crate::select::both;
 use crate::statistics::{at_most_of_noise, log_tail};
 
 /// A cause that adds less than this probability says nothing new.
-const NOTHING_NEW: f64 = 1e-3;
+pub(crate) const NOTHING_NEW: f64 = 1e-3;
 /// The same of a clear one that explains no more alone than the other does; of a weak one this would be most.
 const HARDLY_NEW: f64 = 1e-5;
 /// Log-likelihood by which a rival is beaten, if others are left: twenty to one.
