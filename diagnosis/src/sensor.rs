@@ -77,13 +77,13 @@ pub fn sensor_toml(found: &Diagnosis, recording: &Recording) -> String {
             let key = p
                 .name
                 .replace(|c: char| !c.is_ascii_alphanumeric() && c != '_', "_");
-            // A count or an order has no error.
-            let error = match p.std_error {
-                0.0 => String::new(),
-                error => format!("+/- {error:.3e} "),
-            };
             let value = format!("{key} = {:?}", p.value);
-            let _ = writeln!(out, "{value:<34} # {error}{}", p.unit);
+            let _ = match (p.std_error, p.unit.as_str()) {
+                // A count or an order has no error.
+                (0.0, "1") => writeln!(out, "{value}"),
+                (0.0, unit) => writeln!(out, "{value:<34} # {unit}"),
+                (error, unit) => writeln!(out, "{value:<34} # +/- {error:.3e} {unit}"),
+            };
         }
         if let Some(Place::Code { channel, .. }) = finding.place {
             let _ = writeln!(out, "channel = {:?}", ["cos", "sin"][channel]);
