@@ -1,9 +1,10 @@
-//! Whether a weak error of speed, or weak noise that is slow, is what a drift's polynomials leave of its curve. What crosses over late is a gain that goes with
-//! the speed, and that is slow itself: beside a drift of any curve it may say nothing new.
+//! Whether a weak error of speed, or weak noise that is slow, is what a drift's polynomials leave of its curve. What crosses
+//! over late is a gain that goes with the speed, and that is slow itself: beside a drift of any curve it may say nothing new.
 
 use crate::beside::Beside;
 use crate::cause::Domain;
 use crate::doubt::{TRACE, gain_of, so_small, unnamed};
+use crate::flicker::FLICKER;
 use crate::generic;
 use crate::library::Shape;
 use crate::model::{System, atoms_of};
@@ -14,21 +15,23 @@ use crate::selection::Selection;
 use crate::statistics::log_tail;
 use crate::unexplained::Unnamed;
 
+/// The causes of a domain whose names hold.
+fn sure(found: &Selection, domain: Domain) -> Vec<usize> {
+    let holds = |i: &usize| {
+        let one = &found.accepted[*i];
+        !one.doubted && one.candidate.domain == domain
+    };
+    (0..found.accepted.len()).filter(holds).collect()
+}
+
 /// Takes back the names of weak errors of speed to which drifts of other curves leave nothing.
 pub(crate) fn of_drifts(system: &mut System, found: &mut Selection) -> Vec<Unnamed> {
-    let sure = |domain: Domain, found: &Selection| -> Vec<usize> {
-        let of = |i: &usize| {
-            let one = &found.accepted[*i];
-            !one.doubted && one.candidate.domain == domain
-        };
-        (0..found.accepted.len()).filter(of).collect()
-    };
-    let drifts = sure(Domain::Time, found);
+    let drifts = sure(found, Domain::Time);
     let mut list = vec![];
     if drifts.is_empty() {
         return list;
     }
-    for i in sure(Domain::Speed, found) {
+    for i in sure(found, Domain::Speed) {
         let gain = gain_of(system, found, &[i]);
         if gain < CLEAR && !is_new(system, found, i, &drifts) {
             let one = &mut found.accepted[i];
@@ -40,18 +43,15 @@ pub(crate) fn of_drifts(system: &mut System, found: &mut Selection) -> Vec<Unnam
     list
 }
 
-/// Why slow noise of so much gain in log-likelihood beside a drift has no name: it is so weak that it may be what the drift's model leaves.
+/// Why slow noise of so much gain in log-likelihood beside a drift has no name: it is so weak that it may be what the drift's
+/// model leaves.
 pub(crate) fn instead_of_noise(system: &System, found: &Selection, gain: f64) -> Option<Unnamed> {
-    let sure = |i: &usize| {
-        let one = &found.accepted[*i];
-        !one.doubted && one.candidate.domain == Domain::Time
-    };
-    let drifts = (0..found.accepted.len()).filter(sure);
+    let drifts = sure(found, Domain::Time).into_iter();
     let gains = drifts.map(|i| (gain_of(system, found, &[i]), i));
     let (most, i) = gains.max_by(|a, b| a.0.total_cmp(&b.0))?;
     (gain < TRACE * most).then(|| {
         let but = so_small(gain, most, found.accepted[i].candidate.name);
-        unnamed(Domain::Time, "flicker_noise", gain, &but)
+        unnamed(Domain::Time, FLICKER, gain, &but)
     })
 }
 
@@ -70,8 +70,7 @@ fn is_new(system: &mut System, found: &Selection, which: usize, drifts: &[usize]
     let atoms = atoms_of(&both(&known, &own));
     let whole = system.among(&atoms);
     system.retain(|i| i < mark);
-    let among =
-        |shapes: &[Shape]| -> Vec<Shape> { shapes.iter().map(|s| s.among(&atoms)).collect() };
+    let among = |shapes: &[Shape]| Shape::all_among(shapes, &atoms);
     let (adds, rank) = Beside::new(&whole, &among(&known)).gain(&among(&own));
     log_tail(2.0 * adds, rank.max(1)) < NOTHING_NEW.ln()
 }

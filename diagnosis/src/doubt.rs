@@ -5,7 +5,6 @@
 use crate::beside::Beside;
 use crate::cause::Domain;
 use crate::causes::Catalogue;
-use crate::curves;
 use crate::generic::HOLDS;
 use crate::held::share;
 use crate::library::Shape;
@@ -42,11 +41,7 @@ pub(crate) fn home(domain: Domain) -> Domain {
 }
 
 /// Takes names back that do not hold, and returns the domains that have none for what is in them.
-pub(crate) fn doubt(
-    system: &mut System,
-    catalogue: &Catalogue,
-    found: &mut Selection,
-) -> Vec<Domain> {
+pub(crate) fn doubt(system: &System, catalogue: &Catalogue, found: &mut Selection) -> Vec<Domain> {
     let mut closed = vec![];
     for domain in [
         Domain::Angle,
@@ -78,8 +73,6 @@ pub(crate) fn doubt(
     }
     let traces = traces(system, found);
     found.unnamed.extend(traces);
-    let curves = curves::of_drifts(system, found);
-    found.unnamed.extend(curves);
     closed
 }
 

@@ -69,8 +69,7 @@ pub(crate) fn tuned(system: &mut System, fit: &[Shape], cause: &mut Accepted, ga
             .collect();
         let atoms = atoms_of(&all);
         let whole = system.among(&atoms);
-        let among =
-            |shapes: &[Shape]| -> Vec<Shape> { shapes.iter().map(|s| s.among(&atoms)).collect() };
+        let among = |shapes: &[Shape]| Shape::all_among(shapes, &atoms);
         let beside = Beside::new(&whole, &among(fit));
         let mut shapes = among(&own);
         let x = beside.solve(&shapes).x;

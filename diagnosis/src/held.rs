@@ -119,8 +119,7 @@ pub(crate) fn holds(
         [&named, &steady, &around, &sizes].map(|list| sure(system, list));
     let atoms = atoms_of(&[known.as_slice(), &any, &free, &sizes].concat());
     let whole = system.among(&atoms);
-    let among =
-        |shapes: &[Shape]| -> Vec<Shape> { shapes.iter().map(|s| s.among(&atoms)).collect() };
+    let among = |shapes: &[Shape]| Shape::all_among(shapes, &atoms);
     let beside = Beside::new(&whole, &among(&known));
     let more = beside.gain(&among(&free)).0;
     let beyond = beside.gain(&among(&sizes));

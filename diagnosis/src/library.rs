@@ -234,6 +234,11 @@ impl Shape {
         Self(known.collect())
     }
 
+    /// The same of several.
+    pub(crate) fn all_among(shapes: &[Self], atoms: &[usize]) -> Vec<Self> {
+        shapes.iter().map(|s| s.among(atoms)).collect()
+    }
+
     /// What of it stands in these atoms.
     pub(crate) fn only(&self, kept: &[bool]) -> Self {
         let list = self.0.iter().copied();

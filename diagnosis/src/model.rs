@@ -355,7 +355,7 @@ impl<'a> System<'a> {
             return self.fit(shapes);
         }
         let atoms = atoms_of(&shapes);
-        let own: Vec<Shape> = shapes.iter().map(|s| s.among(&atoms)).collect();
+        let own = Shape::all_among(&shapes, &atoms);
         let solution = self.among(&atoms).of(&own).solve();
         Fit { shapes, solution }
     }

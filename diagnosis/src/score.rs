@@ -124,8 +124,7 @@ pub(crate) fn worth(
     let all = list.iter().flat_map(|c| &c.shapes).chain(&fit.shapes);
     let atoms = atoms_of(&all.cloned().collect::<Vec<_>>());
     let whole = system.among(&atoms);
-    let among =
-        |shapes: &[Shape]| -> Vec<Shape> { shapes.iter().map(|s| s.among(&atoms)).collect() };
+    let among = |shapes: &[Shape]| Shape::all_among(shapes, &atoms);
     let known = among(&fit.shapes);
     let beside = Beside::new(&whole, &known).where_it_moves(system, &known, &atoms);
     let mut scored: Vec<Scored> = list

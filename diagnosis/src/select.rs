@@ -6,6 +6,7 @@ use crate::causes::{self, AC_COUPLING, Catalogue, HYSTERESIS};
 use crate::channels::Channels;
 use crate::contender::{Contender, contender, paid_where_noise_shows};
 use crate::context::Context;
+use crate::curves;
 use crate::doubt::{self, doubt};
 use crate::exact::{self, Start};
 use crate::flicker::{self, records::Records};
@@ -311,6 +312,8 @@ fn search(
     if system.every() == 1 {
         simpler(system, catalogue, &mut found);
         closed.extend(doubt(system, catalogue, &mut found));
+        let curves = curves::of_drifts(system, &mut found);
+        found.unnamed.extend(curves);
         if let Some(noise) = Records::of(system) {
             closed.extend(doubt::SLOW);
             widen(system, &mut found, &noise);

@@ -54,8 +54,7 @@ impl Records {
     ) -> Vec<(f64, usize)> {
         let atoms = atoms_of(&[known, shapes, &self.0].concat());
         let whole = system.among(&atoms);
-        let among =
-            |list: &[Shape]| -> Vec<Shape> { list.iter().map(|s| s.among(&atoms)).collect() };
+        let among = |list: &[Shape]| Shape::all_among(list, &atoms);
         let beside = Beside::new(&whole, &among(known));
         let shapes = among(shapes);
         let records = among(&self.0);

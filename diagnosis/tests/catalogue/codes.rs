@@ -117,33 +117,19 @@ fn a_quiet_adc_shows_nothing() {
 /// A bit that weighs too much steps wherever it changes; beside mid-scale it is none of the five parameters.
 #[test]
 fn the_weight_of_a_bit() {
-    for bit in [13, 12, 11] {
-        let codes: [fn(i64, usize) -> i64; 3] = [
-            |code, which| {
-                code + if which == 0 {
-                    14 * ((code >> 13) & 1)
-                } else {
-                    0
-                }
-            },
-            |code, which| {
-                code + if which == 0 {
-                    14 * ((code >> 12) & 1)
-                } else {
-                    0
-                }
-            },
-            |code, which| {
-                code + if which == 0 {
-                    14 * ((code >> 11) & 1)
-                } else {
-                    0
-                }
-            },
-        ];
+    type Code = fn(i64, usize) -> i64;
+    fn heavy<const BIT: u32>(code: i64, which: usize) -> i64 {
+        code + if which == 0 {
+            14 * ((code >> BIT) & 1)
+        } else {
+            0
+        }
+    }
+    let bits: [(u32, Code); 3] = [(13, heavy::<13>), (12, heavy::<12>), (11, heavy::<11>)];
+    for (bit, code) in bits {
         let heavy = Seen {
             periods: reversing,
-            code: codes[13 - bit],
+            code,
             ..PLAIN
         };
         let found = diagnosed(&heavy, 0);

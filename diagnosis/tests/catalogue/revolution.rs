@@ -37,19 +37,21 @@ fn run_out_and_dirt() {
     finds("contamination", &dirty::<10, 80>());
 }
 
+/// An error of the graduation, three times a revolution.
+fn graduated(reference: bool) -> Case {
+    Case {
+        seen: |a, _| {
+            let e = a + 0.003 * (3.0 * a / PERIODS).cos();
+            (e, e)
+        },
+        reference,
+        ..REVOLVING
+    }
+}
+
 #[test]
 fn graduation() {
-    let found = finds(
-        "graduation_error",
-        &Case {
-            seen: |a, _| {
-                let e = a + 0.003 * (3.0 * a / PERIODS).cos();
-                (e, e)
-            },
-            reference: true,
-            ..REVOLVING
-        },
-    );
+    let found = finds("graduation_error", &graduated(true));
     near(&found, "amplitude", 0.003);
     let gain = found.findings[0].gain;
     let before = gain.position_error_rms_before_rad.expect("a reference");
@@ -60,14 +62,7 @@ fn graduation() {
 /// Without a reference an error of the graduation is motion: it may be called cogging, which moves the axis, and nothing of the sensor.
 #[test]
 fn no_graduation_without_a_reference() {
-    let unseen = Case {
-        seen: |a, _| {
-            let e = a + 0.003 * (3.0 * a / PERIODS).cos();
-            (e, e)
-        },
-        ..REVOLVING
-    };
-    let found = diagnosed(&unseen, 7);
+    let found = diagnosed(&graduated(false), 7);
     let names = names(&found);
     assert!(names.iter().all(|name| *name == "cogging"), "{names:?}");
 }
