@@ -90,6 +90,9 @@ pub(crate) struct Candidate {
     pub sign: Sign,
     /// A drift may be the same: it is named alone only where no drift explains nearly as much, and never without it.
     pub as_drift: bool,
+    /// So many of its first shapes are a factor of the pair by its radius and its angle, which is the same as something added only
+    /// where it is small.
+    pub factors: usize,
     /// What the chip can do.
     pub chip: Chip,
     /// How the shapes depend on numbers that are no amounts, where they do.
@@ -120,6 +123,7 @@ impl Candidate {
             motion: false,
             sign: Sign::Any,
             as_drift: false,
+            factors: 0,
             chip: Chip::CannotCorrect,
             exact: None,
             parameters: Rc::new(|_| vec![]),

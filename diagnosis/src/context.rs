@@ -2,6 +2,7 @@
 
 use std::f64::consts::TAU;
 
+use nalgebra::{Matrix5, Vector5};
 use nonius_calibration::Ellipse;
 use nonius_recording::{AdcPair, Recording};
 
@@ -258,6 +259,28 @@ impl Context {
         (0..n)
             .map(|k| ((self.c[k].powi(2) + self.s[k].powi(2)).sqrt() - 1.0) * self.weight[k])
             .collect()
+    }
+
+    /// Change of the angle, radians rms.
+    pub(crate) fn moved_since(&self, before: &[f64]) -> f64 {
+        let pairs = self.measured.iter().zip(before).zip(&self.weight);
+        let square: f64 = pairs.map(|((a, b), w)| w * (a - b).powi(2)).sum();
+        (square / self.weight.iter().sum::<f64>()).sqrt()
+    }
+
+    /// Sum of the squares of the radial residual that no other ellipse takes away.
+    pub(crate) fn power_off_the_ellipse(&self) -> f64 {
+        let radial = self.radial();
+        let (mut gram, mut right) = (Matrix5::<f64>::zeros(), Vector5::<f64>::zeros());
+        for (k, left) in radial.iter().enumerate() {
+            let (c, s) = (self.cos[k], self.sin[k]);
+            let row = Vector5::new(1.0, c, s, c * c - s * s, 2.0 * c * s);
+            gram += row * row.transpose() * self.weight[k];
+            right += row * *left;
+        }
+        let whole = radial.iter().map(|r| r * r).sum::<f64>();
+        let taken = gram.cholesky().map_or(0.0, |g| right.dot(&g.solve(&right)));
+        whole - taken
     }
 
     /// Tangential residual in radians: against the reference where there is one, else above the motion.

@@ -10,7 +10,7 @@ use crate::library::Shape;
 use crate::model::{System, atoms_of};
 use crate::rivals::NOTHING_NEW;
 use crate::score::CLEAR;
-use crate::select::both;
+use crate::select::{SLOW, both};
 use crate::selection::Selection;
 use crate::statistics::log_tail;
 use crate::unexplained::Unnamed;
@@ -43,10 +43,12 @@ pub(crate) fn of_drifts(system: &mut System, found: &mut Selection) -> Vec<Unnam
     list
 }
 
-/// Why slow noise of so much gain in log-likelihood beside a drift has no name: it is so weak that it may be what the drift's
-/// model leaves.
+/// Why slow noise of so much gain in log-likelihood beside something slow has no name: it is so weak that it may be what the model
+/// of that leaves.
 pub(crate) fn instead_of_noise(system: &System, found: &Selection, gain: f64) -> Option<Unnamed> {
-    let drifts = sure(found, Domain::Time).into_iter();
+    let slow = |i: &usize| SLOW.contains(&found.accepted[*i].candidate.name);
+    let also = sure(found, Domain::Speed).into_iter().filter(slow);
+    let drifts = sure(found, Domain::Time).into_iter().chain(also);
     let gains = drifts.map(|i| (gain_of(system, found, &[i]), i));
     let (most, i) = gains.max_by(|a, b| a.0.total_cmp(&b.0))?;
     (gain < TRACE * most).then(|| {

@@ -231,11 +231,11 @@ fn search(
     }
 }
 
-/// Whether a context leaves clearly more of the radius than another one did.
+/// Whether a context leaves clearly more of the radius than another one did. An error that is large changes the ellipse, too, which the
+/// next look finds.
 fn worse(new: &Context, old: &Context) -> bool {
-    const CLEARLY: f64 = 1.5;
-    let power = |c: &Context| c.radial().iter().map(|r| r * r).sum::<f64>();
-    let (new, old) = (power(new), power(old));
+    const CLEARLY: f64 = 1.05;
+    let (new, old) = (new.power_off_the_ellipse(), old.power_off_the_ellipse());
     !new.is_finite() || new > CLEARLY * CLEARLY * old
 }
 

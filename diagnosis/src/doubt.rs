@@ -101,9 +101,9 @@ fn traces(system: &System, found: &mut Selection) -> Vec<Unnamed> {
         let places = own.iter().filter_map(|i| kept.iter().position(|k| k == i));
         let places: Vec<usize> = places.collect();
         if places.is_empty() {
-            gain_of(system, &everything, own)
+            all_gain_of(system, &everything, own)
         } else {
-            gain_of(system, &named, &places)
+            all_gain_of(system, &named, &places)
         }
     };
     let gains: Vec<f64> = names.iter().map(|(_, own)| gain(own)).collect();
@@ -137,10 +137,16 @@ pub(crate) fn so_small(gain: f64, most: f64, strongest: &str) -> String {
     )
 }
 
-/// What the fit explains more than without some of its causes.
+/// What the fit explains more than without some of its causes, as far as it is sure.
 pub(crate) fn gain_of(system: &System, found: &Selection, own: &[usize]) -> f64 {
     let gain = |shapes: &[Shape]| system.fit(system.sure(shapes)).solution.gain();
     gain(&found.fit.shapes) - gain(&found.shapes_but(own))
+}
+
+/// The same with what is seen along the circle, of causes that the radius has shown.
+fn all_gain_of(system: &System, found: &Selection, own: &[usize]) -> f64 {
+    let without = system.fit(found.shapes_but(own));
+    found.fit.solution.gain() - without.solution.gain()
 }
 
 /// What is taken back, and why; `gain` is what its name explained.
@@ -178,18 +184,18 @@ fn leftovers(
     own: &[usize],
 ) -> Option<Unnamed> {
     let everything = found.of(found.accepted.clone(), system);
-    let all = gain_of(system, &everything, own);
+    let all = all_gain_of(system, &everything, own);
     // A harmonic holds all that a bend does, which is nothing beside it; errors of speed hold a part of each other.
     let strength: Vec<f64> = match domain {
         Domain::Speed => own
             .iter()
-            .map(|i| gain_of(system, &everything, &[*i]))
+            .map(|i| all_gain_of(system, &everything, &[*i]))
             .collect(),
         _ => own
             .iter()
             .map(|i| {
                 let others: Vec<usize> = own.iter().copied().filter(|o| o != i).collect();
-                all - gain_of(system, &everything, &others)
+                all - all_gain_of(system, &everything, &others)
             })
             .collect(),
     };
@@ -204,7 +210,7 @@ fn leftovers(
         let gain = |i: &usize| {
             let at = kept.iter().position(|k| k == i)?;
             let other = found.accepted[*i].candidate.name != name;
-            other.then(|| (gain_of(system, &named, &[at]), *i))
+            other.then(|| (all_gain_of(system, &named, &[at]), *i))
         };
         let smallest = own
             .iter()

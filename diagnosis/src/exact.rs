@@ -8,10 +8,10 @@ use nonius_calibration::Ellipse;
 use nonius_recording::Recording;
 
 use crate::beside::Beside;
-use crate::causes::Catalogue;
+use crate::causes::{Catalogue, seen};
 use crate::context::{Context, Known, unwrapped};
 use crate::library::{Row, Shape};
-use crate::model::{Fit, System, above_motion, atoms_of};
+use crate::model::{Fit, System, above_motion, amounts, atoms_of};
 use crate::selection::Accepted;
 use crate::spline::Spline;
 use crate::sweep::Samples;
@@ -20,6 +20,10 @@ use crate::sweep::Samples;
 const FITTED: f64 = 30.0;
 /// Steps of a fit of them.
 const STEPS: usize = 8;
+/// Share of what its shapes explained that those of a number that is known twice have to explain once it is fitted.
+const AS_MUCH: f64 = 0.9;
+/// Standard errors from which on a number is told from zero.
+const TOLD: f64 = 3.0;
 /// Small changes that one step may go.
 const REACH: f64 = 12.0;
 /// Samples that are enough to find what is large, and to see the colour of the noise.
@@ -32,8 +36,10 @@ pub(crate) const NAMED: f64 = 3.0;
 pub(crate) const SEEN: f64 = 1.0;
 /// The same once it was looked at anew: below, estimates are right to a part of their errors.
 const SETTLED: f64 = 0.3;
-/// Times that the angle is followed anew with the same amounts.
-const FOLLOWED: usize = 3;
+/// Fewest and most times that the angle is followed anew with the same amounts.
+const FOLLOWED: (usize, usize) = (3, 20);
+/// Change of the angle, radians rms, below which it has come to rest.
+const STILL: f64 = 1e-5;
 
 /// Fits the inner numbers of a cause beside a fit; its shapes are new functions of the system then.
 pub(crate) fn tuned(system: &mut System, fit: &[Shape], cause: &mut Accepted, gain: f64) {
@@ -110,6 +116,13 @@ pub(crate) fn tuned(system: &mut System, fit: &[Shape], cause: &mut Accepted, ga
         if moves.iter().any(|m| !m.0.is_finite()) {
             break;
         }
+        let (at_zero, same) = (inner[0] == 0.0, |(by, error): (f64, f64)| {
+            by.abs() < TOLD * error
+        });
+        if at_zero && !exact.steps.is_empty() && same(moves[0]) {
+            // It is not told from none, and its fit would run away.
+            return;
+        }
         if !exact.steps.is_empty() {
             errors = Some(moves.iter().map(|m| m.1).collect());
         }
@@ -128,9 +141,11 @@ pub(crate) fn tuned(system: &mut System, fit: &[Shape], cause: &mut Accepted, ga
     }
     let shapes = (exact.make)(&inner, &mut system.samples.library);
     system.extend();
-    // A fit that went astray is none.
+    // A fit that went astray is none. Where the number is known twice, shapes of a wrong one with an amount that is not it may
+    // explain a little more, as the tangents of a large cause are off.
+    let share = if exact.follows { AS_MUCH } else { 1.0 };
     let beside = Beside::new(&system.total, fit);
-    if beside.gain(&shapes).0 < beside.gain(&cause.candidate.shapes).0 - 1.0 {
+    if beside.gain(&shapes).0 < share * beside.gain(&cause.candidate.shapes).0 - 1.0 {
         return;
     }
     cause.candidate.shapes = shapes;
@@ -219,7 +234,8 @@ pub(crate) fn followed(
 ) -> Context {
     let mut context = context.clone();
     let reference = recording.reference_rad.as_deref();
-    for round in 0..FOLLOWED {
+    for round in 0..FOLLOWED.1 {
+        let before = (round >= FOLLOWED.0).then(|| context.measured.clone());
         let known = effects(&context, &mut start.carried.clone(), reference.is_some());
         // Closer knots may have been needed for what is known now.
         if round == 0 && !context.calm {
@@ -227,6 +243,10 @@ pub(crate) fn followed(
             context.finer = context.finer.filter(|_| spacing.is_some());
         }
         context.without(start.ellipse, known, reference);
+        // What is large is taken off at an angle that it has turned itself.
+        if before.is_some_and(|before| context.moved_since(&before) < STILL) {
+            break;
+        }
     }
     context
 }
@@ -275,12 +295,30 @@ fn effects(context: &Context, carried: &mut [Accepted], with_motion: bool) -> Kn
     } else {
         Row::Tangential
     };
+    let (mut radial, mut tangential) = (of(&added, Row::Radial), of(&added, Row::Tangential));
+    for one in carried.iter().filter(|a| a.candidate.factors > 0) {
+        let factors = amounts(&one.candidate.shapes[..one.candidate.factors], &one.x);
+        let [r, t] = [Row::Radial, Row::Tangential].map(|row| samples.sum(&factors, row, 1));
+        for (k, (r, t)) in r.iter().zip(&t).enumerate() {
+            let [along, across] = added_by(*r, *t);
+            radial[k] += along - r;
+            tangential[k] += across - t;
+        }
+    }
     Known {
-        radial: of(&added, Row::Radial),
-        tangential: of(&added, Row::Tangential),
+        radial,
+        tangential,
         angle: of(&|a, _| turns(a), Row::Tangential),
         fast: of(&|a, _| a.candidate.motion, fast),
     }
+}
+
+/// What a factor adds to the pair, along the radius and along the circle, by its radius less one and the angle that is told of it.
+fn added_by(less: f64, told: f64) -> [f64; 2] {
+    let radius = 1.0 + less;
+    let share = seen(radius);
+    let (sin, cos) = if share > 0.0 { told / share } else { 0.0 }.sin_cos();
+    [radius * cos - 1.0, radius * sin]
 }
 
 /// Gives causes their shapes in another catalogue; the ones that it does not hold are left out by their lack of shapes.

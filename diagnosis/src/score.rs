@@ -16,6 +16,8 @@ pub(crate) const KINDS: f64 = 22.0;
 const GRID: f64 = 3.0;
 /// Most that a cause of which little is seen does, in amplitudes rms.
 const LARGEST: f64 = 0.1;
+/// Share of that from which on one is nearly as large.
+const NEARLY: f64 = 0.3;
 /// Share of the power of what it does that is little.
 const SEEN: f64 = 0.05;
 /// Gain in log-likelihood (an SNR of 4) that a cause has to have beyond how it was when the recording began.
@@ -97,15 +99,25 @@ pub(crate) fn score(beside: &Beside, candidate: Candidate) -> Option<Scored> {
     })
 }
 
-/// Whether a cause can be so large. Where little of it is seen, as of a delay at a speed that hardly changes, the rest would
+/// Drops causes that cannot be so large. Where little of it is seen, as of a delay at a speed that hardly changes, the rest would
 /// have to be made up for by opposite errors of offset, gain and phase. Not so of a high pass: it turns and shrinks both
 /// channels alike, which nobody sees.
-pub(crate) fn likely(system: &System, scored: &Scored) -> bool {
+pub(crate) fn retain_likely(system: &System, list: &mut Vec<Scored>) {
+    let samples: f64 = system.context.weight.iter().sum();
+    let large = LARGEST * (2.0 * samples).sqrt() / system.noise();
+    let kept = list.iter().filter(|s| is_likely(s, large));
+    let best = kept.min_by(|a, b| a.log_p.total_cmp(&b.log_p));
+    // One that is hardly smaller has no more right to be than they have.
+    let gain = best.filter(|s| !is_likely(s, NEARLY * large));
+    let gain = gain.map(|s| s.gain);
+    list.retain(|s| is_likely(s, large) || gain.is_some_and(|gain| s.gain > RIVALS * gain));
+}
+
+/// The same for one that is large from a size on.
+fn is_likely(scored: &Scored, large: f64) -> bool {
     if scored.candidate.name == AC_COUPLING {
         return true;
     }
-    let samples: f64 = system.context.weight.iter().sum();
-    let large = LARGEST * (2.0 * samples).sqrt() / system.noise();
     // At constant speed, a line at the signals' own frequency is an offset or a gain of them, and hardly seen.
     let hidden = matches!(
         scored.candidate.domain,

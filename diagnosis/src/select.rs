@@ -12,7 +12,7 @@ use crate::exact::{self, Start};
 use crate::flicker::{self, records::Records};
 use crate::library::Shape;
 use crate::model::{Fit, Residual, System, atoms_of};
-use crate::score::{CLEAR, SHOWN, Scored, likely, score, worth};
+use crate::score::{CLEAR, SHOWN, Scored, retain_likely, score, worth};
 use crate::selection::{Accepted, Selection};
 use crate::simpler::simpler;
 use crate::statistics::{by_chance, price};
@@ -157,7 +157,7 @@ pub(crate) fn select(
 }
 
 /// Beside flicker noise, what is slow in the channels is that noise: drift cannot be told from it, nor can these.
-const SLOW: [&str; 2] = [HYSTERESIS, AC_COUPLING];
+pub(crate) const SLOW: [&str; 2] = [HYSTERESIS, AC_COUPLING];
 
 /// Log-likelihood, its numbers paid for (an SNR of 25), below which a drift may be what is seen of slow noise: a stronger one has its
 /// own shape.
@@ -222,7 +222,7 @@ fn search(
         let shown = shown.into_iter().filter(open).collect();
         let worth = worth(system, &found.fit, shown, most);
         scored.extend(take_in(system, fixed, &found.fit, worth));
-        scored.retain(|s| likely(system, s));
+        retain_likely(system, &mut scored);
         scored.sort_by(|a, b| a.log_p.total_cmp(&b.log_p));
         scored = with_weighed(system, fixed, &found.fit, &residual, open, scored);
         if scored.is_empty() || scored[0].log_p > SHOWN.ln() {
@@ -286,13 +286,16 @@ fn search(
                 }
                 let own = found.base.shapes.len();
                 let held_out = halves.held_out(&fit, own, cause.candidate.given());
-                // What does not hold on data that was not fitted is no cause.
-                if held_out > halves.held_out(&found.fit, own, 0) * 1.01 {
-                    refused.push(cause.candidate.name);
+                let fails = held_out > halves.held_out(&found.fit, own, 0) * 1.01;
+                let name = cause.candidate.name;
+                found.accepted.push(*cause);
+                let before = std::mem::replace(&mut found.fit, fit);
+                // What does not hold on data that was not fitted is no cause, unless it is so large that its tangents do not.
+                if fails && (last || !astray(system, &found)) {
+                    found.accepted.pop();
+                    found.fit = before;
+                    refused.push(name);
                 } else {
-                    let before = found.fit;
-                    found.accepted.push(*cause);
-                    found.fit = fit;
                     // Second orders may decide between causes long before they show beside one of them.
                     if !last && (!others.is_empty() || astray(system, &found)) {
                         found.again = starts(system, &before, &found, others);

@@ -17,31 +17,47 @@ use crate::library::{Library, Shape};
 /// Scale periods of travel that ac coupling needs to be told from shapes of the angle.
 const FEWEST: f64 = 6.0;
 
-/// The pair behind a low pass of so much per sample and a corner frequency, block after block, as a part of the pair itself.
-/// It begins as if the scale had always moved as it does then: what was before is the charges'.
-fn slow(
-    block: &Block,
-    rate: f64,
-    corner: f64,
-    state: &RefCell<(usize, Complex<f64>)>,
-) -> Vec<Complex<f64>> {
+/// Where a low pass is between blocks.
+#[derive(Default)]
+struct Charged {
+    /// The sample that comes next.
+    next: usize,
+    /// What went in and what came out last.
+    last: [Complex<f64>; 2],
+}
+
+/// The pair behind a low pass of a time constant, seconds, block after block, as a part of the pair itself; exact where the scale
+/// turns evenly from sample to sample. It begins as if the scale had always moved as it does then: what was before is the charges'.
+fn slow(block: &Block, rate: f64, tau: f64, state: &RefCell<Charged>) -> Vec<Complex<f64>> {
     let mut state = state.borrow_mut();
-    if block.start != state.0 || block.start == 0 {
+    let response = |k: usize| Complex::new(1.0, block.speed[k] * tau).inv();
+    if block.start != state.next || block.start == 0 {
         let pair = Complex::new(block.cos[0], block.sin[0]);
-        let response = Complex::new(1.0, block.speed[0] / (TAU * corner)).inv();
-        *state = (block.start, pair * response);
+        state.last = [pair, pair * response(0)];
     }
-    let mut now = state.1;
+    let decay = (-1.0 / (rate * tau)).exp();
+    let [mut before, mut now] = state.last;
     let pairs = block.cos.iter().zip(block.sin);
     let values = pairs
-        .map(|(c, s)| {
+        .enumerate()
+        .map(|(k, (c, s))| {
             let pair = Complex::new(*c, *s);
-            now += rate * (pair - now);
+            let response = response(k);
+            now = pair * response + (now - before * response) * decay;
+            before = pair;
             now * pair.conj()
         })
         .collect();
-    *state = (block.start + block.len(), now);
+    *state = Charged {
+        next: block.start + block.len(),
+        last: [before, now],
+    };
     values
+}
+
+/// Share of the angle of a factor of this radius that is told: where hardly anything is left, its angle says nothing.
+pub(crate) fn seen(radius: f64) -> f64 {
+    (2.0 * radius).min(1.0)
 }
 
 /// What a high pass takes away, over its corner frequency in hertz. The same filter in both channels is one of the corrected
@@ -50,14 +66,12 @@ fn slow(
 fn high_pass(sample_rate: f64) -> impl Fn(f64, &mut Library) -> Vec<Shape> + 'static {
     move |corner, library| {
         let corner: f64 = f64::max(corner, 1e-300);
-        let rate = (TAU * corner / sample_rate).clamp(0.0, 0.5);
-        let state: RefCell<(usize, Complex<f64>)> = RefCell::default();
+        let state: RefCell<Charged> = RefCell::default();
         let mut shapes = vec![library.pair(move |block: &Block, c, s| {
-            let lost = slow(block, rate, corner, &state);
+            let lost = slow(block, sample_rate, 1.0 / (TAU * corner), &state);
             for (k, lost) in lost.into_iter().enumerate() {
                 let (radius, angle) = (1.0 - lost).to_polar();
-                // Where hardly anything is left, its angle says nothing.
-                let change = Complex::new(radius - 1.0, angle * (2.0 * radius).min(1.0));
+                let change = Complex::new(radius - 1.0, angle * seen(radius));
                 let change = change * Complex::new(block.cos[k], block.sin[k]) / corner;
                 (c[k], s[k]) = (change.re, change.im);
             }
@@ -110,6 +124,7 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
                 ..e
             }),
             sign: Sign::Known(least),
+            factors: 1,
             parameters: Rc::new(|e| corner_hz(e, (e.x[0], e.error[0]))),
             evidence: Rc::new(|p| {
                 format!(

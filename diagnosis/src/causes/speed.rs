@@ -193,6 +193,7 @@ fn late_bandwidths(speed: &Speed, library: &mut Library) -> Vec<Candidate> {
             trials: REACHES.len() as f64,
             exact: follows(tau, make),
             sign: Sign::Known(least),
+            factors: 1,
             evidence: Rc::new(|p| {
                 format!(
                     "both channels lag the reference and lose amplitude with speed, as behind a low pass with {}",
