@@ -386,6 +386,29 @@ fn what_looks_like_a_third_is_found() {
     });
 }
 
+/// Errors that are so large that tangents do not do: high passes that turn the pair by up to a fourth of a radian, a low pass that is one tenth
+/// of the amplitude at a speed that hardly changes. And a bend that is seen along the circle only, whose waveform is no cubic.
+#[test]
+fn what_is_large_is_found_as_it_is() {
+    let seeds = [
+        157_000_232,
+        157_000_978,
+        157_001_392,
+        158_001_727,
+        158_002_058,
+        157_000_804,
+        157_000_593,
+    ];
+    seeds.into_par_iter().for_each(|seed| {
+        let score = scored(seed);
+
+        let outcomes = &score.outcomes;
+        let found = |o: &Outcome| matches!(o, Outcome::First | Outcome::Group);
+        assert!(outcomes.iter().all(found), "{seed}: {outcomes:?}");
+        assert!(score.wrong.is_empty(), "{seed}: {:?}", score.wrong);
+    });
+}
+
 /// A drift that is named twice, by its ends and by how it went, is one that each of the two explains without the other: one of them stays.
 #[test]
 fn what_two_names_explain_keeps_one() {
