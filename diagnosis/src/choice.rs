@@ -13,6 +13,10 @@ use crate::statistics::price;
 /// Looks at a recording until what is known of it has come to rest.
 const SETTLING: usize = 6;
 
+/// Log-likelihood, what other splines and noise free make of it included, that does not tell one cause from another once both have
+/// come to rest.
+const ALIKE: f64 = 5.0;
+
 /// A start whose causes have come to rest.
 struct Settled {
     score: f64,
@@ -93,7 +97,8 @@ pub(crate) fn best(
     // Likelihoods of splines with other knots cannot be compared.
     let spacing = |s: &Settled| s.context.spline.as_ref().map_or(0.0, Spline::spacing);
     let common = all.iter().map(&spacing).fold(0.0, f64::max);
-    all.into_iter()
+    let mut all: Vec<Settled> = all
+        .into_iter()
         .map(|one| {
             if spacing(&one) < common {
                 settled(
@@ -106,6 +111,19 @@ pub(crate) fn best(
                 one
             }
         })
-        .max_by(|a, b| a.score.total_cmp(&b.score))
-        .map(|best| (best.context, best.start.carried))
+        .collect();
+    all.sort_by(|a, b| b.score.total_cmp(&a.score));
+    let (best, rest) = all.split_first_mut()?;
+    let nearly = rest.iter().filter(|other| other.score > best.score - ALIKE);
+    let names = nearly.filter_map(|other| Some(other.start.carried.last()?.candidate.name));
+    let names: Vec<&str> = names.collect();
+    if let Some(last) = best.start.carried.last_mut() {
+        for name in names {
+            if name != last.candidate.name && !last.confounded.iter().any(|known| known == name) {
+                last.confounded.push(name.to_owned());
+            }
+        }
+    }
+    let best = all.swap_remove(0);
+    Some((best.context, best.start.carried))
 }

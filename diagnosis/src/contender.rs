@@ -85,7 +85,7 @@ pub(crate) fn contender(
         Domain::Speed => LARGE_WITH_SPEED,
         _ => LARGE,
     };
-    let large = most * system.every() as f64 > large;
+    let mut large = most * system.every() as f64 > large;
     let (mut first, mut named): (Option<Contender>, Option<Box<Accepted>>) = (None, None);
     let mut others = vec![];
     let mut tried: Vec<(&'static str, Domain)> = vec![];
@@ -164,6 +164,10 @@ pub(crate) fn contender(
             }
             system.retain(|i| i < mark);
             cause.confounded = rivals;
+            // At a speed that hardly changes most of what it does is in the ellipse, and its second order is not.
+            large |= named.is_none()
+                && own.candidate.domain == Domain::Speed
+                && beyond(system, fit, &cause);
             cause.other_order = other_order;
             match &named {
                 None => named = Some(Box::new(cause)),
@@ -233,6 +237,14 @@ pub(crate) fn contender(
         // Nothing was tried: there was nothing to try.
         (None, None) => Contender::Unnamed(Nameless::default()),
     }
+}
+
+/// Whether tangents do not do for a cause beside a fit.
+fn beyond(system: &System, fit: &Fit, cause: &Accepted) -> bool {
+    let mut cause = cause.clone();
+    cause.first = fit.shapes.len();
+    let with = system.fit(both(&fit.shapes, &cause.candidate.shapes));
+    !exact::tangents_do(system, &with, &[cause], exact::NAMED)
 }
 
 /// A number that shows twice, as an amount and by the shapes, stands on a grid that is coarse for them, and so does one that
