@@ -223,7 +223,7 @@ fn search(
             continue;
         };
         // A look that makes it worse has gone astray: the tangents have to do.
-        if worse(&known.0, &context) {
+        if worse(&known, &context) {
             last = true;
         } else {
             (context, carried) = known;
@@ -231,11 +231,16 @@ fn search(
     }
 }
 
-/// Whether a context leaves clearly more of the radius than another one did. An error that is large changes the ellipse, too, which the
-/// next look finds.
-fn worse(new: &Context, old: &Context) -> bool {
-    const CLEARLY: f64 = 1.05;
-    let (new, old) = (new.power_off_the_ellipse(), old.power_off_the_ellipse());
+/// Whether a context leaves clearly more of the radius than another one did. What turns the pair far changes the ellipse, too, which
+/// the next look finds.
+fn worse((new, known): &(Context, Vec<Accepted>), old: &Context) -> bool {
+    const CLEARLY: f64 = 1.5;
+    let turned = known.iter().any(|one| one.candidate.factors > 0);
+    let power = |c: &Context| match turned {
+        true => c.power_off_the_ellipse(),
+        false => c.radial().iter().map(|r| r * r).sum(),
+    };
+    let (new, old) = (power(new), power(old));
     !new.is_finite() || new > CLEARLY * CLEARLY * old
 }
 

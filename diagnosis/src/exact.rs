@@ -36,7 +36,7 @@ pub(crate) const NAMED: f64 = 3.0;
 pub(crate) const SEEN: f64 = 1.0;
 /// The same once it was looked at anew: below, estimates are right to a part of their errors.
 const SETTLED: f64 = 0.3;
-/// Fewest and most times that the angle is followed anew with the same amounts.
+/// Times that the angle is followed anew with the same amounts; most times where something turns the pair that may be large.
 const FOLLOWED: (usize, usize) = (3, 20);
 /// Change of the angle, radians rms, below which it has come to rest.
 const STILL: f64 = 1e-5;
@@ -234,7 +234,9 @@ pub(crate) fn followed(
 ) -> Context {
     let mut context = context.clone();
     let reference = recording.reference_rad.as_deref();
-    for round in 0..FOLLOWED.1 {
+    let factors = start.carried.iter().any(|a| a.candidate.factors > 0);
+    let most = if factors { FOLLOWED.1 } else { FOLLOWED.0 };
+    for round in 0..most {
         let before = (round >= FOLLOWED.0).then(|| context.measured.clone());
         let known = effects(&context, &mut start.carried.clone(), reference.is_some());
         // Closer knots may have been needed for what is known now.

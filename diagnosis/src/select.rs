@@ -287,11 +287,11 @@ fn search(
                 let own = found.base.shapes.len();
                 let held_out = halves.held_out(&fit, own, cause.candidate.given());
                 let fails = held_out > halves.held_out(&found.fit, own, 0) * 1.01;
-                let name = cause.candidate.name;
+                let (name, turns) = (cause.candidate.name, cause.candidate.factors > 0);
                 found.accepted.push(*cause);
                 let before = std::mem::replace(&mut found.fit, fit);
-                // What does not hold on data that was not fitted is no cause, unless it is so large that its tangents do not.
-                if fails && (last || !astray(system, &found)) {
+                // What does not hold on data that was not fitted is no cause, unless it turns the pair so far that its tangents do not.
+                if fails && (last || !turns || !astray(system, &found)) {
                     found.accepted.pop();
                     found.fit = before;
                     refused.push(name);
