@@ -116,10 +116,8 @@ pub(crate) fn tuned(system: &mut System, fit: &[Shape], cause: &mut Accepted, ga
         if moves.iter().any(|m| !m.0.is_finite()) {
             break;
         }
-        let (at_zero, same) = (inner[0] == 0.0, |(by, error): (f64, f64)| {
-            by.abs() < TOLD * error
-        });
-        if at_zero && !exact.steps.is_empty() && same(moves[0]) {
+        let (by, error) = moves[0];
+        if inner == [0.0] && !exact.steps.is_empty() && by.abs() < TOLD * error {
             // It is not told from none, and its fit would run away.
             return;
         }
