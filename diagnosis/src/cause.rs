@@ -2,6 +2,8 @@
 
 use std::rc::Rc;
 
+use nonius_fourier::Complex;
+
 use crate::finding::{Chip, Parameter};
 use crate::library::{Library, Shape};
 
@@ -51,6 +53,8 @@ pub(crate) struct Exact {
     /// The one inner number is the first amount itself.
     pub follows: bool,
 }
+/// A factor of the pair, by what its shape says of the radius, less one, and of the angle, radians.
+pub(crate) type Factor = fn(f64, f64) -> Complex<f64>;
 /// Makes parameters of an estimate.
 pub(crate) type Reads = Rc<dyn Fn(&Estimate) -> Vec<Parameter>>;
 /// Makes a sentence of parameters.
@@ -90,9 +94,8 @@ pub(crate) struct Candidate {
     pub sign: Sign,
     /// A drift may be the same: it is named alone only where no drift explains nearly as much, and never without it.
     pub as_drift: bool,
-    /// So many of its first shapes are a factor of the pair by its radius and its angle, which is the same as something added only
-    /// where it is small.
-    pub factors: usize,
+    /// Where its first shape is a factor of the pair, which is the same as something added only where it is small.
+    pub factor: Option<Factor>,
     /// What the chip can do.
     pub chip: Chip,
     /// How the shapes depend on numbers that are no amounts, where they do.
@@ -123,7 +126,7 @@ impl Candidate {
             motion: false,
             sign: Sign::Any,
             as_drift: false,
-            factors: 0,
+            factor: None,
             chip: Chip::CannotCorrect,
             exact: None,
             parameters: Rc::new(|_| vec![]),

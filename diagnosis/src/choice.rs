@@ -113,17 +113,16 @@ pub(crate) fn best(
         })
         .collect();
     all.sort_by(|a, b| b.score.total_cmp(&a.score));
-    let (best, rest) = all.split_first_mut()?;
-    let nearly = rest.iter().filter(|other| other.score > best.score - ALIKE);
-    let names = nearly.filter_map(|other| Some(other.start.carried.last()?.candidate.name));
-    let names: Vec<&str> = names.collect();
+    let mut all = all.into_iter();
+    let mut best = all.next()?;
     if let Some(last) = best.start.carried.last_mut() {
-        for name in names {
+        let nearly = all.take_while(|other| other.score > best.score - ALIKE);
+        for other in nearly.filter_map(|other| other.start.carried.into_iter().next_back()) {
+            let name = other.candidate.name;
             if name != last.candidate.name && !last.confounded.iter().any(|known| known == name) {
                 last.confounded.push(name.to_owned());
             }
         }
     }
-    let best = all.swap_remove(0);
     Some((best.context, best.start.carried))
 }

@@ -16,7 +16,7 @@ use crate::model::{Fit, Residual, System};
 use crate::names::plain;
 use crate::rivals;
 use crate::score::{ITSELF, RIVALS, Scored, score};
-use crate::select::both;
+use crate::select::{astray, both};
 use crate::selection::Accepted;
 use crate::stairs;
 use crate::statistics::price;
@@ -244,7 +244,7 @@ fn beyond(system: &System, fit: &Fit, cause: &Accepted) -> bool {
     let mut cause = cause.clone();
     cause.first = fit.shapes.len();
     let with = system.fit(both(&fit.shapes, &cause.candidate.shapes));
-    !exact::tangents_do(system, &with, &[cause], exact::NAMED)
+    astray(system, &with, &[cause])
 }
 
 /// A number that shows twice, as an amount and by the shapes, stands on a grid that is coarse for them, and so does one that

@@ -235,7 +235,7 @@ fn search(
 /// the next look finds.
 fn worse((new, known): &(Context, Vec<Accepted>), old: &Context) -> bool {
     const CLEARLY: f64 = 1.5;
-    let turned = known.iter().any(|one| one.candidate.factors > 0);
+    let turned = known.iter().any(|one| one.candidate.factor.is_some());
     let power = |c: &Context| match turned {
         true => c.power_off_the_ellipse(),
         false => c.radial().iter().map(|r| r * r).sum(),

@@ -8,7 +8,7 @@ use nonius_calibration::Ellipse;
 use nonius_recording::Recording;
 
 use crate::beside::Beside;
-use crate::causes::{Catalogue, seen};
+use crate::causes::Catalogue;
 use crate::context::{Context, Known, unwrapped};
 use crate::library::{Row, Shape};
 use crate::model::{Fit, System, above_motion, amounts, atoms_of};
@@ -232,8 +232,8 @@ pub(crate) fn followed(
 ) -> Context {
     let mut context = context.clone();
     let reference = recording.reference_rad.as_deref();
-    let factors = start.carried.iter().any(|a| a.candidate.factors > 0);
-    let most = if factors { FOLLOWED.1 } else { FOLLOWED.0 };
+    let turned = start.carried.iter().any(|a| a.candidate.factor.is_some());
+    let most = if turned { FOLLOWED.1 } else { FOLLOWED.0 };
     for round in 0..most {
         let before = (round >= FOLLOWED.0).then(|| context.measured.clone());
         let known = effects(&context, &mut start.carried.clone(), reference.is_some());
@@ -296,13 +296,16 @@ fn effects(context: &Context, carried: &mut [Accepted], with_motion: bool) -> Kn
         Row::Tangential
     };
     let (mut radial, mut tangential) = (of(&added, Row::Radial), of(&added, Row::Tangential));
-    for one in carried.iter().filter(|a| a.candidate.factors > 0) {
-        let factors = amounts(&one.candidate.shapes[..one.candidate.factors], &one.x);
-        let [r, t] = [Row::Radial, Row::Tangential].map(|row| samples.sum(&factors, row, 1));
+    for one in carried.iter() {
+        let (Some(factor), [first, ..]) = (one.candidate.factor, &*one.candidate.shapes) else {
+            continue;
+        };
+        let first = amounts(std::slice::from_ref(first), &one.x);
+        let [r, t] = [Row::Radial, Row::Tangential].map(|row| samples.sum(&first, row, 1));
         for (k, (r, t)) in r.iter().zip(&t).enumerate() {
-            let [along, across] = added_by(*r, *t);
-            radial[k] += along - r;
-            tangential[k] += across - t;
+            let added = factor(*r, *t) - 1.0;
+            radial[k] += added.re - r;
+            tangential[k] += added.im - t;
         }
     }
     Known {
@@ -311,14 +314,6 @@ fn effects(context: &Context, carried: &mut [Accepted], with_motion: bool) -> Kn
         angle: of(&|a, _| turns(a), Row::Tangential),
         fast: of(&|a, _| a.candidate.motion, fast),
     }
-}
-
-/// What a factor adds to the pair, along the radius and along the circle, by its radius less one and the angle that is told of it.
-fn added_by(less: f64, told: f64) -> [f64; 2] {
-    let radius = 1.0 + less;
-    let share = seen(radius);
-    let (sin, cos) = if share > 0.0 { told / share } else { 0.0 }.sin_cos();
-    [radius * cos - 1.0, radius * sin]
 }
 
 /// Gives causes their shapes in another catalogue; the ones that it does not hold are left out by their lack of shapes.

@@ -104,15 +104,15 @@ fn tune(system: &mut System, catalogue: &Catalogue, found: &mut Selection) {
     keep_used(system, catalogue.atoms, found);
 }
 
-/// Whether the tangents do not do for what is known.
-fn astray(system: &System, found: &Selection) -> bool {
-    let (fit, accepted) = (&found.fit, &found.accepted);
+/// Whether the tangents do not do for causes in a fit.
+pub(crate) fn astray(system: &System, fit: &Fit, accepted: &[Accepted]) -> bool {
     !accepted.is_empty() && !exact::tangents_do(system, fit, accepted, exact::NAMED)
 }
 
 /// Where to look anew from, if the tangents do not do for what is known.
 pub(crate) fn anew(system: &System, found: &Selection) -> Option<Start> {
-    astray(system, found).then(|| exact::start(system, &found.fit, &found.accepted))
+    let astray = astray(system, &found.fit, &found.accepted);
+    astray.then(|| exact::start(system, &found.fit, &found.accepted))
 }
 
 /// Accepts causes one after the other, beside those that are known; ends where the tangents do not do, unless this is
@@ -287,17 +287,18 @@ fn search(
                 let own = found.base.shapes.len();
                 let held_out = halves.held_out(&fit, own, cause.candidate.given());
                 let fails = held_out > halves.held_out(&found.fit, own, 0) * 1.01;
-                let (name, turns) = (cause.candidate.name, cause.candidate.factors > 0);
-                found.accepted.push(*cause);
-                let before = std::mem::replace(&mut found.fit, fit);
+                let (name, turns) = (cause.candidate.name, cause.candidate.factor.is_some());
+                let mut accepted = found.accepted.clone();
+                accepted.push(*cause);
+                let anew = !last && astray(system, &fit, &accepted);
                 // What does not hold on data that was not fitted is no cause, unless it turns the pair so far that its tangents do not.
-                if fails && (last || !turns || !astray(system, &found)) {
-                    found.accepted.pop();
-                    found.fit = before;
+                if fails && !(turns && anew) {
                     refused.push(name);
                 } else {
+                    let before = std::mem::replace(&mut found.fit, fit);
+                    found.accepted = accepted;
                     // Second orders may decide between causes long before they show beside one of them.
-                    if !last && (!others.is_empty() || astray(system, &found)) {
+                    if anew || !last && !others.is_empty() {
                         found.again = starts(system, &before, &found, others);
                     }
                 }

@@ -55,9 +55,16 @@ fn slow(block: &Block, rate: f64, tau: f64, state: &RefCell<Charged>) -> Vec<Com
     values
 }
 
-/// Share of the angle of a factor of this radius that is told: where hardly anything is left, its angle says nothing.
-pub(crate) fn seen(radius: f64) -> f64 {
+/// Share of the angle of what is left that is told, by its radius: where that is hardly anything, its angle says nothing.
+fn seen(radius: f64) -> f64 {
     (2.0 * radius).min(1.0)
+}
+
+/// What is left, by what its shape tells.
+fn factor(less: f64, told: f64) -> Complex<f64> {
+    let radius = 1.0 + less;
+    let share = seen(radius);
+    Complex::from_polar(radius, if share > 0.0 { told / share } else { 0.0 })
 }
 
 /// What a high pass takes away, over its corner frequency in hertz. The same filter in both channels is one of the corrected
@@ -124,7 +131,7 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
                 ..e
             }),
             sign: Sign::Known(least),
-            factors: 1,
+            factor: Some(factor),
             parameters: Rc::new(|e| corner_hz(e, (e.x[0], e.error[0]))),
             evidence: Rc::new(|p| {
                 format!(

@@ -25,7 +25,6 @@ use crate::library::{Library, Place, Shape, Use};
 use crate::model::{Residual, Weighed};
 use crate::trig::{Trig, rotated};
 
-pub(crate) use high_pass::seen;
 pub(crate) use line::{crawls, has_harmonics, wave as line_wave};
 pub(crate) use place::{highest_order, order_waves, strongest_order, without_cogging};
 pub(crate) use speed::{varies as speed_varies, varies_much as speed_varies_much};

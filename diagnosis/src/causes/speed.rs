@@ -2,6 +2,8 @@
 
 use std::rc::Rc;
 
+use nonius_fourier::Complex;
+
 use super::direction::{self, sides};
 use super::lag::{falls, falls_behind, later, low_pass};
 use super::{Catalogue, Modulated, modulated};
@@ -193,7 +195,7 @@ fn late_bandwidths(speed: &Speed, library: &mut Library) -> Vec<Candidate> {
             trials: REACHES.len() as f64,
             exact: follows(tau, make),
             sign: Sign::Known(least),
-            factors: 1,
+            factor: Some(|less, angle| Complex::from_polar(1.0 + less, angle)),
             evidence: Rc::new(|p| {
                 format!(
                     "both channels lag the reference and lose amplitude with speed, as behind a low pass with {}",
