@@ -68,6 +68,17 @@ impl Context {
     }
 }
 
+/// Waves of an angle that is the sum of the angles of two others.
+#[multiversion::multiversion(targets("x86_64+avx2"))]
+fn turned([last_c, last_s]: [&[f64]; 2], [cos, sin]: [&[f64]; 2], [c, s]: [&mut [f64]; 2]) {
+    let last = last_c.iter().zip(last_s);
+    let by = cos.iter().zip(sin);
+    for (((c, s), (last_c, last_s)), (cos, sin)) in c.iter_mut().zip(s).zip(last).zip(by) {
+        *c = last_c * cos - last_s * sin;
+        *s = last_s * cos + last_c * sin;
+    }
+}
+
 impl Block<'_> {
     /// Number of samples.
     pub(crate) fn len(&self) -> usize {
@@ -96,9 +107,12 @@ impl Block<'_> {
         if top == 0 {
             return;
         }
-        for (k, (c, s)) in self.cos.iter().zip(self.sin).enumerate() {
-            out[n + k] = out[k] * c;
-            out[2 * n + k] = out[k] * s;
+        let (by, first) = out.split_at_mut(n);
+        let (first_c, first_s) = first[..2 * n].split_at_mut(n);
+        for (to, wave) in [(first_c, self.cos), (first_s, self.sin)] {
+            for ((to, by), wave) in to.iter_mut().zip(&*by).zip(wave) {
+                *to = by * wave;
+            }
         }
         // The angles add up: the next order is the last one turned by α.
         for order in 2..=top {
@@ -106,11 +120,7 @@ impl Block<'_> {
             let last = &before[(2 * order - 3) * n..];
             let (last_c, last_s) = last.split_at(n);
             let (now_c, now_s) = now[..2 * n].split_at_mut(n);
-            for k in 0..n {
-                let (c, s) = (self.cos[k], self.sin[k]);
-                now_c[k] = last_c[k] * c - last_s[k] * s;
-                now_s[k] = last_s[k] * c + last_c[k] * s;
-            }
+            turned([last_c, last_s], [self.cos, self.sin], [now_c, now_s]);
         }
     }
 }

@@ -73,10 +73,15 @@ fn rotate(block: &Block, values: &mut [f64], count: usize) {
     let n = block.len();
     let (c, s) = values.split_at_mut(count * n);
     for (c, s) in c.chunks_mut(n).zip(s.chunks_mut(n)) {
-        for k in 0..n {
-            let (cos, sin) = (block.cos[k], block.sin[k]);
-            (c[k], s[k]) = (c[k] * cos + s[k] * sin, s[k] * cos - c[k] * sin);
-        }
+        rotated([c, s], [block.cos, block.sin]);
+    }
+}
+
+/// Pairs, turned back by an angle of which these are cosine and sine.
+#[multiversion::multiversion(targets("x86_64+avx2"))]
+fn rotated([c, s]: [&mut [f64]; 2], [cos, sin]: [&[f64]; 2]) {
+    for ((c, s), (cos, sin)) in c.iter_mut().zip(s).zip(cos.iter().zip(sin)) {
+        (*c, *s) = (*c * cos + *s * sin, *s * cos - *c * sin);
     }
 }
 

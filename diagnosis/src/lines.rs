@@ -115,11 +115,9 @@ pub(crate) fn refined(power: &[f64], best: usize) -> f64 {
 
 /// cos and sin of a frequency in hertz at the given times.
 pub(crate) fn wave(time: &[f64], hertz: f64) -> [Vec<f64>; 2] {
-    let phase = |t: &f64| TAU * hertz * t;
-    [
-        time.iter().map(|t| phase(t).cos()).collect(),
-        time.iter().map(|t| phase(t).sin()).collect(),
-    ]
+    let wave = |t: &f64| (TAU * hertz * t).sin_cos();
+    let (sin, cos) = time.iter().map(wave).unzip();
+    [cos, sin]
 }
 
 /// Frequency of the strongest line in cycles per sample, and `values` without it.

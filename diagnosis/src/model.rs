@@ -31,11 +31,10 @@ const NOTHING: f64 = 1e-18;
 struct Moments([DMatrix<f64>; 3]);
 
 impl Moments {
-    /// Square of the data of a row.
-    fn power(&self, row: Row) -> f64 {
-        let sums = &self.0[row as usize];
-        let data = sums.nrows() - 1;
-        sums[(data, data)]
+    /// Square of the data of each row.
+    fn powers(&self) -> [f64; 3] {
+        let data = |sums: &DMatrix<f64>| sums[(sums.nrows() - 1, sums.nrows() - 1)];
+        self.0.each_ref().map(data)
     }
 }
 
@@ -104,8 +103,15 @@ impl<'a> System<'a> {
             let power = data.iter().map(|v| v * v).sum::<f64>() / data.len().max(1) as f64;
             whitener.sigma = power.sqrt().max(ROUNDING);
         }
-        let plain = this.moments(&atoms, every);
-        this.total = this.units(&plain, &atoms, every);
+        // Of a part, those of all atoms are needed only once the colour of the noise is known.
+        let plain = (!this.samples.follows_a_part()).then(|| this.moments(&atoms, every));
+        let powers = match &plain {
+            Some(plain) => plain.powers(),
+            None => this.moments(&[], every).powers(),
+        };
+        if let Some(plain) = &plain {
+            this.total = this.units(plain, &atoms, every);
+        }
         let mut any = catalogue.broad.clone();
         any.extend(known.iter().map(|k| k.0));
         any.sort_unstable();
@@ -117,7 +123,7 @@ impl<'a> System<'a> {
             this.flicker = flicker::find(context, &this.left_of_radius(&any));
         }
         let known: Vec<usize> = known.iter().map(|k| k.0).collect();
-        let known = broad::Known::new(&this, catalogue, &known, &plain, (&along, &any));
+        let known = broad::Known::new(&this, catalogue, &known, powers, (&along, &any));
         let mut more = this.samples.left(&known.amounts());
         let fast = if left[2].is_empty() {
             Row::Tangential
@@ -166,10 +172,9 @@ impl<'a> System<'a> {
         }
         // White noise changes the scale of a row only.
         let white = this.samples.whiteners.iter().all(Whitener::is_white);
-        let moments = if white {
-            plain
-        } else {
-            this.moments(&atoms, every)
+        let moments = match plain {
+            Some(plain) if white => plain,
+            _ => this.moments(&atoms, every),
         };
         this.total = this.units(&moments, &atoms, every);
         this

@@ -36,6 +36,8 @@ const CLOCK_JITTER: &str = "clock_jitter";
 const AMPLITUDE_NOISE: &str = "amplitude_noise";
 /// Standard errors by which an amount that a part of the samples gives is below nothing for sure.
 const SURELY: f64 = 3.0;
+/// Standard errors below which an amount is shown by nothing.
+const FAINT: f64 = 2.0;
 /// Noise of either residual, and unequal and common noise of the channels.
 const BASE: usize = 4;
 
@@ -166,17 +168,26 @@ pub(crate) fn findings(system: &System, residual: &Residual) -> (Vec<Finding>, V
         let mut own = pairs.clone();
         own.cut(&with, &both);
         let with = own.fit(with, &both);
+        let sigma = with.covariance[(BASE + 1, BASE + 1)].max(0.0).sqrt();
+        if with.x[BASE + 1] < FAINT * sigma {
+            continue;
+        }
         let without = own.fit(plain.to_vec(), &both);
         // At constant speed the noise of a clock is white noise of the angle, and of the two one number is seen.
         if with.rank <= without.rank {
             continue;
         }
-        let inflation = own.inflation(&with, &both);
-        let gain = (with.likelihood - without.likelihood) / inflation;
-        let log_p = by_chance(gain, 1.0, 1, TRIALS);
-        if log_p > SHOWN.ln() || with.x[BASE + 1] <= 0.0 {
+        let gain = with.likelihood - without.likelihood;
+        let shown = |gain: f64| by_chance(gain, 1.0, 1, TRIALS) <= SHOWN.ln();
+        if !shown(gain) {
             continue;
         }
+        let inflation = own.inflation(&with, &both);
+        let gain = gain / inflation;
+        if !shown(gain) {
+            continue;
+        }
+        let log_p = by_chance(gain, 1.0, 1, TRIALS);
         let held_out = own.held_out(&with.x, &both) / inflation;
         let why = refusal(
             &depends,

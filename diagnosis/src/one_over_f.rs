@@ -136,28 +136,40 @@ impl Processes {
         let expected: f64 = (0..m).map(|i| of(i) * self.state[i]).sum();
         let variance = 1.0 + (0..m).map(|i| of(i) * with[i]).sum::<f64>();
         let off = row.left - expected;
-        for (i, line) in self.covariance.chunks_mut(m).enumerate() {
-            let by = with[i] / variance;
-            self.state[i] += by * off;
-            line.iter_mut().zip(&*with).for_each(|(p, q)| *p -= by * q);
-        }
+        let by = |i: usize| with[i] / variance;
+        (0..m).for_each(|i| self.state[i] += by(i) * off);
+        known(&mut self.covariance, with, variance);
         (variance, off)
     }
 
     /// A group later.
     fn step(&mut self) {
         let m = self.stay.len();
-        for (i, line) in self.covariance.chunks_mut(m).enumerate() {
-            let own = self.stay[i];
-            line.iter_mut()
-                .zip(&self.stay)
-                .for_each(|(p, s)| *p *= own * s);
-            line[i] += self.power * (1.0 - own * own);
+        forgotten(&mut self.covariance, &self.stay);
+        for (i, own) in self.stay.iter().enumerate() {
+            self.covariance[i * m + i] += self.power * (1.0 - own * own);
         }
         self.state
             .iter_mut()
             .zip(&self.stay)
             .for_each(|(x, s)| *x *= s);
+    }
+}
+
+/// A covariance less what is known once a number with these covariances is: its variance is given.
+#[multiversion::multiversion(targets("x86_64+avx2"))]
+fn known(covariance: &mut [f64], with: &[f64], variance: f64) {
+    for (line, own) in covariance.chunks_mut(with.len()).zip(with) {
+        let by = own / variance;
+        line.iter_mut().zip(with).for_each(|(p, q)| *p -= by * q);
+    }
+}
+
+/// A covariance of which these shares of the numbers stay.
+#[multiversion::multiversion(targets("x86_64+avx2"))]
+fn forgotten(covariance: &mut [f64], stay: &[f64]) {
+    for (line, own) in covariance.chunks_mut(stay.len()).zip(stay) {
+        line.iter_mut().zip(stay).for_each(|(p, s)| *p *= own * s);
     }
 }
 

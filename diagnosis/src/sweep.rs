@@ -69,6 +69,8 @@ pub(crate) struct Samples<'a> {
     /// The data of each row; empty where there is no such row.
     pub(crate) data: [Vec<f64>; 3],
     pub(crate) whiteners: [Whitener; 3],
+    /// No sample is left out.
+    all_count: bool,
     /// What is taken off each atom.
     whole: Motions<'a>,
     /// The same where one block in several is looked at.
@@ -97,6 +99,7 @@ impl<'a> Samples<'a> {
             library,
             data,
             whiteners: Default::default(),
+            all_count: weight.iter().all(|w| *w == 1.0),
             whole: Motions::whole(spline, weight),
             part: (every > 1).then(of_part).flatten(),
         }
@@ -166,7 +169,7 @@ impl<'a> Samples<'a> {
         self.fill(&wanted, looked_at, &mut |block, splines, i, values| {
             let range = block.start..block.start + block.len();
             let weights = &weight[range];
-            let counted = if weights.iter().all(|w| *w == 1.0) {
+            let counted = if self.all_count {
                 values
             } else {
                 weighted.clear();
@@ -333,8 +336,8 @@ impl<'a> Samples<'a> {
                     None => own.copy_from_slice(values),
                 },
             }
-            let weights = &weight[block.start..block.start + block.len()];
-            if weights.iter().any(|w| *w != 1.0) {
+            if !self.all_count {
+                let weights = &weight[block.start..block.start + block.len()];
                 own.iter_mut().zip(weights).for_each(|(v, w)| *v *= w);
             }
             left -= 1;

@@ -191,17 +191,23 @@ impl Pairs<'_> {
         let count = start.len();
         let (mut x, mut h) = (start, vec![Products::default(); count]);
         let mut last = Solution::default();
+        // The shapes that a sample has, and which they are.
+        let mut some: Vec<(usize, Products)> = vec![];
         for _ in 0..steps {
             let (mut gram, mut right) = (DMatrix::zeros(count, count), DVector::zeros(count));
             self.each(every, |k| {
                 shapes(k, &mut h);
                 let expected = Covariance::of(&x, &h);
                 let seen = Products::of(expected.cut(self.pair(k)));
-                for (j, b) in h.iter().enumerate().filter(|(_, b)| !b.is_nothing()) {
+                some.clear();
+                let all = h.iter().copied().enumerate();
+                some.extend(all.filter(|(_, b)| !b.is_nothing()));
+                for (n, (j, b)) in some.iter().enumerate() {
                     let weighed = expected.weighed(b);
-                    right[j] += 0.5 * weighed.trace(&seen);
-                    for (i, a) in h[..=j].iter().enumerate() {
-                        gram[(i, j)] += 0.5 * weighed.trace(a);
+                    right[*j] += 0.5 * weighed.trace(&seen);
+                    let mut column = gram.column_mut(*j);
+                    for (i, a) in &some[..=n] {
+                        column[*i] += 0.5 * weighed.trace(a);
                     }
                 }
             });

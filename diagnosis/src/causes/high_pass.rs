@@ -12,7 +12,7 @@ use crate::block::Block;
 use crate::cause::{Candidate, Domain, Estimate, Exact, Sign};
 use crate::context::Context;
 use crate::finding::Parameter;
-use crate::library::{Library, Shape};
+use crate::library::{Library, Shape, Use};
 
 /// Scale periods of travel that ac coupling needs to be told from shapes of the angle.
 const FEWEST: f64 = 6.0;
@@ -60,6 +60,18 @@ fn seen(radius: f64) -> f64 {
     (2.0 * radius).min(1.0)
 }
 
+/// The angle of a number, by a series where that is as exact: most of a recording loses little.
+fn angle(number: Complex<f64>) -> f64 {
+    let tan = number.im / number.re;
+    // The next of the series is below a rounding error.
+    if number.re > 0.0 && tan.abs() < 0.01 {
+        let square = tan * tan;
+        tan * (1.0 - square * (1.0 / 3.0 - square * (1.0 / 5.0 - square / 7.0)))
+    } else {
+        number.arg()
+    }
+}
+
 /// What is left, by what its shape tells.
 fn factor(less: f64, told: f64) -> Complex<f64> {
     let radius = 1.0 + less;
@@ -77,7 +89,8 @@ fn high_pass(sample_rate: f64) -> impl Fn(f64, &mut Library) -> Vec<Shape> + 'st
         let mut shapes = vec![library.pair(move |block: &Block, c, s| {
             let lost = slow(block, sample_rate, 1.0 / (TAU * corner), &state);
             for (k, lost) in lost.into_iter().enumerate() {
-                let (radius, angle) = (1.0 - lost).to_polar();
+                let left = 1.0 - lost;
+                let (radius, angle) = (left.norm_sqr().sqrt(), angle(left));
                 let change = Complex::new(radius - 1.0, angle * seen(radius));
                 let change = change * Complex::new(block.cos[k], block.sin[k]) / corner;
                 (c[k], s[k]) = (change.re, change.im);
@@ -91,17 +104,21 @@ fn high_pass(sample_rate: f64) -> impl Fn(f64, &mut Library) -> Vec<Shape> + 'st
 
 /// The charge of either capacitor, leaking away from the beginning of the recording on.
 fn charges(corner: f64, library: &mut Library) -> [Shape; 2] {
-    [0, 1].map(|which| {
-        library.pair(move |block: &Block, c, s| {
-            let left = |t: &f64| {
-                let x = TAU * corner * t;
-                // Smaller than any rounding, and slow to compute.
-                if x < 40.0 { (-x).exp() } else { 0.0 }
-            };
-            let change: Vec<f64> = block.time.iter().map(left).collect();
+    let pairs = move |block: &Block, out: &mut [f64]| {
+        let n = block.len();
+        let left = |t: &f64| {
+            let x = TAU * corner * t;
+            // Smaller than any rounding, and slow to compute.
+            if x < 40.0 { (-x).exp() } else { 0.0 }
+        };
+        let change: Vec<f64> = block.time.iter().map(left).collect();
+        let (c, s) = out.split_at_mut(2 * n);
+        for (which, (c, s)) in c.chunks_mut(n).zip(s.chunks_mut(n)).enumerate() {
             block.channel(which, &change, c, s);
-        })
-    })
+        }
+    };
+    let place = library.add(2, Use::Pairs, Rc::new(pairs));
+    [0, 1].map(|which| place.both(which))
 }
 
 /// The corner, and its error, as fitted or else as it is `known`.

@@ -98,8 +98,9 @@ pub(crate) fn strongest_order(per: u32, phi: &[f64], values: &[f64]) -> Option<u
 
 /// cos and sin of an order of the revolution.
 pub(crate) fn order_waves(order: usize, phi: &[f64]) -> [Vec<f64>; 2] {
-    let wave = |f: fn(f64) -> f64| phi.iter().map(|p| f(order as f64 * p)).collect();
-    [wave(f64::cos), wave(f64::sin)]
+    let wave = |p: &f64| (order as f64 * p).sin_cos();
+    let (sin, cos) = phi.iter().map(wave).unzip();
+    [cos, sin]
 }
 
 /// The order of the revolution that is strongest, how far it stands above what is usual near it, and the values without it.
@@ -226,7 +227,11 @@ fn dip(inner: &[f64], library: &mut Library) -> Vec<Shape> {
         Use::Radial,
         Rc::new(move |block: &Block, out: &mut [f64]| {
             for (o, p) in out.iter_mut().zip(block.phi.unwrap_or_default()) {
-                let off = (p - centre + TAU / 2.0).rem_euclid(TAU) - TAU / 2.0;
+                let mut off = p - centre;
+                // A division is slow, and seldom needed.
+                if off.abs() > TAU / 2.0 {
+                    off = (off + TAU / 2.0).rem_euclid(TAU) - TAU / 2.0;
+                }
                 let x = 0.5 * (off / width).powi(2);
                 *o = if x < 40.0 { -(-x).exp() } else { 0.0 };
             }

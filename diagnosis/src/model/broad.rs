@@ -4,7 +4,7 @@
 //! spectrum: whitened by that, noise looks like a cause. So where no domain explains more than as many free numbers do of noise, the
 //! noise of a row is measured before they are taken off, and what the five parameters fit makes it no quieter.
 
-use super::{Moments, System};
+use super::System;
 use crate::causes::Catalogue;
 use crate::library::{ROWS, Row, Shape};
 use crate::solve::Normal;
@@ -88,13 +88,13 @@ pub(super) struct Known {
 }
 
 impl Known {
-    /// With causes that are `known`; `plain` are the sums of products that the system was made of, `of` equations that hold all of them
+    /// With causes that are `known`; `powers` are the squares of the data, `of` equations that hold all of them
     /// and every generic shape.
     pub(super) fn new(
         system: &System,
         catalogue: &Catalogue,
         known: &[usize],
-        plain: &Moments,
+        powers: [f64; 3],
         of: Of,
     ) -> Self {
         let atoms_of = |shapes: &[Shape]| -> Vec<usize> {
@@ -106,7 +106,7 @@ impl Known {
         let counts: f64 = system.context.weight.iter().sum();
         let samples = counts / system.every as f64;
         let noise = ROWS.map(|row| {
-            let power = plain.power(row) / system.samples.whiteners[row as usize].sigma.powi(2);
+            let power = powers[row as usize] / system.samples.whiteners[row as usize].sigma.powi(2);
             let left = |own: &Own| (1.0 - own.explained / power).max(1e-12);
             let without = &rows[row as usize];
             let explains = |domain: &Vec<Shape>| {
