@@ -3,6 +3,7 @@
 use nonius_calibration::Ellipse;
 use nonius_recording::Recording;
 
+use crate::cause::Candidate;
 use crate::context::Context;
 use crate::exact::{Start, followed, look};
 use crate::select::{anew, begin};
@@ -20,8 +21,26 @@ const ALIKE: f64 = 5.0;
 /// A start whose causes have come to rest.
 struct Settled {
     score: f64,
+    /// The same of the radius alone, where along the circle most of what is left is the axis at work.
+    of_radius: Option<f64>,
     context: Context,
     start: Start,
+}
+
+impl Settled {
+    /// The cause that was tried.
+    fn last(&self) -> Option<&Candidate> {
+        Some(&self.start.carried.last()?.candidate)
+    }
+
+    /// Whether another that scores less is as likely. Neither a delay nor a low pass follows an axis that shakes, and what is left of that
+    /// along the circle may prefer the wrong one: where the radius does not prefer the same one, they are not told apart.
+    fn is_hardly_likelier_than(&self, other: &Self) -> bool {
+        let domain = |s: &Self| s.last().map(|c| c.domain);
+        let radius = self.of_radius.zip(other.of_radius);
+        let undecided = radius.is_some_and(|(own, other)| other > own - ALIKE);
+        other.score > self.score - ALIKE || undecided && domain(self) == domain(other)
+    }
 }
 
 /// Looks from a start until its causes have come to rest. Amplitudes are compared with these.
@@ -32,7 +51,7 @@ fn settled(
     (spacing, beside): (Option<f64>, Ellipse),
 ) -> Settled {
     let mut context = followed(context, &start, recording, spacing);
-    let mut score = f64::MIN;
+    let (mut score, mut of_radius) = (f64::MIN, None);
     for _ in 0..SETTLING {
         let mut carried = start.carried.clone();
         let (mut system, catalogue) = look(&context, &mut carried, recording);
@@ -42,11 +61,13 @@ fn settled(
         let left = system.residual(&found.fit).radial;
         let amplitude = log_amplitude(&context, &beside, &left);
         let halves = system.halves(&found.fit.shapes);
-        score = halves.log_likelihood(&found.fit, amplitude);
         // Free numbers and trials are paid for.
         let price = price(context.samples() as f64);
         let paid = |a: &Accepted| price * a.x.len() as f64 + a.candidate.trials.ln();
-        score -= found.accepted.iter().map(paid).sum::<f64>();
+        let paid = found.accepted.iter().map(paid).sum::<f64>();
+        score = halves.log_likelihood(&found.fit, amplitude) - paid;
+        let radius = || halves.log_likelihood_of_radius(&found.fit, amplitude) - paid;
+        of_radius = system.vibrates().then(radius);
         let Some(next) = anew(&system, &found) else {
             break;
         };
@@ -57,6 +78,7 @@ fn settled(
     }
     Settled {
         score,
+        of_radius,
         context,
         start,
     }
@@ -115,10 +137,12 @@ pub(crate) fn best(
     all.sort_by(|a, b| b.score.total_cmp(&a.score));
     let mut all = all.into_iter();
     let mut best = all.next()?;
+    let nearly = all.filter(|other| best.is_hardly_likelier_than(other));
+    let names: Vec<&str> = nearly
+        .filter_map(|other| Some(other.last()?.name))
+        .collect();
     if let Some(last) = best.start.carried.last_mut() {
-        let nearly = all.take_while(|other| other.score > best.score - ALIKE);
-        for other in nearly.filter_map(|other| other.start.carried.into_iter().next_back()) {
-            let name = other.candidate.name;
+        for name in names {
             if name != last.candidate.name && !last.confounded.iter().any(|known| known == name) {
                 last.confounded.push(name.to_owned());
             }

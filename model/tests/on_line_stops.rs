@@ -17,8 +17,10 @@ fn stops() -> u64 {
 }
 /// What is allowed, in a parameter's noise.
 const LIMIT: f64 = 3.0;
+/// The share of stops that may go beyond that, as noise alone does, and how far one may.
+const BEYOND: (f64, f64) = (0.0027, 3.5);
 /// The same of bends in batches where the loop loses lock, at the top speed.
-const OF_BENDS_IN_BATCHES: f64 = 3.5;
+const OF_BENDS_IN_BATCHES: (f64, f64) = (0.06, 4.3);
 
 /// The furthest a parameter moves within a second of a stop, in its noise.
 fn stopped(
@@ -51,10 +53,10 @@ fn stopped(
     furthest
 }
 
-/// The same of stops at any place from one speed, whatever the sensor's signs.
-fn from_speed(variant: &Variant, speed: f64) -> f64 {
+/// The same of every stop, at any place, from one speed, whatever the sensor's signs.
+fn from_speed(variant: &Variant, speed: f64) -> Vec<f64> {
     let spec = slow(&variant.spec);
-    let each = (0..4u32).into_par_iter().map(|signs| {
+    let each = (0..4u32).into_par_iter().flat_map_iter(|signs| {
         let signals = bent_sensor(&spec, signs);
         let mut bench = Bench::new(&spec, u64::from(signs));
         let mut turns = 0.0;
@@ -64,34 +66,41 @@ fn from_speed(variant: &Variant, speed: f64) -> f64 {
         }
         assert!(bench.chip.state.locked);
         let seeds = (0..stops()).map(|n| 1000 * u64::from(signs) + n);
-        let all = seeds.map(|seed| stopped(&bench, &signals, (turns, speed), seed));
-        all.fold(0.0, f64::max)
+        let one = |seed| stopped(&bench, &signals, (turns, speed), seed);
+        seeds.map(one).collect::<Vec<_>>()
     });
-    each.reduce(|| 0.0, f64::max)
+    each.collect()
 }
 
 /// A stop within a sample from any speed and at any place, and what comes after it, rest or vibration by a tenth of a period at any
-/// frequency, moves no parameter of any search by more than three times its noise; from the top speed bends in batches by little more.
+/// frequency, moves no parameter of any search by more than three times its noise, or seldom, as noise does; from the top speed bends
+/// in batches by little more.
 #[test]
 fn a_sudden_stop_moves_no_parameter() {
     let (mut kept, mut others) = (vec![], 0.0f64);
     for variant in searches() {
         let (what, set) = (variant.what.as_str(), variant.spec.calibration.parameters);
-        let found = SPEEDS.map(|speed| from_speed(&variant, speed));
-        println!("{what}, {set} parameters: {found:.2?} of the noise");
-        let furthest = found.into_iter().fold(0.0, f64::max);
-        let [below @ .., at_top] = found;
-        assert!(
-            below.iter().all(|&way| way <= LIMIT),
-            "{what}, {set}: {found:?}"
-        );
         let calibration = &variant.spec.calibration;
-        let allowed = if calibration.is_batch() && calibration.has_bend() {
-            OF_BENDS_IN_BATCHES
-        } else {
-            LIMIT
-        };
-        assert!(at_top <= allowed, "{what}, {set}: {at_top}");
+        let bends_in_batches = calibration.is_batch() && calibration.has_bend();
+        let mut furthest = 0.0f64;
+        for speed in SPEEDS {
+            let ways = from_speed(&variant, speed);
+            let beyond = ways.iter().filter(|way| **way > LIMIT).count();
+            let most = ways.iter().copied().fold(0.0, f64::max);
+            let said = format!(
+                "{what}, {set} parameters, from {speed} periods/s: {most:.2} of the noise, beyond {LIMIT} {beyond} of {}",
+                ways.len()
+            );
+            println!("{said}");
+            let (share, far) = if bends_in_batches && speed == SPEEDS[4] {
+                OF_BENDS_IN_BATCHES
+            } else {
+                BEYOND
+            };
+            assert!(most <= far, "{said}");
+            assert!(beyond as f64 <= share * ways.len() as f64, "{said}");
+            furthest = furthest.max(most);
+        }
         if matches!((what, set), ("final form" | "exact", 5) | ("completed", 9)) {
             kept.push(format!("{what} {furthest:.1}"));
         } else {

@@ -262,6 +262,18 @@ fn what_is_large_is_found_as_it_is() {
     });
 }
 
+/// Neither a delay nor a low pass follows an axis that shakes, and what is left of that along the circle preferred the delay where the radius
+/// says low pass: then both are named.
+#[test]
+fn a_low_pass_of_a_shaking_axis_is_not_told_from_a_delay_by_the_circle_alone() {
+    [157_000_887, 159_001_472, 163_007_118]
+        .into_par_iter()
+        .for_each(|seed| {
+            let found = |o: &Outcome| matches!(o, Outcome::First | Outcome::Group);
+            none_wrong(seed, &told(seed, found));
+        });
+}
+
 /// A drift that is named twice, by its ends and by how it went, is one that each of the two explains without the other: one of them stays.
 #[test]
 fn what_two_names_explain_keeps_one() {

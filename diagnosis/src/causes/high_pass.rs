@@ -182,3 +182,26 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
         corner *= 3.0;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use nonius_fourier::Complex;
+
+    use super::angle;
+
+    /// To two roundings, on either side of where the series ends, and behind the origin.
+    #[test]
+    fn the_series_is_as_exact_as_the_arc_tangent() {
+        for step in 0..4000 {
+            let size = 1e-9 * 1.006f64.powi(step);
+            for number in [(1.0, size), (0.7, -size), (-0.2, size)] {
+                let number = Complex::new(number.0, number.1);
+                let (found, exact) = (angle(number), number.arg());
+                assert!(
+                    (found - exact).abs() <= 4e-16 * exact.abs(),
+                    "{number}: {found} {exact}"
+                );
+            }
+        }
+    }
+}

@@ -107,6 +107,13 @@ impl Halves {
         -0.5 * count * (radial * tangential).ln() - count * of_signals * log_amplitude
     }
 
+    /// The same of what is left of the radius alone.
+    pub(crate) fn log_likelihood_of_radius(&self, fit: &Fit, log_amplitude: f64) -> f64 {
+        let count = self.counts[0] + self.counts[1];
+        let radial = (self.square(fit, 0) / count).max(1e-300);
+        -0.5 * count * radial.ln() - count * log_amplitude
+    }
+
     /// Position error against the reference, rms in radians.
     pub(crate) fn position_error(&self, fit: &Fit) -> Option<f64> {
         let count = self.counts[0] + self.counts[1];
