@@ -20,7 +20,7 @@ const LIMIT: f64 = 3.0;
 /// The share of stops that may go beyond that, as noise alone does, and how far one may.
 const BEYOND: (f64, f64) = (0.0027, 3.5);
 /// The same of bends in batches where the loop loses lock, at the top speed.
-const OF_BENDS_IN_BATCHES: (f64, f64) = (0.06, 4.3);
+const OF_BENDS_IN_BATCHES: (f64, f64) = (0.08, 4.3);
 
 /// The furthest a parameter moves within a second of a stop, in its noise.
 fn stopped(
