@@ -115,8 +115,12 @@ pub(crate) fn refined(power: &[f64], best: usize) -> f64 {
 
 /// cos and sin of a frequency in hertz at the given times.
 pub(crate) fn wave(time: &[f64], hertz: f64) -> [Vec<f64>; 2] {
-    let wave = |t: &f64| (TAU * hertz * t).sin_cos();
-    let (sin, cos) = time.iter().map(wave).unzip();
+    cos_and_sin(time, TAU * hertz)
+}
+
+/// cos and sin of so many times these.
+pub(crate) fn cos_and_sin(of: &[f64], by: f64) -> [Vec<f64>; 2] {
+    let (sin, cos) = of.iter().map(|v| (by * v).sin_cos()).unzip();
     [cos, sin]
 }
 

@@ -9,10 +9,10 @@ use std::rc::Rc;
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::causes::{self, Catalogue};
+use crate::causes::Catalogue;
 use crate::context::Context;
+use crate::flicker::Flicker;
 use crate::flicker::records::Record;
-use crate::flicker::{self, Flicker};
 use crate::library::{ROWS, Row, Shape};
 use crate::selection::Accepted;
 use crate::solve::{Normal, Solution};
@@ -105,71 +105,11 @@ impl<'a> System<'a> {
         }
         // Of a part, those of all atoms are needed only once the colour of the noise is known.
         let plain = (!this.samples.follows_a_part()).then(|| this.moments(&atoms, every));
-        let powers = match &plain {
-            Some(plain) => plain.powers(),
-            None => this.moments(&[], every).powers(),
-        };
         if let Some(plain) = &plain {
             this.total = this.units(plain, &atoms, every);
         }
-        let mut any = catalogue.broad.clone();
-        any.extend(known.iter().map(|k| k.0));
-        any.sort_unstable();
-        any.dedup();
-        let along = this.along_all(&any);
-        let mut left = this.samples.left(&broad::all(&this, (&along, &any)));
-        this.flicker = flicker::find(context, &left[0]);
-        if every > 1 && this.flicker.is_some() {
-            this.flicker = flicker::find(context, &this.left_of_radius(&any));
-        }
         let known: Vec<usize> = known.iter().map(|k| k.0).collect();
-        let known = broad::Known::new(&this, catalogue, &known, powers, (&along, &any));
-        let mut more = this.samples.left(&known.amounts());
-        let fast = if left[2].is_empty() {
-            Row::Tangential
-        } else {
-            Row::Motion
-        };
-        let counts: f64 = context.weight.iter().sum();
-        for (left, of_noise) in [(&mut left, false), (&mut more, true)] {
-            let own = std::mem::take(&mut left[fast as usize]);
-            left[fast as usize] = causes::without_cogging(context, own);
-            // What does not count is nothing there, and of noise alone what is fitted goes with it: neither makes the rest quieter.
-            for (left, row) in left.iter_mut().zip(ROWS) {
-                let fitted = if of_noise { known.freedom(row) } else { 0 };
-                let free = (counts - fitted as f64).max(1.0);
-                let louder = (context.samples() as f64 / free).sqrt();
-                left.iter_mut().for_each(|l| *l *= louder);
-            }
-        }
-        for row in ROWS {
-            let [left, more] = [&left, &more].map(|l| &l[row as usize]);
-            if left.is_empty() {
-                continue;
-            }
-            let gone = match (&context.spline, row) {
-                (_, Row::Radial) => 0.0,
-                (_, Row::Tangential) if context.against_reference.is_some() => 0.0,
-                (Some(spline), _) => 0.7 / spline.spacing(),
-                (None, _) => 0.0,
-            };
-            // A reference without noise says nothing about how well a spline follows real motion: that is worth as much
-            // as the channels could show, at every frequency.
-            let noise = this.samples.whiteners[Row::Radial as usize].sigma;
-            let least = if row == Row::Motion { noise } else { 0.0 };
-            let least = least.max(ROUNDING);
-            // What all shapes leave of noise alone has a colour of their making.
-            let noise_alone = if known.is_noise_beside(row) {
-                more
-            } else {
-                left
-            };
-            let mut whitener = Whitener::of(noise_alone, gone, least);
-            if row == Row::Tangential {
-                whitener.sigma = whitener.sigma.max(0.05 * noise);
-            }
-            this.samples.whiteners[row as usize] = whitener;
-        }
+        this.measure_noise(catalogue, &known);
         // White noise changes the scale of a row only.
         let white = this.samples.whiteners.iter().all(Whitener::is_white);
         let moments = match plain {

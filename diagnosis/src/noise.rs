@@ -169,7 +169,7 @@ pub(crate) fn findings(system: &System, residual: &Residual) -> (Vec<Finding>, V
         own.cut(&with, &both);
         let with = own.fit(with, &both);
         let sigma = with.covariance[(BASE + 1, BASE + 1)].max(0.0).sqrt();
-        if with.x[BASE + 1] < FAINT * sigma {
+        if with.x[BASE + 1] <= FAINT * sigma {
             continue;
         }
         let without = own.fit(plain.to_vec(), &both);
@@ -178,16 +178,17 @@ pub(crate) fn findings(system: &System, residual: &Residual) -> (Vec<Finding>, V
             continue;
         }
         let gain = with.likelihood - without.likelihood;
-        let shown = |gain: f64| by_chance(gain, 1.0, 1, TRIALS) <= SHOWN.ln();
-        if !shown(gain) {
+        let log_p = |gain: f64| by_chance(gain, 1.0, 1, TRIALS);
+        // What independent pairs do not show, others show less.
+        if log_p(gain) > SHOWN.ln() {
             continue;
         }
         let inflation = own.inflation(&with, &both);
         let gain = gain / inflation;
-        if !shown(gain) {
+        let log_p = log_p(gain);
+        if log_p > SHOWN.ln() {
             continue;
         }
-        let log_p = by_chance(gain, 1.0, 1, TRIALS);
         let held_out = own.held_out(&with.x, &both) / inflation;
         let why = refusal(
             &depends,

@@ -92,7 +92,7 @@ fn a_sudden_stop_moves_no_parameter() {
                 ways.len()
             );
             println!("{said}");
-            let (share, far) = if bends_in_batches && speed == SPEEDS[4] {
+            let (share, far) = if bends_in_batches && Some(&speed) == SPEEDS.last() {
                 OF_BENDS_IN_BATCHES
             } else {
                 BEYOND

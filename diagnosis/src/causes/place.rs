@@ -14,7 +14,7 @@ use crate::cause::{Candidate, Domain, Exact, Make, Sign, each};
 use crate::context::Context;
 use crate::finding::{Chip, Parameter};
 use crate::library::{Fill, Library, Shape, Use};
-use crate::lines::median;
+use crate::lines::{cos_and_sin, median};
 use crate::model::{Residual, Weighed};
 use crate::solve::{Normal, without};
 
@@ -98,9 +98,7 @@ pub(crate) fn strongest_order(per: u32, phi: &[f64], values: &[f64]) -> Option<u
 
 /// cos and sin of an order of the revolution.
 pub(crate) fn order_waves(order: usize, phi: &[f64]) -> [Vec<f64>; 2] {
-    let wave = |p: &f64| (order as f64 * p).sin_cos();
-    let (sin, cos) = phi.iter().map(wave).unzip();
-    [cos, sin]
+    cos_and_sin(phi, order as f64)
 }
 
 /// The order of the revolution that is strongest, how far it stands above what is usual near it, and the values without it.

@@ -4,19 +4,84 @@
 //! spectrum: whitened by that, noise looks like a cause. So where no domain explains more than as many free numbers do of noise, the
 //! noise of a row is measured before they are taken off, and what the five parameters fit makes it no quieter.
 
-use super::System;
-use crate::causes::Catalogue;
+use super::{ROUNDING, System};
+use crate::causes::{self, Catalogue};
+use crate::flicker;
 use crate::library::{ROWS, Row, Shape};
 use crate::solve::Normal;
 use crate::statistics::at_most_of_noise;
+use crate::whiten::Whitener;
 
 /// So many times as many samples as a part has tell slow noise from amounts that are off.
 const MORE: usize = 8;
 
 impl System<'_> {
+    /// Measures the noise of every row, its colour included, beside causes that are `known`, and finds flicker noise.
+    pub(super) fn measure_noise(&mut self, catalogue: &Catalogue, known: &[usize]) {
+        let (context, every) = (self.context, self.every);
+        let mut any = catalogue.broad.clone();
+        any.extend(known);
+        any.sort_unstable();
+        any.dedup();
+        let along = self.along_all(&any);
+        let mut left = self.samples.left(&all(self, (&along, &any)));
+        self.flicker = flicker::find(context, &left[0]);
+        if every > 1 && self.flicker.is_some() {
+            self.flicker = flicker::find(context, &self.left_of_radius(&any));
+        }
+        let powers = self.moments(&[], every).powers();
+        let known = Known::new(self, catalogue, known, powers, (&along, &any));
+        let mut more = self.samples.left(&known.amounts());
+        let fast = if left[2].is_empty() {
+            Row::Tangential
+        } else {
+            Row::Motion
+        };
+        let counts: f64 = context.weight.iter().sum();
+        for (left, of_noise) in [(&mut left, false), (&mut more, true)] {
+            let own = std::mem::take(&mut left[fast as usize]);
+            left[fast as usize] = causes::without_cogging(context, own);
+            // What does not count is nothing there, and of noise alone what is fitted goes with it: neither makes the rest quieter.
+            for (left, row) in left.iter_mut().zip(ROWS) {
+                let fitted = if of_noise { known.freedom(row) } else { 0 };
+                let free = (counts - fitted as f64).max(1.0);
+                let louder = (context.samples() as f64 / free).sqrt();
+                left.iter_mut().for_each(|l| *l *= louder);
+            }
+        }
+        for row in ROWS {
+            let [left, more] = [&left, &more].map(|l| &l[row as usize]);
+            if left.is_empty() {
+                continue;
+            }
+            let gone = match (&context.spline, row) {
+                (_, Row::Radial) => 0.0,
+                (_, Row::Tangential) if context.against_reference.is_some() => 0.0,
+                (Some(spline), _) => 0.7 / spline.spacing(),
+                (None, _) => 0.0,
+            };
+            // A reference without noise says nothing about how well a spline follows real motion: that is worth as much
+            // as the channels could show, at every frequency.
+            let noise = self.samples.whiteners[Row::Radial as usize].sigma;
+            let least = if row == Row::Motion { noise } else { 0.0 };
+            let least = least.max(ROUNDING);
+            // What all shapes leave of noise alone has a colour of their making.
+            let noise_alone = if known.is_noise_beside(row) {
+                more
+            } else {
+                left
+            };
+            let mut whitener = Whitener::of(noise_alone, gone, least);
+            if row == Row::Tangential {
+                whitener.sigma = whitener.sigma.max(0.05 * noise);
+            }
+            self.samples.whiteners[row as usize] = whitener;
+        }
+    }
+
     /// Normal equations of atoms without the motion of all samples. What the motion of a part of them takes nearly off would have
     /// any amount there, and would be loud elsewhere.
-    pub(super) fn along_all(&mut self, atoms: &[usize]) -> Normal {
+    fn along_all(&mut self, atoms: &[usize]) -> Normal {
         if !self.samples.follows_a_part() {
             return self.total.only(atoms);
         }
@@ -27,7 +92,7 @@ impl System<'_> {
     /// What the best amounts of some atoms leave of the radius, fitted to several times as many samples as a part has. Amounts that were
     /// fitted to a part are off by more than all samples would allow, and slow functions with such amounts leave what looks like
     /// slow noise.
-    pub(super) fn left_of_radius(&mut self, atoms: &[usize]) -> Vec<f64> {
+    fn left_of_radius(&mut self, atoms: &[usize]) -> Vec<f64> {
         let radial = self.in_row(atoms, Row::Radial);
         let own: Vec<usize> = radial.map(|i| atoms[i]).collect();
         let every = self.every.div_ceil(MORE);
@@ -77,12 +142,12 @@ fn fitted(system: &System, (normal, all): Of, atoms: &[usize], row: Row) -> Own 
 }
 
 /// The best amounts of all of these atoms.
-pub(super) fn all(system: &System, of: Of) -> Vec<(usize, f64)> {
+fn all(system: &System, of: Of) -> Vec<(usize, f64)> {
     amounts(&ROWS.map(|row| fitted(system, of, of.1, row)))
 }
 
 /// The five parameters and what is known, as they are taken off.
-pub(super) struct Known {
+struct Known {
     rows: [Own; 3],
     noise: [bool; 3],
 }
@@ -90,7 +155,7 @@ pub(super) struct Known {
 impl Known {
     /// With causes that are `known`; `powers` are the squares of the data, `of` equations that hold all of them
     /// and every generic shape.
-    pub(super) fn new(
+    fn new(
         system: &System,
         catalogue: &Catalogue,
         known: &[usize],
@@ -120,17 +185,17 @@ impl Known {
         Self { rows, noise }
     }
 
-    pub(super) fn amounts(&self) -> Vec<(usize, f64)> {
+    fn amounts(&self) -> Vec<(usize, f64)> {
         amounts(&self.rows)
     }
 
     /// No domain explains more of a row than as many free numbers do of noise.
-    pub(super) fn is_noise_beside(&self, row: Row) -> bool {
+    fn is_noise_beside(&self, row: Row) -> bool {
         self.noise[row as usize]
     }
 
     /// Free numbers in a row.
-    pub(super) fn freedom(&self, row: Row) -> usize {
+    fn freedom(&self, row: Row) -> usize {
         self.rows[row as usize].freedom
     }
 }

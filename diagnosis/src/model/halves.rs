@@ -102,16 +102,23 @@ impl Halves {
     /// over a common one has this logarithm. Along the circle more than that can be left: of the axis or of the reference, in radians.
     pub(crate) fn log_likelihood(&self, fit: &Fit, log_amplitude: f64) -> f64 {
         let count = self.counts[0] + self.counts[1];
-        let [radial, tangential] = [0, 1].map(|row| (self.square(fit, row) / count).max(1e-300));
-        let of_signals = 1.0 + (radial / tangential).min(1.0);
-        -0.5 * count * (radial * tangential).ln() - count * of_signals * log_amplitude
+        let [radial, tangential] = [0, 1].map(|row| self.variance(fit, row));
+        let of_signals = (radial / tangential).min(1.0);
+        self.log_likelihood_of_radius(fit, log_amplitude)
+            - 0.5 * count * tangential.ln()
+            - count * of_signals * log_amplitude
     }
 
     /// The same of what is left of the radius alone.
     pub(crate) fn log_likelihood_of_radius(&self, fit: &Fit, log_amplitude: f64) -> f64 {
         let count = self.counts[0] + self.counts[1];
-        let radial = (self.square(fit, 0) / count).max(1e-300);
-        -0.5 * count * radial.ln() - count * log_amplitude
+        -0.5 * count * self.variance(fit, 0).ln() - count * log_amplitude
+    }
+
+    /// Mean square of what a fit leaves of a row.
+    fn variance(&self, fit: &Fit, row: usize) -> f64 {
+        let count = self.counts[0] + self.counts[1];
+        (self.square(fit, row) / count).max(1e-300)
     }
 
     /// Position error against the reference, rms in radians.
