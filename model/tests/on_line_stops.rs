@@ -17,10 +17,6 @@ fn stops() -> u64 {
 }
 /// What is allowed, in a parameter's noise.
 const LIMIT: f64 = 3.0;
-/// The share of stops that may go beyond that, as noise alone does, and how far one may.
-const BEYOND: (f64, f64) = (0.0027, 3.5);
-/// The same of bends in batches where the loop loses lock, at the top speed.
-const OF_BENDS_IN_BATCHES: (f64, f64) = (0.08, 4.3);
 
 /// The furthest a parameter moves within a second of a stop, in its noise.
 fn stopped(
@@ -73,32 +69,20 @@ fn from_speed(variant: &Variant, speed: f64) -> Vec<f64> {
 }
 
 /// A stop within a sample from any speed and at any place, and what comes after it, rest or vibration by a tenth of a period at any
-/// frequency, moves no parameter of any search by more than three times its noise, or seldom, as noise does; from the top speed bends
-/// in batches by little more.
+/// frequency, moves no parameter of any search by more than three times its noise.
 #[test]
 fn a_sudden_stop_moves_no_parameter() {
     let (mut kept, mut others) = (vec![], 0.0f64);
     for variant in searches() {
         let (what, set) = (variant.what.as_str(), variant.spec.calibration.parameters);
-        let calibration = &variant.spec.calibration;
-        let bends_in_batches = calibration.is_batch() && calibration.has_bend();
         let mut furthest = 0.0f64;
         for speed in SPEEDS {
             let ways = from_speed(&variant, speed);
-            let beyond = ways.iter().filter(|way| **way > LIMIT).count();
             let most = ways.iter().copied().fold(0.0, f64::max);
-            let said = format!(
-                "{what}, {set} parameters, from {speed} periods/s: {most:.2} of the noise, beyond {LIMIT} {beyond} of {}",
-                ways.len()
-            );
+            let said =
+                format!("{what}, {set} parameters, from {speed} periods/s: {most:.2} of the noise");
             println!("{said}");
-            let (share, far) = if bends_in_batches && Some(&speed) == SPEEDS.last() {
-                OF_BENDS_IN_BATCHES
-            } else {
-                BEYOND
-            };
-            assert!(most <= far, "{said}");
-            assert!(beyond as f64 <= share * ways.len() as f64, "{said}");
+            assert!(most <= LIMIT, "{said}");
             furthest = furthest.max(most);
         }
         if matches!((what, set), ("final form" | "exact", 5) | ("completed", 9)) {

@@ -49,9 +49,11 @@ const SHIFTED: [(&str, &str); 3] = [
 ];
 
 /// Limits that are compared with: few bits make short comparators, and they need not be exact.
-const LIMITS: [&str; 6] = [
+const LIMITS: [&str; 8] = [
     "lock_error",
     "lock_residual",
+    "lock_radius",
+    "lock_opposite",
     "restart_residual",
     "hold_residual",
     "small_error",

@@ -231,7 +231,8 @@ pub fn named(design: &Design, rows: usize) -> Vec<Stimulus> {
         }),
         // At top speed, and once gamma has settled a little slower and back within a sample, again and again: in each of some
         // periods of travel, then in one alone. The loop catches up by a tenth of a radian and more, in lock. Later so far at once that
-        // it is out of the lock window with all of the signal there, and at last the signal is gone for two samples.
+        // it is out of the lock window, then that the estimate is across the signal, then that it points away from it, with all of the
+        // signal there. At last the signal is small, and gone for two samples.
         motion("jolts", &|k| {
             let slower = 0.4 * spec.tracking.bandwidth_hz / spec.adc.sample_rate_hz;
             let run = ((1.3 / top) as usize).max(1);
@@ -240,10 +241,22 @@ pub fn named(design: &Design, rows: usize) -> Vec<Stimulus> {
             let since = k.saturating_sub(2 * rows / 5);
             let alone = since.saturating_sub(busy + 8 * run).min(4 * run);
             let slowly = slow(since.min(busy)) + alone;
-            let jump = if 5 * k < 4 * rows { 0.0 } else { 0.14 };
-            let gone = (9 * rows / 10..9 * rows / 10 + 2).contains(&k);
+            // Small for two samples, across the estimate: a little more than the least radius in lock, and what the loop leaves of that.
+            let least = 19 * rows / 20;
+            let (jump, gain) = match k {
+                k if 5 * k < 4 * rows => (0.0, 1.0),
+                k if 20 * k < 17 * rows => (0.14, 1.0),
+                k if 20 * k < 18 * rows => (0.44, 1.0),
+                k if k < least => (0.89, 1.0),
+                k if k < least + 2 => {
+                    let radius = design.constants.lock_radius.value();
+                    (1.14, if k == least { radius + 0.03 } else { radius })
+                }
+                k if k < least + 4 => (0.89, 0.0),
+                _ => (0.89, 1.0),
+            };
             let turns = top * k as f64 - slower.min(top / 2.0) * slowly as f64 + jump;
-            faded(pair(turns, 1.0, 0.0), if gone { 0.0 } else { 1.0 })
+            faded(pair(turns, 1.0, 0.0), gain)
         }),
         // Over a period and back.
         motion("reversals", &|k| {

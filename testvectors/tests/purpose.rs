@@ -100,12 +100,19 @@ fn the_jolts_are_caught_up_with() {
             .expect("travel");
     let alone = states[again..].iter().position(|s| s.astray);
     let alone = again + alone.expect("one jolt alone");
-    assert!(states[first..].iter().all(|s| s.locked));
+    // Out of the lock window with a signal; then the estimate is across it, points away from it, and across it where it is small: then it is recalled what was proven.
+    let (jumps, small) = ([16, 17, 18].map(|k| k * ROWS / 20), 19 * ROWS / 20);
+    assert!(states[first..jumps[1]].iter().all(|s| s.locked));
     assert!(!states[alone].astray_long && !states[ROWS - 1].astray_long);
-    // Out of the lock window with a signal, and without one.
-    let (jump, gone) = (4 * ROWS / 5, 9 * ROWS / 10);
-    assert!(!states[jump].signal_lost && states[jump].lock_level < states[jump - 1].lock_level);
-    assert!(states[gone..gone + 2].iter().all(|s| s.signal_lost));
+    for jump in jumps {
+        assert!(!states[jump].signal_lost && states[jump].lock_level < states[jump - 1].lock_level);
+    }
+    assert!(states[jumps[1]].locked && states[jumps[1]].known);
+    assert!(states[first..=small].iter().all(|s| !s.returning) && states[small].locked);
+    assert!(states[small + 1].returning && !states[small + 1].signal_lost);
+    // And gone.
+    let gone = small + 2..small + 4;
+    assert!(states[gone].iter().all(|s| s.signal_lost));
 }
 
 /// The direction turns once, at speeds so small that its dead band counts.

@@ -1,4 +1,4 @@
-# Timing constraints of optical (design e6f01c2c5f0c), for Vivado, Quartus and every tool that reads SDC.
+# Timing constraints of optical (design ec8b484df4fe), for Vivado, Quartus and every tool that reads SDC.
 #
 # 20 clocks per sample at 1000000 samples per second: the clock needs at least 20000000 Hz.
 # For nextpnr: --freq 20.000

@@ -6,7 +6,7 @@
 // far, is 2^-4 at first and 2^-9 after 5 gears.
 // After S. Balemi, "Automatic calibration of sinusoidal encoder signals", IFAC 2005; equation numbers are the paper's.
 //
-// Design e6f01c2c5f0c: 17 products on 1 multiplier, 20 clocks per sample.
+// Design ec8b484df4fe: 17 products on 1 multiplier, 20 clocks per sample.
 //
 // Formats: sW.F is a two's complement number of W bits, F of them behind the point; uW.F has no sign and is kept here
 // with a zero in front, so that every number is signed. Angles are in turns of a scale period. A factor that is a power
@@ -44,10 +44,11 @@
 //    8 | c * sin_hat              | c_weak signal_present may_flip
 //    9 | c * cos_hat              | e_exact e_seen e
 //   10 | s * sin_hat              | e_in_window e_change e_small behind e_near far_behind behind_or_far teaches
-//      |                          | catches_up period_has_hole period_dropped astray_lately astray_period_ends
-//      |                          | astray_again
+//      |                          | catches_up across_present period_has_hole period_dropped astray_lately
+//      |                          | astray_period_ends astray_again
 //   11 | e * e                    | rho_exact rho rho_in_window radius_present in_window flip level_step half_turn
-//      |                          | loop_follows rho_high rho_large rho_not_small rho_rises proven_better may_recall
+//      |                          | loop_follows opposite_present astray_present present_anywhere rho_high rho_large
+//      |                          | rho_not_small rho_rises proven_better may_recall
 //   12 | loop_a * e_change        | level_moved level_full level_empty narrower loop_gear_up full_in_last_gear
 //      |                          | sample_counts counted period_tick rho_too_large residual_large disturbed_lately
 //      |                          | disturbed_or_held disturbed_or_recalled hold_cause hold signal_in_doubt
@@ -79,6 +80,8 @@
 //     half_bit               0.0000019073486328125   Half a bit of the sine phase: what was cut off, on average.
 //     half_segment           0.0009765625            Half a sine table segment.
 //     lock_error             0.4375                  Largest |e| in lock, radians.
+//     lock_radius            0.5                     Radius of the smallest signal in lock: across the estimate it has
+//                                                    this |e|.
 //     weak_signal            0.25                    Corrected signals below this are lost.
 //     restart_residual       0.25                    |ρ| above this begins the search again.
 //     hold_residual          0.0625                  |ρ| above this is not small: it holds the parameters once a gear
@@ -91,10 +94,10 @@
 //     lock_full              63                      The full lock level.
 //     lock_restart           31                      Lock level after a change of loop gear.
 //     loop_gear_last         3                       Last loop gear.
-//     small_error            0.0625                  |e|, radians, from which the loop is catching up with motion, and
-//                                                    |ρ| from which the completion rests.
-//     far_error              0.125                   |e|, radians, from which a sample teaches nothing once a quiet
-//                                                    period has passed, nor the completion once the loop is astray.
+//     small_error            0.0625                  What a calibrated sensor leaves in lock is smaller: of |e| in
+//                                                    radians, of |ρ| in amplitudes.
+//     far_error              0.125                   Twice what a calibrated sensor leaves: the |e|, radians, of a
+//                                                    sensor that is not calibrated yet is smaller.
 //     gamma_gear_settled     4                       From this γ gear on γ has settled.
 //     gamma_gear_last        5                       Last γ gear.
 //     gear_periods_last      3                       Periods of travel per γ gear, less one.
@@ -114,11 +117,14 @@
 //     minus_direction_rate   -0.0000152587890625     Minus direction_rate: Rate below which the direction does not
 //                                                    change, turns per sample.
 //     minus_quarter          -0.25                   −¼.
-//     minus_small_error      -0.0625                 Minus small_error: |e|, radians, from which the loop is catching
-//                                                    up with motion, and |ρ| from which the completion rests.
-//     minus_far_error        -0.125                  Minus far_error: |e|, radians, from which a sample teaches nothing
-//                                                    once a quiet period has passed, nor the completion once the loop
-//                                                    is astray.
+//     minus_small_error      -0.0625                 Minus small_error: What a calibrated sensor leaves in lock is
+//                                                    smaller: of |e| in radians, of |ρ| in amplitudes.
+//     minus_far_error        -0.125                  Minus far_error: Twice what a calibrated sensor leaves: the |e|,
+//                                                    radians, of a sensor that is not calibrated yet is smaller.
+//     minus_lock_radius      -0.5                    Minus lock_radius: Radius of the smallest signal in lock: across
+//                                                    the estimate it has this |e|.
+//     minus_lock_opposite    -1.5                    Minus lock_opposite: −ρ of that signal where it points away
+//                                                    from the estimate.
 //     minus_restart_residual -0.25                   Minus restart_residual: |ρ| above this begins the search again.
 //     minus_hold_residual    -0.0625                 Minus hold_residual: |ρ| above this is not small: it holds the
 //                                                    parameters once a gear has ended without.
@@ -274,6 +280,7 @@ module optical (
     reg teaches;
     reg not_catches_up;
     reg loop_follows;
+    reg across_present;
     reg rho_high;
     reg rho_large;
     reg rho_not_small;
@@ -283,7 +290,7 @@ module optical (
     reg held_and_lost;
     reg not_apart;
     reg may_recall;
-    reg not_radius_present;
+    reg not_present_anywhere;
     reg recall;
     reg counted_and_free;
     reg astray_and_not_astray_long;
@@ -649,6 +656,11 @@ module optical (
     wire sample_counts = counting & loop_follows; // step 12
     wire counted = sample_counts & new_sector; // step 12
     wire period_tick = counted & whole_period; // step 12
+    wire across_present_now = // step 10, with lock_radius, minus_lock_radius
+        ~(($signed(e[17:15]) < 3'sd1) & ($signed(~e[17:15]) < 3'sd1));
+    wire opposite_present = ~($signed(~rho_now[17:15]) < 3'sd3); // step 11, with minus_lock_opposite
+    wire astray_present = across_present | opposite_present; // step 11
+    wire present_anywhere = radius_present | astray_present; // step 11
     wire astray_lately = astray | behind_or_far; // step 10
     wire astray_goes_on_now = ~whole_period_now & counting_now; // step 1
     wire astray_period_ends = whole_period & astray_lately; // step 10
@@ -682,8 +694,8 @@ module optical (
     wire not_apart_now = ~apart; // step 0
     wire proven_better = (not_apart | rho_rises) | held_and_lost; // step 11
     wire may_recall_now = proven_stand & proven_better; // step 11
-    wire not_radius_present_now = ~radius_present; // step 11
-    wire signal_in_doubt = disturbed_or_recalled | not_radius_present; // step 12
+    wire not_present_anywhere_now = ~present_anywhere; // step 11
+    wire signal_in_doubt = disturbed_or_recalled | not_present_anywhere; // step 12
     wire held_in_doubt = hold & signal_in_doubt; // step 12
     wire recall_now = held_in_doubt & may_recall; // step 12
     wire residual_rough = rho_not_small & sample_counts; // step 12
@@ -1095,6 +1107,7 @@ module optical (
             e_change <= e_change_now;
             teaches <= teaches_now;
             not_catches_up <= not_catches_up_now;
+            across_present <= across_present_now;
             period_dropped <= period_dropped_now;
             not_period_dropped <= not_period_dropped_now;
             running_5_next_chosen <= running_5_next_chosen_now;
@@ -1113,7 +1126,7 @@ module optical (
             rho_not_small <= rho_not_small_now;
             calm_and_rho_not_small <= calm_and_rho_not_small_now;
             may_recall <= may_recall_now;
-            not_radius_present <= not_radius_present_now;
+            not_present_anywhere <= not_present_anywhere_now;
         end
         if (step == 5'd12) begin
             level_empty <= level_empty_now;

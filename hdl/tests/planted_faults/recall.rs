@@ -26,7 +26,25 @@ pub(crate) fn recall_faults() -> Vec<Fault> {
         swap(
             "no recall where the radius is small",
             &["wire signal_in_doubt ="],
-            " | not_radius_present",
+            " | not_present_anywhere",
+            "",
+        ),
+        swap(
+            "recall where the loop is a radian astray",
+            &["wire present_anywhere ="],
+            " | astray_present",
+            "",
+        ),
+        swap(
+            "recall where the estimate points away from the signal",
+            &["wire astray_present ="],
+            " | opposite_present",
+            "",
+        ),
+        swap(
+            "recall where the estimate is across the signal",
+            &["wire astray_present ="],
+            "across_present | ",
             "",
         ),
         swap(

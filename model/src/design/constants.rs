@@ -86,6 +86,8 @@ pub(super) fn constants(
         // Limits of few bits make short comparators.
         lock_error: Constant::rounded(lock_window(spec), 4),
         lock_residual: Constant::rounded(lock_radius(spec), 4),
+        lock_radius: Constant::rounded(1.0 - lock_radius(spec), 4),
+        lock_opposite: Constant::rounded(2.0 - lock_radius(spec), 4),
         weak_signal: Constant::rounded(0.25, 2),
         restart_residual: Constant::rounded(spec.calibration.restart_residual, f.min(8)),
         hold_residual: Constant::rounded(spec.hold_residual(), f.min(8)),

@@ -44,7 +44,7 @@ pub struct Gate<S: Signal> {
     pub whole_period: S::Bool,
     /// The map of sectors is cleared: a period ends, or nothing counts.
     pub clear: S::Bool,
-    /// Where the search waits for the end of a period: it ends, and what it taught is dropped.
+    /// Where parameters move at the end of a period: it ends, and what it taught is dropped.
     pub dropped: Option<S::Bool>,
     /// Where bends are calibrated: this speed shows them.
     pub bends_shown: Option<S::Bool>,

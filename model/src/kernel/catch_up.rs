@@ -2,8 +2,8 @@
 //!
 //! Once γ has settled, a phase error larger than a calibrated sensor leaves in lock is motion. Such a sample counts for nothing: it
 //! teaches nothing, and its residual (which holds e²/2 and more of the lag) neither holds nor recalls a parameter. It leaves a hole in its
-//! period of travel. What the rest of that period teaches pulls to one side, so where the search waits for the end of a period this one is
-//! dropped there: the search goes back to what is applied.
+//! period of travel. What the rest of that period teaches pulls to one side, so where parameters move at the end of a period this one is
+//! dropped there: the search goes back to what is applied, and a batch is not acted upon.
 //!
 //! Before γ has settled, but not before the search has begun, one that is twice as large teaches nothing either: it is a channel that is
 //! lost, whose residual is small at first where the signal passes zero. The residual counts: it holds the parameters where it is large.
@@ -28,6 +28,11 @@ static DROPPED: Formula = Formula {
     title: "A period that is dropped",
     equation: "where a period ends in which the loop caught up, the search goes back to theta as it is applied",
     source: "",
+};
+
+static BATCH_DROPPED: Formula = Formula {
+    equation: "where a period ends in which the loop caught up, what was gathered over it moves nothing",
+    ..DROPPED
 };
 
 /// What a sample says about the loop.
@@ -92,7 +97,8 @@ pub fn searched<S: Signal>(
     structure: &Structure,
 ) -> [S; 9] {
     let mut theta = waits::searched(state, structure);
-    let Some(dropped) = dropped else {
+    // A batch goes on from what is applied, always.
+    let Some(dropped) = dropped.filter(|_| structure.calibration.waits()) else {
         return theta;
     };
     for (theta, applied) in theta.iter_mut().zip(waits::applied(state)).take(8) {
@@ -102,13 +108,17 @@ pub fn searched<S: Signal>(
 }
 
 impl<S: Signal> CatchUp<S> {
-    /// Whether a period ends (`clear`) in which the loop caught up; `None` where the search does not wait for the end of one.
+    /// Whether a period ends (`clear`) in which the loop caught up; `None` where parameters do not move at the end of one.
     #[inline(always)]
     pub fn drops(self, clear: S::Bool, state: &State<S>, structure: &Structure) -> Option<S::Bool> {
-        if !structure.calibration.waits() {
+        if !structure.calibration.drops_periods() {
             return None;
         }
-        state.gamma_gear.begin(&DROPPED);
+        state.gamma_gear.begin(if structure.calibration.is_batch() {
+            &BATCH_DROPPED
+        } else {
+            &DROPPED
+        });
         let astray = state.astray.and(state.astray_long.not());
         let hole = astray.or(self.now).named("period_has_hole");
         Some(clear.and(hole).named("period_dropped"))

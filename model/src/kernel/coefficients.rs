@@ -116,6 +116,10 @@ coefficients! {
     lock_error,
     /// Largest −ρ in lock.
     lock_residual,
+    /// Radius of the smallest signal in lock: across the estimate it has this |e|.
+    lock_radius,
+    /// −ρ of that signal where it points away from the estimate.
+    lock_opposite,
     /// Corrected signals below this are lost.
     weak_signal,
     /// |ρ| above this begins the search again.
@@ -144,9 +148,9 @@ coefficients! {
     lock_restart,
     /// Last loop gear.
     loop_gear_last,
-    /// |e|, radians, from which the loop is catching up with motion, and |ρ| from which the completion rests.
+    /// What a calibrated sensor leaves in lock is smaller: of |e| in radians, of |ρ| in amplitudes.
     small_error,
-    /// |e|, radians, from which a sample teaches nothing once a quiet period has passed, nor the completion once the loop is astray.
+    /// Twice what a calibrated sensor leaves: the |e|, radians, of a sensor that is not calibrated yet is smaller.
     far_error,
     /// A period of travel that takes so many samples is too slow for the completion.
     travel_samples_last,

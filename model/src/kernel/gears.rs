@@ -72,7 +72,7 @@ pub struct Hold<S: Signal> {
     pub recall: Option<S::Bool>,
 }
 
-/// Whether the parameters are held; `counts`: the sample counts, wherever in the period it is; `present`: its radius is not too small;
+/// Whether the parameters are held; `counts`: the sample counts, wherever in the period it is; `present`: the signal's radius is not too small;
 /// `follows`: neither it nor the last ones were out of the lock window.
 #[inline(always)]
 pub fn hold<S: Signal>(

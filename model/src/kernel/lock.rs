@@ -80,6 +80,22 @@ pub fn in_window<S: Signal>(
     }
 }
 
+/// Whether there is a signal whose radius is not too small, however far astray the loop is: ρ tells that along the estimate, e across it.
+#[inline(always)]
+pub fn present_anywhere<S: Signal>(
+    window: Window<S>,
+    e: S,
+    rho: S,
+    k: &Coefficients<S>,
+) -> S::Bool {
+    let across = within(e, k.lock_radius).not().named("across_present");
+    let opposite = rho.less_than(-k.lock_opposite).named("opposite_present");
+    window
+        .present
+        .or(across.or(opposite).named("astray_present"))
+        .named("present_anywhere")
+}
+
 /// Whether the estimate points away from the signal and may be turned round.
 #[inline(always)]
 pub fn flip<S: Signal>(rho: S, weak: S::Bool, state: &State<S>, k: &Coefficients<S>) -> S::Bool {

@@ -117,7 +117,7 @@ fn advance_of<S: Signal, const PLAIN: bool>(
     let hold = gears::hold(
         rho,
         counts,
-        (window.present, lock.full),
+        (lock::present_anywhere(window, e, rho, k), lock.full),
         state,
         k,
         structure,

@@ -11,6 +11,8 @@ pub struct CatchUp {
     pub settled: u32,
     /// |e| from which on it does, radians.
     pub e: f64,
+    /// A period that has one is dropped where it ends.
+    pub drops: bool,
 }
 
 /// The loop was far behind the axis: in the running period of travel, in the one before, in two and more before this.

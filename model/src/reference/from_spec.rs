@@ -214,6 +214,7 @@ pub fn config(spec: &Spec) -> Result<Config, ReferenceError> {
         catch_up: (k.is_on() && k.settles() && spec.tracking.filter_type == 2).then(|| CatchUp {
             settled: k.settled_gears(),
             e: spec.small_error(),
+            drops: k.drops_periods(),
         }),
         gamma: Gamma {
             first,

@@ -131,9 +131,10 @@ impl Reference {
         self.go_on(&seen, steps, complete, Theta::zeros())
     }
 
-    /// What the search has found since the last period of travel ended is forgotten.
+    /// What the search has found, or gathered, since the last period of travel ended is forgotten.
     pub fn drop_period(&mut self) {
         self.pending = Theta::zeros();
+        self.searching.drop_period();
     }
 
     /// The same of the completion.
@@ -291,8 +292,7 @@ impl Reference {
         };
         let far = self.geared.0 >= by.settled && e.abs() >= by.e;
         let mut seen = self.behind.step(far, self.gate.cleared(), locked);
-        // What waits for the end of such a period is dropped there.
-        seen.ends_so &= self.config.gamma.waits.is_some();
+        seen.ends_so &= by.drops;
         if seen.ends_so {
             self.drop_period();
             // It counts for no gear either. Without lock all of them begin anew.

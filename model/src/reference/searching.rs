@@ -53,6 +53,13 @@ impl Searching {
         })
     }
 
+    /// A batch forgets what it has gathered; a mean does not.
+    pub(super) fn drop_period(&mut self) {
+        if let Self::SumOfSquares(sum) = self {
+            sum.drop_batch();
+        }
+    }
+
     /// What a sample at this α̂ (radians, unwrapped) moves Θ by, with this γ or not at all; `instead`: a gradient that it shows in the place of
     /// the residual's; `free` is 1 where a parameter learns, 0 where it rests.
     pub(super) fn step(

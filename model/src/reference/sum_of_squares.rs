@@ -67,6 +67,13 @@ impl SumOfSquares {
         (self.sum, self.seen) = (Theta::zeros(), 0);
     }
 
+    /// The same of a batch that is not full.
+    pub(super) fn drop_batch(&mut self) {
+        if let Smoothing::Batch { .. } = self.smoothing {
+            self.clear();
+        }
+    }
+
     /// Takes a sample; ∇J where an update is due, zero otherwise.
     pub fn step(&mut self, parameters: Parameters, theta: &Theta, y: [f64; 2]) -> Theta {
         self.step_of(

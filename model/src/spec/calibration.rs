@@ -209,6 +209,13 @@ impl Calibration {
         self.is_on() && by_samples && self.settles()
     }
 
+    /// A period of travel in which the loop caught up with the axis is dropped where it ends, once γ has settled. What a mean has taken in
+    /// has moved the parameters already.
+    #[must_use]
+    pub fn drops_periods(&self) -> bool {
+        self.waits() || self.is_batch() && self.settles()
+    }
+
     /// From the first quiet period on, a residual or a phase error that is far too large is a signal that goes, not a search on its way.
     /// Batches leave out a period with one anyway, and bends by sums of squares swing so far.
     #[must_use]

@@ -288,7 +288,7 @@ pub(crate) fn compare(
             && caught_up
             && !before.astray_long
             && design.structure.catches_up()
-            && spec.calibration.waits();
+            && spec.calibration.drops_periods();
         let teaches = fresh && !dropped;
         // The completion gathers in some sectors of a period, acts where the period ends, or is dropped.
         let gathers = after.gathered_9 != before.gathered_9;
