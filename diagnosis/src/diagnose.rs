@@ -331,7 +331,13 @@ fn conclude(
         radial: &left.radial,
         tangential: &left.tangential,
     };
+    let mut told = vec![];
     for one in unnamed() {
+        let domain = one.domain();
+        if domain.is_some() && told.contains(&domain) {
+            continue;
+        }
+        told.push(domain);
         unexplained.add(one.log_p, one.sentence(&seen, system.noise()));
     }
     let residuals = [(was.radial, was.tangential), (left.radial, left.tangential)];

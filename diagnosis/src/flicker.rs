@@ -16,6 +16,7 @@ use crate::channels::Channels;
 use crate::context::Context;
 use crate::finding::{Chip, Finding, Gain, Parameter};
 use crate::one_over_f;
+use crate::score::SHOWN;
 use crate::statistics::{by_chance, price};
 use crate::telegraph;
 use crate::unexplained::{Unnamed, What, like};
@@ -36,8 +37,6 @@ const BY_CHANCE: f64 = 4.0;
 const SUSPECT: f64 = 2.0;
 /// Shapes of noise that could have been claimed.
 const TRIALS: f64 = 30.0;
-/// Global probability below which it is shown.
-const SHOWN: f64 = 3e-4;
 
 /// Flicker noise that was found.
 #[derive(Clone, Debug)]

@@ -3,6 +3,7 @@
 mod broad;
 mod halves;
 mod residual;
+mod uneven;
 
 use std::ops::Range;
 use std::rc::Rc;

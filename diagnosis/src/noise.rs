@@ -11,13 +11,12 @@ use crate::finding::{Chip, Finding, Gain, Parameter};
 use crate::generic::{HOLDS, hat};
 use crate::lines;
 use crate::model::{ROUNDING, Residual, System};
+use crate::score::SHOWN;
 use crate::statistics::{at_most_of_noise, by_chance};
 use crate::unexplained::{Unnamed, What, explains_only, like};
 use crate::variance::{ENOUGH, Fitted, Pairs, Products};
 use crate::whiten::Whitener;
 
-/// Global probability below which it is shown.
-const SHOWN: f64 = 1e-3;
 /// Shapes of noise that could have been claimed.
 const TRIALS: f64 = 30.0;
 /// Knots in time and over the speeds.

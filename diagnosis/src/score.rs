@@ -9,7 +9,7 @@ use crate::solve::Solution;
 use crate::statistics::by_chance;
 
 /// Global probability below which a cause is shown.
-pub(crate) const SHOWN: f64 = 3e-4;
+pub(crate) const SHOWN: f64 = 1e-3;
 /// Kinds of cause that are tried.
 pub(crate) const KINDS: f64 = 22.0;
 /// So many times the number on its grid, an amount that is that number may be.
@@ -38,6 +38,12 @@ pub(crate) struct Scored {
 }
 
 impl Scored {
+    /// ln of the probability that noise with so many times the variance of even noise explains as much by chance.
+    pub(crate) fn by_chance(&self, inflation: f64) -> f64 {
+        let trials = self.candidate.trials * KINDS;
+        by_chance(self.gain, inflation, self.freedom, trials)
+    }
+
     /// Log-likelihood that it explains, each number at its price.
     pub(crate) fn paid(&self, price: f64) -> f64 {
         self.gain - price * self.freedom as f64

@@ -56,6 +56,21 @@ fn with_weighed(
     scored
 }
 
+/// Leaves out what is best only because noise is louder where it is: its probability is that of noise which is as uneven as what is left.
+fn beyond_uneven_noise(system: &mut System, fit: &Fit, mut scored: Vec<Scored>) -> Vec<Scored> {
+    let seen = |s: &&Scored| s.log_p < SHOWN.ln() && s.gain < CLEAR;
+    while let Some(best) = scored.first().filter(seen) {
+        system.extend();
+        let with = system.fit(both(&fit.shapes, &best.candidate.shapes));
+        let inflation = system.unevenness(fit, &with);
+        if best.by_chance(inflation) < SHOWN.ln() {
+            break;
+        }
+        scored.remove(0);
+    }
+    scored
+}
+
 /// Keeps the functions of these candidates, and drops those of all others.
 fn take_in(system: &mut System, fixed: usize, fit: &Fit, mut list: Vec<Scored>) -> Vec<Scored> {
     let own = list.iter().flat_map(|s| &s.candidate.shapes);
@@ -225,6 +240,9 @@ fn search(
         retain_likely(system, &mut scored);
         scored.sort_by(|a, b| a.log_p.total_cmp(&b.log_p));
         scored = with_weighed(system, fixed, &found.fit, &residual, open, scored);
+        if system.every() == 1 {
+            scored = beyond_uneven_noise(system, &found.fit, scored);
+        }
         if scored.is_empty() || scored[0].log_p > SHOWN.ln() {
             // Weak noise that is slow explains more than any slow change, where no such change is to be seen.
             let known = !found.unnamed.is_empty() || closed.contains(&Domain::Time);
@@ -322,6 +340,7 @@ fn search(
             closed.extend(doubt::SLOW);
             widen(system, &mut found, &noise);
         }
+        widen_where_uneven(system, &mut found);
         found.left = leftover(system, catalogue, &found.fit, &closed);
     }
     keep_used(system, fixed, &mut found);
@@ -338,6 +357,14 @@ fn widen(system: &mut System, found: &mut Selection, noise: &Records) {
         let others = system.sure(&found.fit.others(&range));
         let own = system.sure(&found.fit.shapes[range]);
         one.inflation = noise.inflation(system, &others, &own);
+    }
+}
+
+/// Noise that is not as loud everywhere is in the numbers of what stands where it is loud.
+fn widen_where_uneven(system: &System, found: &mut Selection) {
+    for one in &mut found.accepted {
+        let without = system.fit(found.fit.others(&one.range()));
+        one.inflation = one.inflation.max(system.unevenness(&without, &found.fit));
     }
 }
 

@@ -73,6 +73,14 @@ impl Default for What {
 }
 
 impl Unnamed {
+    /// The domain of an error that is no line of its own: what is said of it is all that is known of the domain.
+    pub(crate) fn domain(&self) -> Option<Domain> {
+        match self.what {
+            What::Error(domain, None, _) => Some(domain),
+            What::Error(..) | What::Said(_) => None,
+        }
+    }
+
     /// The sentence; `noise` is that of a sample in amplitudes.
     pub(crate) fn sentence(&self, left: &Left, noise: f64) -> String {
         let (domain, hertz, likeness) = match &self.what {

@@ -6,9 +6,8 @@ use nonius_quantity::{Unit, prefixed};
 use super::words::probability;
 use crate::diagnose::Diagnosis;
 use crate::left::Bartlett;
+use crate::score::SHOWN;
 
-/// Probability below which it is said not to be.
-const SHOWN: f64 = 1e-3;
 /// Points of the plot.
 const POINTS: usize = 400;
 

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use nonius_diagnosis::{Diagnosis, diagnose};
-use nonius_kept::every;
+use nonius_kept::{every, long};
 use nonius_recording::{Overrides, Recording};
 use rand::{SeedableRng, rngs::StdRng};
 use rand_distr::{Distribution, StandardNormal};
@@ -74,7 +74,12 @@ fn diagnosed(seen: &Seen, seed: u64) -> Diagnosis {
 
 /// Exactly these names, and nothing is left.
 fn is_named(seen: &Seen, expected: &[&str]) {
-    for seed in 0..3 {
+    is_named_with(seen, expected, 0..3);
+}
+
+/// The same with noise of these seeds.
+fn is_named_with(seen: &Seen, expected: &[&str], seeds: impl IntoIterator<Item = u64>) {
+    for seed in seeds {
         let found = diagnosed(seen, seed);
         let left = &found.unexplained;
         assert_eq!(names(&found), expected, "{seed}: {}", left.signature);
@@ -166,6 +171,28 @@ fn a_weak_channel_has_no_glitches() {
         ..PLAIN
     };
     is_named(&weak, &[]);
+}
+
+/// Nor is the noise of a weak channel anything else. Where one noise is taken for all angles, lines and causes of the speed explain more of
+/// it than they do of even noise: in a quarter of these recordings something was found, with these seeds among others. The long form
+/// counts: one percent and a half is left.
+#[test]
+fn the_noise_of_a_weak_channel_is_no_cause() {
+    let weak = Seen {
+        amplitudes: [0.81, 0.08],
+        periods: reversing,
+        ..PLAIN
+    };
+    is_named_with(&weak, &[], [9, 11, 15, 30, 47, 60, 73, 95]);
+    if long() {
+        let silent = |seed: &u64| {
+            let found = diagnosed(&weak, *seed);
+            found.findings.is_empty() && !found.unexplained.significant
+        };
+        let silent = (0..120).filter(silent).count();
+        println!("{silent} of 120 hold nothing");
+        assert!(silent >= 117, "{silent} of 120");
+    }
 }
 
 /// Noise in proportion to the signal goes with the angle, which an even speed shows as well as any other.
