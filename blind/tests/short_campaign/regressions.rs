@@ -216,6 +216,22 @@ fn a_vibration_faster_than_the_knots_shows() {
     });
 }
 
+/// The noise of a reference, which stands in what the angle differs from it, is not found in what goes with the acceleration that it shows.
+#[test]
+fn the_noise_of_a_reference_is_nothing() {
+    let seeds = [167_000_243, 167_000_320, 167_000_706];
+    seeds.into_par_iter().for_each(|seed| {
+        let score = scored(seed);
+        assert_eq!(score.first, "nothing", "{seed}: {}", score.signature);
+    });
+}
+
+/// The last samples behind a jittering clock are no glitches.
+#[test]
+fn the_end_of_a_jittering_recording_is_sound() {
+    told(165_001_778, |o| *o == Outcome::First);
+}
+
 /// A drift of the gains beside what repeats with the revolution or goes with the speed, which looks like steps on an axis that turns back; a
 /// latency beside what makes the radius smaller, as a low pass would do; a low pass that both it and a delay explain as well; a drift of a
 /// curve that no polynomial is, whose rest goes with the speed or is slow noise; a dirty glitch where a sample might be missing, were it not for the
