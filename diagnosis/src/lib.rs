@@ -36,6 +36,7 @@ mod late;
 mod left;
 mod library;
 mod lines;
+mod louder;
 mod matched;
 mod missing;
 mod model;

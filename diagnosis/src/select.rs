@@ -11,6 +11,7 @@ use crate::doubt::{self, doubt};
 use crate::exact::{self, Start};
 use crate::flicker::{self, records::Records};
 use crate::library::Shape;
+use crate::louder::{beyond_uneven_noise, widen_where_slow, widen_where_uneven};
 use crate::model::{Fit, Residual, System, atoms_of};
 use crate::score::{CLEAR, SHOWN, Scored, retain_likely, score, worth};
 use crate::selection::{Accepted, Selection};
@@ -53,21 +54,6 @@ fn with_weighed(
     scored.extend(worth(system, fit, list, most));
     scored = take_in(system, fixed, fit, scored);
     scored.sort_by(|a, b| a.log_p.total_cmp(&b.log_p));
-    scored
-}
-
-/// Leaves out what is best only because noise is louder where it is: its probability is that of noise which is as uneven as what is left.
-fn beyond_uneven_noise(system: &mut System, fit: &Fit, mut scored: Vec<Scored>) -> Vec<Scored> {
-    let seen = |s: &&Scored| s.log_p < SHOWN.ln() && s.gain < CLEAR;
-    while let Some(best) = scored.first().filter(seen) {
-        system.extend();
-        let with = system.fit(both(&fit.shapes, &best.candidate.shapes));
-        let inflation = system.unevenness(fit, &with);
-        if best.by_chance(inflation) < SHOWN.ln() {
-            break;
-        }
-        scored.remove(0);
-    }
     scored
 }
 
@@ -338,34 +324,13 @@ fn search(
         found.unnamed.extend(curves);
         if let Some(noise) = Records::of(system) {
             closed.extend(doubt::SLOW);
-            widen(system, &mut found, &noise);
+            widen_where_slow(system, &mut found, &noise);
         }
         widen_where_uneven(system, &mut found);
         found.left = leftover(system, catalogue, &found.fit, &closed);
     }
     keep_used(system, fixed, &mut found);
     found
-}
-
-/// Slow noise of the channels is in the numbers of what can be slow.
-fn widen(system: &mut System, found: &mut Selection, noise: &Records) {
-    for one in &mut found.accepted {
-        if !doubt::SLOW.contains(&one.candidate.domain) {
-            continue;
-        }
-        let range = one.range();
-        let others = system.sure(&found.fit.others(&range));
-        let own = system.sure(&found.fit.shapes[range]);
-        one.inflation = noise.inflation(system, &others, &own);
-    }
-}
-
-/// Noise that is not as loud everywhere is in the numbers of what stands where it is loud.
-fn widen_where_uneven(system: &System, found: &mut Selection) {
-    for one in &mut found.accepted {
-        let without = system.fit(found.fit.others(&one.range()));
-        one.inflation = one.inflation.max(system.unevenness(&without, &found.fit));
-    }
 }
 
 /// Where to look anew from: with the cause that was accepted last, or with another in its place.

@@ -100,7 +100,8 @@ fn the_jolts_are_caught_up_with() {
             .expect("travel");
     let alone = states[again..].iter().position(|s| s.astray);
     let alone = again + alone.expect("one jolt alone");
-    // Out of the lock window with a signal; then the estimate is across it, points away from it, and across it where it is small: then it is recalled what was proven.
+    // Out of the lock window with a signal; then the estimate is across it, and points away from it. Where it is across a small one,
+    // what is proven is recalled.
     let (jumps, small) = ([16, 17, 18].map(|k| k * ROWS / 20), 19 * ROWS / 20);
     assert!(states[first..jumps[1]].iter().all(|s| s.locked));
     assert!(!states[alone].astray_long && !states[ROWS - 1].astray_long);

@@ -37,6 +37,13 @@ const PLAIN: Seen = Seen {
     code: |code, _| code,
 };
 
+/// A channel with a tenth of the other's amplitude.
+const WEAK: Seen = Seen {
+    amplitudes: [0.81, 0.08],
+    periods: reversing,
+    ..PLAIN
+};
+
 /// Forty scale periods a second: a whole number of samples in each.
 fn evenly(t: f64) -> f64 {
     40.0 * t + 0.1
@@ -165,12 +172,7 @@ fn codes_that_never_come() {
 /// The noise of a weak channel is ten times as large a part of it, and so is that of the radius where that channel makes it.
 #[test]
 fn a_weak_channel_has_no_glitches() {
-    let weak = Seen {
-        amplitudes: [0.81, 0.08],
-        periods: reversing,
-        ..PLAIN
-    };
-    is_named(&weak, &[]);
+    is_named(&WEAK, &[]);
 }
 
 /// Nor is the noise of a weak channel anything else. Where one noise is taken for all angles, lines and causes of the speed explain more of
@@ -178,15 +180,10 @@ fn a_weak_channel_has_no_glitches() {
 /// counts: one percent and a half is left.
 #[test]
 fn the_noise_of_a_weak_channel_is_no_cause() {
-    let weak = Seen {
-        amplitudes: [0.81, 0.08],
-        periods: reversing,
-        ..PLAIN
-    };
-    is_named_with(&weak, &[], [9, 11, 15, 30, 47, 60, 73, 95]);
+    is_named_with(&WEAK, &[], [9, 11, 15, 30, 47, 60, 73, 95]);
     if long() {
         let silent = |seed: &u64| {
-            let found = diagnosed(&weak, *seed);
+            let found = diagnosed(&WEAK, *seed);
             found.findings.is_empty() && !found.unexplained.significant
         };
         let silent = (0..120).filter(silent).count();
