@@ -2,13 +2,13 @@
 
 use crate::beside::Beside;
 use crate::cause::{Candidate, Domain};
-use crate::causes::{AC_COUPLING, Catalogue, GRADUATION_ERROR};
+use crate::causes::{self, AC_COUPLING, Catalogue, GRADUATION_ERROR};
 use crate::doubt;
 use crate::flicker::records::Records;
 use crate::generic::{self, HOLDS};
 use crate::library::Shape;
 use crate::model::{Fit, System, atoms_of};
-use crate::score::{KINDS, SHOWN, Scored};
+use crate::score::{CLEAR, KINDS, SHOWN, Scored, worth};
 use crate::select::both;
 use crate::statistics::{at_most_of_noise, by_chance};
 use crate::unexplained::explains_only;
@@ -32,6 +32,17 @@ fn least(candidate: &Candidate) -> f64 {
     }
 }
 
+/// Domains whose causes a basis of this one holds in part: what depends on a channel's code depends on the angle, and a slow
+/// line is a slow change.
+fn akin(domain: Domain) -> Option<Domain> {
+    match domain {
+        Domain::Code => Some(Domain::Angle),
+        Domain::Angle => Some(Domain::Code),
+        Domain::Time => Some(Domain::Line),
+        _ => None,
+    }
+}
+
 /// How far a name holds.
 pub(crate) struct Held {
     /// Why it does not hold enough.
@@ -40,6 +51,16 @@ pub(crate) struct Held {
     pub(crate) beyond: Vec<Shape>,
     /// Slow noise of the channels explains it as well: nothing is left that has no name.
     pub(crate) is_noise: bool,
+}
+
+/// What is near a cause.
+struct Near {
+    /// What it would be if it were not what its name says.
+    around: Vec<Shape>,
+    /// What may stand beside it.
+    steady: Vec<Shape>,
+    /// What grows with the size of the speed in any way.
+    sizes: Vec<Shape>,
 }
 
 impl Held {
@@ -82,6 +103,9 @@ pub(crate) fn holds(
     let mut named = both(&fit.shapes, &best.candidate.shapes);
     let same = |o: &Scored| o.candidate.domain == domain;
     if !basis.is_empty() {
+        // One of another domain that the basis holds in part; of several, with what is there already, anything can be made.
+        let akin = |o: &Scored| akin(domain) == Some(o.candidate.domain);
+        up_to(1, system, &mut named, others, akin);
         stand_beside(system, &mut named, others, same);
     }
     let gained = |system: &System, shapes: &[Shape]| {
@@ -90,7 +114,7 @@ pub(crate) fn holds(
     };
     let held = gained(system, &named[fit.shapes.len()..]);
     // Slow noise is in all that can be slow.
-    let slow = doubt::SLOW.contains(&domain);
+    let slow = doubt::SLOW.contains(&domain) || domain == Domain::Angle;
     let noise = slow.then(|| Records::of(system)).flatten();
     let less_noise =
         |system: &mut System, known: &[Shape], shapes: &[Shape], beyond: (f64, usize)| {
@@ -111,23 +135,37 @@ pub(crate) fn holds(
     });
     stand_beside(system, &mut named, others, |o| !same(o));
     let library = &mut system.samples.library;
-    let around = generic::around(system.context, &best.candidate, library);
-    let steady = generic::steady(system.context, &best.candidate, library);
-    let sizes = generic::at_any_speed(system.context, &best.candidate, library);
+    let near = Near {
+        around: generic::around(system.context, &best.candidate, library),
+        steady: generic::steady(system.context, &best.candidate, library),
+        sizes: generic::at_any_speed(system.context, &best.candidate, library),
+    };
     let held = gained(system, &best.candidate.shapes);
-    let [known, free, any, sizes] =
-        [&named, &steady, &around, &sizes].map(|list| sure(system, list));
-    let atoms = atoms_of(&[known.as_slice(), &any, &free, &sizes].concat());
-    let whole = system.among(&atoms);
-    let among = |shapes: &[Shape]| Shape::all_among(shapes, &atoms);
-    let beside = Beside::new(&whole, &among(&known));
-    let more = beside.gain(&among(&free)).0;
-    let beyond = beside.gain(&among(&sizes));
-    let sizes = self::share(held, less_noise(system, &known, &sizes, beyond));
-    let known = both(&known, &free);
-    let beyond = Beside::new(&whole, &among(&known)).gain(&among(&any));
-    let own = self::share(held + more, less_noise(system, &known, &any, beyond));
-    let mut found = Held::new(&best.candidate, own, sizes, around);
+    let shares = |system: &mut System, named: &[Shape]| {
+        let [known, free, any, sizes] =
+            [named, &near.steady, &near.around, &near.sizes].map(|list| sure(system, list));
+        let atoms = atoms_of(&[known.as_slice(), &any, &free, &sizes].concat());
+        let whole = system.among(&atoms);
+        let among = |shapes: &[Shape]| Shape::all_among(shapes, &atoms);
+        let beside = Beside::new(&whole, &among(&known));
+        let more = beside.gain(&among(&free)).0;
+        let beyond = beside.gain(&among(&sizes));
+        let sizes = self::share(held, less_noise(system, &known, &sizes, beyond));
+        let known = both(&known, &free);
+        let beyond = Beside::new(&whole, &among(&known)).gain(&among(&any));
+        let own = self::share(held + more, less_noise(system, &known, &any, beyond));
+        (own, sizes)
+    };
+    let (mut own, sizes) = shares(system, &named);
+    if domain == Domain::Time && own < least(&best.candidate) {
+        // A line may be small beside a drift, and large beside what the drift leaves. A weak one, or more of them, may be slow noise.
+        let lines = lines_beside(system, fit, best);
+        let lines: Vec<&Scored> = lines.iter().collect();
+        if up_to(1, system, &mut named, &lines, |line| line.gain > CLEAR) > 0.0 {
+            own = shares(system, &named).0;
+        }
+    }
+    let mut found = Held::new(&best.candidate, own, sizes, near.around);
     if let Some(noise) = noise {
         let shapes = sure(system, &best.candidate.shapes);
         let inflation = noise.inflation(system, &sure(system, &fit.shapes), &shapes);
@@ -140,6 +178,18 @@ pub(crate) fn holds(
     found
 }
 
+/// Lines that are to be seen in what a fit with a cause leaves.
+fn lines_beside(system: &mut System, fit: &Fit, cause: &Scored) -> Vec<Scored> {
+    let with = system.fit(both(&fit.shapes, &cause.candidate.shapes));
+    let (residual, coloured) = (system.residual(&with), system.flicker.is_some());
+    let library = &mut system.samples.library;
+    let mut list = causes::shown(system.context, &residual, coloured, library);
+    list.retain(|c| c.domain == Domain::Line);
+    let lines = worth(system, &with, list, 0.0);
+    system.extend();
+    lines
+}
+
 /// Adds causes that stand beside the named ones; what they explain.
 pub(crate) fn stand_beside(
     system: &System,
@@ -147,8 +197,19 @@ pub(crate) fn stand_beside(
     others: &[&Scored],
     wanted: impl Fn(&Scored) -> bool,
 ) -> f64 {
+    up_to(MOST_BESIDE, system, named, others, wanted)
+}
+
+/// The same, so many of them at most.
+fn up_to(
+    most: usize,
+    system: &System,
+    named: &mut Vec<Shape>,
+    others: &[&Scored],
+    wanted: impl Fn(&Scored) -> bool,
+) -> f64 {
     let mut all = 0.0;
-    for _ in 0..MOST_BESIDE {
+    for _ in 0..most {
         let beside = Beside::new(&system.total, named);
         let next = others
             .iter()

@@ -76,6 +76,7 @@ mod unexplained;
 mod units;
 mod unseen;
 mod variance;
+mod warming;
 mod whereabouts;
 mod whiten;
 

@@ -3,6 +3,8 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use crate::solve::{Normal, Solution};
+
 /// Pieces of the recording between which a knot may stand.
 pub(crate) const PIECES: usize = 64;
 /// Most numbers of a knot, and of a step beside its place.
@@ -17,6 +19,25 @@ pub(crate) struct Polygon {
     gram: DMatrix<f64>,
     right: DVector<f64>,
     norms: DVector<f64>,
+}
+
+/// What functions of the time, from −1 to 1, sampled at the knots, explain in both channels; from the sums that [`Polygon::new`]
+/// takes.
+pub(crate) fn sampled(
+    gram: &DMatrix<f64>,
+    right: &DVector<f64>,
+    functions: &[impl Fn(f64) -> f64],
+) -> Solution {
+    let value = |i: usize, j: usize| {
+        if i % CHANNELS == j % CHANNELS {
+            functions[j / CHANNELS](2.0 * (i / CHANNELS) as f64 / PIECES as f64 - 1.0)
+        } else {
+            0.0
+        }
+    };
+    let values = DMatrix::from_fn(gram.nrows(), CHANNELS * functions.len(), value);
+    let products = values.tr_mul(gram) * &values;
+    Normal::new(products, values.tr_mul(right), 0.0).solve()
 }
 
 impl Polygon {

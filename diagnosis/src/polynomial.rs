@@ -2,8 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::polygon::{CHANNELS, PIECES};
-use crate::solve::Normal;
+use crate::polygon::sampled;
 
 /// Highest degree of a polynomial of the time.
 pub(crate) const DEGREE: usize = 6;
@@ -18,8 +17,8 @@ pub(crate) fn legendre(degree: usize, x: f64) -> f64 {
     now
 }
 
-/// Log-likelihood that a polynomial of each channel explains, sampled at the knots, each number at its price but for `free` of them; from the
-/// sums that [`crate::polygon::Polygon::new`] takes.
+/// Log-likelihood that a polynomial of each channel explains, each number at its price but for `free` of them; from the sums that
+/// [`crate::polygon::Polygon::new`] takes.
 pub(crate) fn explained(
     gram: &DMatrix<f64>,
     right: &DVector<f64>,
@@ -27,19 +26,7 @@ pub(crate) fn explained(
     price: f64,
     free: usize,
 ) -> f64 {
-    let columns = CHANNELS * (degree + 1);
-    let at = |i: usize, j: usize| {
-        if i % CHANNELS == j % CHANNELS {
-            legendre(
-                j / CHANNELS,
-                2.0 * (i / CHANNELS) as f64 / PIECES as f64 - 1.0,
-            )
-        } else {
-            0.0
-        }
-    };
-    let values = DMatrix::from_fn(CHANNELS * (PIECES + 1), columns, at);
-    let products = values.tr_mul(gram) * &values;
-    let found = Normal::new(products, values.tr_mul(right), 0.0).solve();
+    let functions: Vec<_> = (0..=degree).map(|n| move |x| legendre(n, x)).collect();
+    let found = sampled(gram, right, &functions);
     found.gain() - price * (found.rank as f64 - free as f64)
 }

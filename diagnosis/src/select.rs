@@ -259,8 +259,12 @@ fn search(
                 // Slow noise explains it, and has a name.
                 _ if one.is_noise => refused.push(one.name),
                 Some(Domain::Time) if slow_noise(system, &residual, one.paid) => {
-                    closed.push(Domain::Time);
+                    closed = vec![Domain::Time];
                     refused.extend(SLOW);
+                    // What had no name before that noise was known may have one now.
+                    found.unnamed.clear();
+                    let known = found.of(found.accepted.clone(), system);
+                    (found.fit, found.accepted) = (known.fit, known.accepted);
                 }
                 domain => {
                     found.unnamed.push(one.unnamed);

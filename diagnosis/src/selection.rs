@@ -9,7 +9,7 @@ use crate::generic::HOLDS;
 use crate::library::Shape;
 use crate::model::{Fit, Halves, System, amounts};
 use crate::score::{KINDS, SHOWN};
-use crate::statistics::by_chance;
+use crate::statistics::{by_chance, price};
 use crate::unexplained::Unnamed;
 
 /// A cause that was accepted; its shapes stand in the fit from `first` on.
@@ -39,6 +39,13 @@ pub(crate) struct Own {
     gain: f64,
     /// Log of the probability of that by chance, after all trials.
     log_p: f64,
+}
+
+impl Own {
+    /// Whether so many numbers do not explain that by chance.
+    fn is_likely(&self, freedom: usize) -> bool {
+        freedom > 0 && self.log_p <= SHOWN.ln()
+    }
 }
 
 impl Accepted {
@@ -225,12 +232,40 @@ impl Selection {
 
     /// What a cause explains; nothing where the others and what has no name explain it as well in the end: it is no finding.
     fn own(&self, accepted: &Accepted, system: &System) -> Option<Own> {
+        let (own, freedom) = self.beside_others(accepted, system);
+        own.is_likely(freedom).then_some(own)
+    }
+
+    /// What a cause explains beside the others and what has no name, and numbers that do.
+    fn beside_others(&self, accepted: &Accepted, system: &System) -> (Own, usize) {
         let others = without(&self.fit, &accepted.range(), system);
         let gain = self.fit.solution.gain() - others.solution.gain();
         let freedom = self.fit.solution.rank.saturating_sub(others.solution.rank);
         let trials = accepted.candidate.trials * KINDS;
         let log_p = by_chance(gain, accepted.inflation, freedom, trials);
-        (freedom > 0 && log_p <= SHOWN.ln()).then_some(Own { gain, log_p })
+        (Own { gain, log_p }, freedom)
+    }
+
+    /// Drops, one after the other, names to which the others leave nothing: first the one that is the least worth its numbers.
+    /// What is off the signals already stays.
+    pub(crate) fn drop_idle(&mut self, system: &System) {
+        let price = price(system.context.samples() as f64);
+        loop {
+            let on_signals = |one: &Accepted| one.x.iter().all(|x| *x == 0.0);
+            let all = self.accepted.iter().enumerate();
+            let idle = all
+                .filter(|(_, one)| on_signals(one))
+                .filter_map(|(i, one)| {
+                    let (own, freedom) = self.beside_others(one, system);
+                    let worth = own.gain - price * freedom as f64;
+                    (!own.is_likely(freedom)).then_some((i, worth))
+                });
+            let Some((least, _)) = idle.min_by(|a, b| a.1.total_cmp(&b.1)) else {
+                return;
+            };
+            let without = self.dropping(&[least], system);
+            (self.fit, self.accepted) = (without.fit, without.accepted);
+        }
     }
 
     /// The findings of what [`Self::named`] keeps; their numbers are those of the model that can be simulated.

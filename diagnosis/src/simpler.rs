@@ -1,22 +1,27 @@
 //! Wider causes that got a name for what a simpler one does. A harmonic of the scale is a bend of the channels at one phase;
 //! beside something that is not known yet it explains more than the bend does. Once everything is known, the simpler one is
-//! named if it explains as much, the numbers of either paid for, and says that the other would, too.
+//! named if it explains as much, the numbers of either paid for, and says that the other would, too. And a drift of many
+//! numbers, which was the best single name for two errors of speed together, goes where both of them are known.
 
 use crate::beside::Beside;
 use crate::cause::Candidate;
 use crate::causes::Catalogue;
 use crate::library::Shape;
 use crate::model::{Fit, System};
-use crate::score::score;
+use crate::rivals;
+use crate::score::{Scored, score};
 use crate::selection::{Accepted, Selection};
 use crate::statistics::price;
 
-/// Puts the simpler cause in the place of each wider one that holds it and explains no more.
+/// Drops names to which the others leave nothing, then puts the simpler cause in the place of each wider one that holds it
+/// and explains no more.
 pub(crate) fn simpler(system: &System, catalogue: &Catalogue, found: &mut Selection) {
     // What stands in for something without a name would make up for anything.
     if !found.unnamed.is_empty() {
         return;
     }
+    found.drop_idle(system);
+    rivals_anew(system, catalogue, found);
     for i in 0..found.accepted.len() {
         let wide = &found.accepted[i];
         // What is off the signals already stays what it is.
@@ -32,6 +37,44 @@ pub(crate) fn simpler(system: &System, catalogue: &Catalogue, found: &mut Select
         let best = swaps.max_by(|a, b| a.1.solution.gain().total_cmp(&b.1.solution.gain()));
         if let Some((candidate, fit)) = best {
             replace(found, i, candidate, fit);
+        }
+    }
+}
+
+/// Looks anew for what a cause cannot be told from, where that is known by now to be there as well: what was like two causes
+/// together is like another beside one of them. Of the two that are alike then, the one that explains more is named.
+fn rivals_anew(system: &System, catalogue: &Catalogue, found: &mut Selection) {
+    for i in 0..found.accepted.len() {
+        let names: Vec<&str> = found.accepted.iter().map(|a| a.candidate.name).collect();
+        let one = &found.accepted[i];
+        let is_there = |rival: &String| names.contains(&rival.as_str());
+        if !one.confounded.iter().any(is_there) || one.x.iter().any(|x| *x != 0.0) {
+            continue;
+        }
+        let without = system.fit(found.shapes_but(&[i]));
+        let beside = Beside::new(&system.total, &without.shapes);
+        let Some(own) = score(&beside, one.candidate.clone()) else {
+            continue;
+        };
+        let others = catalogue.candidates.iter().filter(|c| {
+            let as_many = c.shapes.len() == own.candidate.shapes.len();
+            c.domain == own.candidate.domain && as_many && !names.contains(&c.name)
+        });
+        let others: Vec<Scored> = others.filter_map(|c| score(&beside, c.clone())).collect();
+        let all: Vec<&Scored> = others.iter().collect();
+        let rivals = rivals::among(system, &without, &beside, &own, &all);
+        let rival = |s: &&Scored| rivals.iter().any(|r| r == s.candidate.name);
+        let best = others.iter().filter(rival);
+        match best.max_by(|a, b| a.gain.total_cmp(&b.gain)) {
+            Some(best) if best.gain > own.gain => {
+                let mut shapes = found.fit.shapes.clone();
+                shapes.splice(one.range(), best.candidate.shapes.iter().cloned());
+                replace(found, i, best.candidate.clone(), system.fit(shapes));
+            }
+            best => {
+                let rival = best.map(|s| s.candidate.name.to_owned());
+                found.accepted[i].confounded = rival.into_iter().collect();
+            }
         }
     }
 }

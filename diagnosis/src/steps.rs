@@ -13,6 +13,7 @@ use crate::polygon::{CHANNELS, PIECES, Polygon};
 use crate::polynomial;
 use crate::solve::Normal;
 use crate::statistics::price;
+use crate::warming;
 
 /// Stretches of the recording between which a step may stand.
 const STRETCHES: usize = 200;
@@ -84,6 +85,7 @@ pub(crate) fn instead(seen: Channels, noise: f64, changes: &[Change]) -> Option<
         let curved = DEGREES
             .map(|degree| polynomial::explained(&gram, &right, degree, price, change.numbers()));
         lines = curved.into_iter().fold(lines, f64::max);
+        lines = lines.max(warming::explained(&gram, &right, price, change.numbers()));
         let numbers = change.numbers() as f64;
         steps = steps.max(self::steps(
             &stretches,
