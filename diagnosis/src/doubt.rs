@@ -26,7 +26,7 @@ const ALIKE: f64 = 0.95;
 
 /// Scale periods travelled from which what depends on the code is told from what depends on the angle: where each code stands at one
 /// angle only, neither is what the other leaves.
-const APART: f64 = 2.0;
+pub(crate) const APART: f64 = 2.0;
 
 /// Domains that slow noise of the channels is in: all that can be slow.
 pub(crate) const SLOW: [Domain; 3] = [Domain::Speed, Domain::Time, Domain::Revolution];
@@ -76,11 +76,13 @@ pub(crate) fn doubt(system: &System, catalogue: &Catalogue, found: &mut Selectio
     closed
 }
 
-/// Weak names of any kind beside an error of the sensor that is ten times as large: its model is not known to the last per cent of
-/// its power, and what that leaves goes with the time as with the angle.
+/// Weak names of any kind beside an error of the sensor that is ten times as large, and any beside one that is a hundred times as
+/// large: its model is not known to the last per cent, and what that leaves goes with the time as with the angle.
 fn traces(system: &System, found: &mut Selection) -> Vec<Unnamed> {
     /// Log-likelihood (an SNR of 8) from which on it is something by itself.
     const WEAK: f64 = 32.0;
+    /// Share below which nothing is: an SNR of a hundredth of the strongest one's.
+    const LAST: f64 = 1e-4;
     if found.accepted.len() < 2 {
         return vec![];
     }
@@ -114,7 +116,7 @@ fn traces(system: &System, found: &mut Selection) -> Vec<Unnamed> {
     let mut list = vec![];
     for ((name, own), gain) in names.iter().zip(&gains) {
         let sure = own.iter().any(|i| !found.accepted[*i].doubted);
-        if !sure || *gain >= WEAK.min(TRACE * most) {
+        if !sure || *gain >= WEAK.min(TRACE * most).max(LAST * most) {
             continue;
         }
         own.iter().for_each(|i| found.accepted[*i].doubted = true);

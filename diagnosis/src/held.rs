@@ -15,6 +15,8 @@ use crate::unexplained::explains_only;
 
 /// Share that it has to hold of what grows with the size of the speed: there a law has no shapes of its own.
 const LAW: f64 = 0.97;
+/// Share that what depends on the angle and what depends on the code have to hold together.
+const TWO_HOLD: f64 = 0.9;
 /// Most causes that stand beside another: a sensor may have harmonics of every order.
 const MOST_BESIDE: usize = 8;
 
@@ -102,10 +104,16 @@ pub(crate) fn holds(
     };
     let mut named = both(&fit.shapes, &best.candidate.shapes);
     let same = |o: &Scored| o.candidate.domain == domain;
+    let mut enough = HOLDS;
     if !basis.is_empty() {
-        // One of another domain that the basis holds in part; of several, with what is there already, anything can be made.
-        let akin = |o: &Scored| akin(domain) == Some(o.candidate.domain);
-        up_to(1, system, &mut named, others, akin);
+        // One of another domain that the basis holds in part, where it is told from this one; of several, with what is there already,
+        // anything can be made.
+        let slow = domain == Domain::Time;
+        let apart = slow || system.context.periods_travelled() >= doubt::APART;
+        let akin = |o: &Scored| apart && akin(domain) == Some(o.candidate.domain);
+        if up_to(1, system, &mut named, others, akin) > 0.0 && !slow {
+            enough = TWO_HOLD;
+        }
         stand_beside(system, &mut named, others, same);
     }
     let gained = |system: &System, shapes: &[Shape]| {
@@ -114,7 +122,7 @@ pub(crate) fn holds(
     };
     let held = gained(system, &named[fit.shapes.len()..]);
     // Slow noise is in all that can be slow.
-    let slow = doubt::SLOW.contains(&domain) || domain == Domain::Angle;
+    let slow = doubt::SLOW.contains(&domain);
     let noise = slow.then(|| Records::of(system)).flatten();
     let less_noise =
         |system: &mut System, known: &[Shape], shapes: &[Shape], beyond: (f64, usize)| {
@@ -125,7 +133,7 @@ pub(crate) fn holds(
     let [known, any] = [&named[..], basis].map(|list| sure(system, list));
     let beyond = Beside::new(&system.total, &known).gain(&any);
     let share = share(held, less_noise(system, &known, &any, beyond));
-    if share < HOLDS {
+    if share < enough {
         return Held::new(&best.candidate, share, 1.0, basis.to_vec());
     }
     // Other causes may be there too, and no name answers for them.

@@ -207,13 +207,11 @@ fn search(
         let residual = system.residual(&found.fit);
         let coloured = system.flicker.is_some();
         let shown = causes::shown(context, &residual, coloured, &mut system.samples.library);
-        // The direction turns over in one way only.
-        let twice = found
-            .accepted
-            .iter()
-            .any(|a| a.candidate.name == HYSTERESIS);
+        // The direction turns over in one way only, and of two high passes in a row the faster is nearly all.
+        let names = found.accepted.iter().map(|a| a.candidate.name);
+        let once: Vec<&str> = names.filter(|name| SLOW.contains(name)).collect();
         let open = |c: &Candidate| {
-            let again = twice && c.name == HYSTERESIS;
+            let again = once.contains(&c.name);
             !closed.contains(&c.domain) && !refused.contains(&c.name) && !again
         };
         let beside = Beside::all_that_moves(system, &found.fit.shapes);
@@ -259,12 +257,8 @@ fn search(
                 // Slow noise explains it, and has a name.
                 _ if one.is_noise => refused.push(one.name),
                 Some(Domain::Time) if slow_noise(system, &residual, one.paid) => {
-                    closed = vec![Domain::Time];
+                    closed.push(Domain::Time);
                     refused.extend(SLOW);
-                    // What had no name before that noise was known may have one now.
-                    found.unnamed.clear();
-                    let known = found.of(found.accepted.clone(), system);
-                    (found.fit, found.accepted) = (known.fit, known.accepted);
                 }
                 domain => {
                     found.unnamed.push(one.unnamed);

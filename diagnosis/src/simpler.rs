@@ -4,7 +4,7 @@
 //! numbers, which was the best single name for two errors of speed together, goes where both of them are known.
 
 use crate::beside::Beside;
-use crate::cause::Candidate;
+use crate::cause::{Candidate, Domain};
 use crate::causes::Catalogue;
 use crate::library::Shape;
 use crate::model::{Fit, System};
@@ -41,14 +41,15 @@ pub(crate) fn simpler(system: &System, catalogue: &Catalogue, found: &mut Select
     }
 }
 
-/// Looks anew for what a cause cannot be told from, where that is known by now to be there as well: what was like two causes
+/// Looks anew for what an error of speed cannot be told from, where that is known by now to be there as well: what was like two causes
 /// together is like another beside one of them. Of the two that are alike then, the one that explains more is named.
 fn rivals_anew(system: &System, catalogue: &Catalogue, found: &mut Selection) {
     for i in 0..found.accepted.len() {
         let names: Vec<&str> = found.accepted.iter().map(|a| a.candidate.name).collect();
         let one = &found.accepted[i];
         let is_there = |rival: &String| names.contains(&rival.as_str());
-        if !one.confounded.iter().any(is_there) || one.x.iter().any(|x| *x != 0.0) {
+        let speed = one.candidate.domain == Domain::Speed;
+        if !speed || !one.confounded.iter().any(is_there) || one.x.iter().any(|x| *x != 0.0) {
             continue;
         }
         let without = system.fit(found.shapes_but(&[i]));
@@ -58,7 +59,7 @@ fn rivals_anew(system: &System, catalogue: &Catalogue, found: &mut Selection) {
         };
         let others = catalogue.candidates.iter().filter(|c| {
             let as_many = c.shapes.len() == own.candidate.shapes.len();
-            c.domain == own.candidate.domain && as_many && !names.contains(&c.name)
+            c.domain == Domain::Speed && as_many && !names.contains(&c.name)
         });
         let others: Vec<Scored> = others.filter_map(|c| score(&beside, c.clone())).collect();
         let all: Vec<&Scored> = others.iter().collect();

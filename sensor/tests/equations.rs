@@ -142,13 +142,14 @@ fn ac_coupling_is_a_first_order_high_pass() {
         real += y * motion.alpha[k].cos() / 5000.0;
         imaginary -= y * motion.alpha[k].sin() / 5000.0;
     }
-    // jω/(jω + ω_c), and the one a sample late of a filter in samples.
+    // jω/(jω + ω_c).
     let x = corner / speed;
     let expected = [1.0 / (1.0 + x * x), x / (1.0 + x * x)];
-    let late = TAU * corner / RATE;
-    assert!((real - expected[0]).abs() < late, "{real} {expected:?}");
+    // Lines from sample to sample are off the circle by a twelfth of the square of the angle between them.
+    let off = 1.5 * (TAU * speed / RATE).powi(2) / 12.0 * expected[1];
+    assert!((real - expected[0]).abs() < off, "{real} {expected:?}");
     assert!(
-        (imaginary - expected[1]).abs() < late,
+        (imaginary - expected[1]).abs() < off,
         "{imaginary} {expected:?}"
     );
 }

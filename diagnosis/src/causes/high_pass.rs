@@ -17,6 +17,9 @@ use crate::library::{Library, Shape, Use};
 /// Scale periods of travel that ac coupling needs to be told from shapes of the angle.
 const FEWEST: f64 = 6.0;
 
+/// Share of the top speed below which the scale hardly moves.
+const AT_REST: f64 = 0.1;
+
 /// Where a low pass is between blocks.
 #[derive(Default)]
 struct Charged {
@@ -27,13 +30,24 @@ struct Charged {
 }
 
 /// The pair behind a low pass of a time constant, seconds, block after block, as a part of the pair itself; exact where the scale
-/// turns evenly from sample to sample. It begins as if the scale had always moved as it does then: what was before is the charges'.
-fn slow(block: &Block, rate: f64, tau: f64, state: &RefCell<Charged>) -> Vec<Complex<f64>> {
+/// turns evenly from sample to sample. It begins as if the scale had always moved as it does then, or discharged where it is
+/// not as fast as `moving`, radians per second: had it always stood still, there would be no signal. What was before is the charges'.
+fn slow(
+    block: &Block,
+    (rate, moving): (f64, f64),
+    tau: f64,
+    state: &RefCell<Charged>,
+) -> Vec<Complex<f64>> {
     let mut state = state.borrow_mut();
     let response = |k: usize| Complex::new(1.0, block.speed[k] * tau).inv();
     if block.start != state.next || block.start == 0 {
         let pair = Complex::new(block.cos[0], block.sin[0]);
-        state.last = [pair, pair * response(0)];
+        let share = if block.speed[0].abs() > moving {
+            response(0)
+        } else {
+            Complex::ZERO
+        };
+        state.last = [pair, pair * share];
     }
     let decay = (-1.0 / (rate * tau)).exp();
     let [mut before, mut now] = state.last;
@@ -82,12 +96,12 @@ fn factor(less: f64, told: f64) -> Complex<f64> {
 /// What a high pass takes away, over its corner frequency in hertz. The same filter in both channels is one of the corrected
 /// pair; its radius and its angle, as they are and not in first order: where the corner is a fourth of the signals'
 /// frequency, the angle is turned so far that half of what the radius loses is second order.
-fn high_pass(sample_rate: f64) -> impl Fn(f64, &mut Library) -> Vec<Shape> + 'static {
+fn high_pass(sample_rate: f64, moving: f64) -> impl Fn(f64, &mut Library) -> Vec<Shape> + 'static {
     move |corner, library| {
         let corner: f64 = f64::max(corner, 1e-300);
         let state: RefCell<Charged> = RefCell::default();
         let mut shapes = vec![library.pair(move |block: &Block, c, s| {
-            let lost = slow(block, sample_rate, 1.0 / (TAU * corner), &state);
+            let lost = slow(block, (sample_rate, moving), 1.0 / (TAU * corner), &state);
             for (k, lost) in lost.into_iter().enumerate() {
                 let left = 1.0 - lost;
                 let (radius, angle) = (left.norm_sqr().sqrt(), angle(left));
@@ -138,7 +152,7 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
     let (mut corner, mut least) = (0.03 / duration, 0.0);
     let corners = (context.rate / 30.0 / corner).log(3.0).floor().max(1.0);
     while corner < context.rate / 30.0 {
-        let make = high_pass(context.rate);
+        let make = high_pass(context.rate, AT_REST * context.top_speed());
         let shapes = make(corner, &mut catalogue.library);
         let leaking = shapes[1..].to_vec();
         catalogue.candidates.push(Candidate {
