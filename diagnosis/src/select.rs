@@ -12,7 +12,7 @@ use crate::exact::{self, Start};
 use crate::flicker::{self, records::Records};
 use crate::library::Shape;
 use crate::louder::{beyond_uneven_noise, widen_where_slow, widen_where_uneven};
-use crate::model::{Fit, Residual, System, atoms_of};
+use crate::model::{Fit, Halves, Residual, System, atoms_of};
 use crate::score::{CLEAR, SHOWN, Scored, retain_likely, score, worth};
 use crate::selection::{Accepted, Selection};
 use crate::simpler::simpler;
@@ -287,8 +287,15 @@ fn search(
                     }
                 }
                 let own = found.base.shapes.len();
-                let held_out = halves.held_out(&fit, own, cause.candidate.given());
-                let fails = held_out > halves.held_out(&found.fit, own, 0) * 1.01;
+                // What is slow may be noise that is, and whitening would hide how far off it goes on.
+                let in_noise = system.vibrates() && cause.candidate.domain != Domain::Time;
+                let held_out = if in_noise {
+                    Halves::held_out_in_noise
+                } else {
+                    Halves::held_out
+                };
+                let before = held_out(&halves, &found.fit, own, 0);
+                let fails = held_out(&halves, &fit, own, cause.candidate.given()) > 1.01 * before;
                 let (name, turns) = (cause.candidate.name, cause.candidate.factor.is_some());
                 let mut accepted = found.accepted.clone();
                 accepted.push(*cause);

@@ -1,6 +1,6 @@
-//! Whether a sample that seems lost or put in is a code at which the ADC jumps: where the scale moves slowly, the angle jumps
-//! there by what it moves in a sample, or goes back to the code before. The time base is looked at before anything is fitted;
-//! once the ADC's steps are known, the recording is diagnosed anew with its time base as it is.
+//! Whether a sample that seems lost or put in is a code at which the ADC jumps, or an angle at which the channels bend fast: where
+//! the scale moves slowly, the angle jumps there by what it moves in a sample, or goes back to the code before. The time base is
+//! looked at before anything is fitted; once such an error is known, the recording is diagnosed anew with its time base as it is.
 
 use nonius_recording::Recording;
 
@@ -14,8 +14,8 @@ use crate::repair::{Repaired, repair};
 const REACH: usize = 256;
 /// Sum of squares, in units of the noise, that the slips have to be worth: half of what the surest was found by.
 const WORTH: f64 = 32.0;
-/// Steps against code.
-const ADC: &str = "adc_nonlinearity";
+/// Errors of the code or the angle that may look like slips.
+const STEEP: [&str; 3] = ["adc_nonlinearity", "spatial_harmonic", "saturation"];
 
 /// A diagnosis, and what it was made of.
 pub(crate) struct Looked {
@@ -60,10 +60,10 @@ impl Looked {
         gaps.chain(self.checked.repeated.iter().copied()).collect()
     }
 
-    /// The same without slips that the clock does not show, where the ADC's steps explain them.
+    /// The same without slips that the clock does not show, where steep errors explain them.
     pub(crate) fn without_slips(self, recording: &Recording, weight: Vec<f64>) -> Self {
         let slips = self.slips();
-        if slips.is_empty() || !self.has_steps() {
+        if slips.is_empty() || !self.is_steep() {
             return self;
         }
         let checked = checks::check(recording, weight, TimeBase::AsItIs);
@@ -83,11 +83,12 @@ impl Looked {
         let power: f64 = radial.iter().map(|r| r * r).sum();
         let noise = (power / counts.max(1.0)).sqrt();
         let worth = other.left_near(&slips, noise) - self.left_near(&slips, noise);
-        let as_well = other.has_steps() && !stranger && worth < WORTH;
+        let as_well = other.is_steep() && !stranger && worth < WORTH;
         if as_well { other } else { self }
     }
 
-    fn has_steps(&self) -> bool {
-        self.found.findings.iter().any(|f| f.cause == ADC)
+    fn is_steep(&self) -> bool {
+        let mut causes = self.found.findings.iter().map(|f| f.cause.as_str());
+        causes.any(|cause| STEEP.contains(&cause))
     }
 }

@@ -52,21 +52,46 @@ impl System<'_> {
     }
 }
 
+/// Square of what amounts leave.
+fn square_left(normal: &Normal, x: &[f64]) -> f64 {
+    let x = DVector::from_column_slice(x);
+    normal.power - 2.0 * normal.right.dot(&x) + (&normal.gram * &x).dot(&x)
+}
+
 impl Halves {
     fn mapped(&self, shapes: &[Shape]) -> Vec<Shape> {
         shapes.iter().map(|s| s.among(&self.atoms)).collect()
     }
 
     fn left(&self, half: usize, row: usize, shapes: &[Shape], x: &[f64]) -> f64 {
-        let normal = self.plain[half][row].of(shapes);
-        let x = DVector::from_column_slice(x);
-        normal.power - 2.0 * normal.right.dot(&x) + (&normal.gram * &x).dot(&x)
+        square_left(&self.plain[half][row].of(shapes), x)
     }
 
     /// Rms of radial and tangential residual together, on blocks that were not fitted. One half may hardly see something that
     /// the other does, a dip at one place or how it was when the recording began: amounts from the number `own` on are
     /// expected to be hardly larger than those of the fit, and so many of the last ones are given.
     pub(crate) fn held_out(&self, fit: &Fit, own: usize, given: usize) -> f64 {
+        let left = |half: usize, shapes: &[Shape], x: &[f64]| {
+            (0..2).map(|row| self.left(half, row, shapes, x)).sum()
+        };
+        self.rms_held_out(fit, own, given, left)
+    }
+
+    /// The same in units of the noise, white: where an axis shakes, what is along the circle hardly counts.
+    pub(crate) fn held_out_in_noise(&self, fit: &Fit, own: usize, given: usize) -> f64 {
+        let left =
+            |half: usize, shapes: &[Shape], x: &[f64]| square_left(&self.white[half].of(shapes), x);
+        self.rms_held_out(fit, own, given, left)
+    }
+
+    /// Rms of what is left of either half, by its square there, with amounts that were fitted to the other.
+    fn rms_held_out(
+        &self,
+        fit: &Fit,
+        own: usize,
+        given: usize,
+        left: impl Fn(usize, &[Shape], &[f64]) -> f64,
+    ) -> f64 {
         let x = &fit.solution.x;
         let free = x.len() - given;
         let known = DVector::from_column_slice(&x[free..]);
@@ -82,9 +107,7 @@ impl Halves {
             let half_alone = Normal::new(gram, seen.right.rows(0, free) - taken, 0.0);
             let mut amounts = half_alone.solve().x;
             amounts.extend(&x[free..]);
-            sum += (0..2)
-                .map(|row| self.left(1 - half, row, &shapes, &amounts))
-                .sum::<f64>();
+            sum += left(1 - half, &shapes, amounts.as_slice());
         }
         let count = 2.0 * (self.counts[0] + self.counts[1]);
         (sum.max(0.0) / count.max(1.0)).sqrt()
