@@ -51,7 +51,7 @@ fn none_wrong(seed: u64, score: &Score) {
 /// by how that was when the recording began, and flicker noise that is hardly seen was a drift.
 /// A code at which the ADC jumps was a lost or a repeated sample, and cogging where the axis turns back was a repeated one. A harmonic
 /// that grows with the speed was a jittering clock, a crest of a lamp whose frequency wanders was hum, and what two names left slow was
-/// flicker noise. Every sixth; in the long form all.
+/// flicker noise. Two errors of speed together were a drift, and a high harmonic a lost sample. Every sixth; in the long form all.
 #[test]
 fn wrong_names_do_not_come_back() {
     let seeds = [
@@ -103,6 +103,10 @@ fn wrong_names_do_not_come_back() {
         88_000_639,
         97_000_539,
         98_000_554,
+        166_002_936,
+        165_001_276,
+        165_003_047,
+        169_002_810,
     ];
     for seed in every(6, seeds) {
         none_wrong(seed, &scored(seed));
@@ -119,7 +123,9 @@ fn wrong_names_do_not_come_back() {
 /// times the noise on a slow axis. Noise with the signal, or of the clock, beside flicker noise, and what grows with the speed or the revolution beside it.
 /// Noise with the signal that what the residuals have in common shows, or beside a phase error of the channels. A
 /// sample lost on an axis that shakes. Jitter beside a shaking axis whose noise is higher about its mode, a strong bend beside a harmonic that
-/// its model left, cogging that knots follow in part, and samples put in where the axis turns back. Every sixth; in the long form all.
+/// its model left, cogging that knots follow in part, and samples put in where the axis turns back. A bit's weight
+/// beside a harmonic, a drift beside a line, a skew beside a latency, a harmonic that an axis shakes five times as much as, and what warms up,
+/// which steps follow. Every sixth; in the long form all.
 #[test]
 fn what_was_missed_is_found() {
     let seeds = [
@@ -175,6 +181,12 @@ fn what_was_missed_is_found() {
         98_000_076,
         97_000_756,
         98_000_504,
+        165_000_185,
+        163_001_605,
+        165_003_436,
+        169_001_876,
+        165_004_062,
+        165_003_853,
     ];
     every(6, seeds).for_each(all_named);
 }
