@@ -172,7 +172,7 @@ fn product(system: &System, a: &[Vec<f64>; 2], b: &[Vec<f64>; 2]) -> f64 {
 pub(crate) fn tangents_do(system: &System, fit: &Fit, accepted: &[Accepted], least: f64) -> bool {
     let (mut middle, mut moved, mut moved_known) = (vec![], vec![], vec![]);
     for one in accepted {
-        let known = one.x.iter().any(|x| *x != 0.0);
+        let known = one.is_taken_off();
         let x = &fit.solution.x[one.range()];
         for ((shape, x), x0) in one.candidate.shapes.iter().zip(x).zip(&one.x) {
             // ½ x² less what the tangent at x₀ has of it: (x − x₀) times the middle of both.

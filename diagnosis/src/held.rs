@@ -108,10 +108,10 @@ pub(crate) fn holds(
     if !basis.is_empty() {
         // One of another domain that the basis holds in part, where it is told from this one; of several, with what is there already,
         // anything can be made.
-        let slow = domain == Domain::Time;
-        let apart = slow || system.context.periods_travelled() >= doubt::APART;
+        let in_time = domain == Domain::Time;
+        let apart = in_time || system.context.periods_travelled() >= doubt::APART;
         let akin = |o: &Scored| apart && akin(domain) == Some(o.candidate.domain);
-        if up_to(1, system, &mut named, others, akin) > 0.0 && !slow {
+        if up_to(1, system, &mut named, others, akin) > 0.0 && !in_time {
             enough = TWO_HOLD;
         }
         stand_beside(system, &mut named, others, same);

@@ -321,6 +321,13 @@ impl Fit {
         others.map(|(_, s)| s.clone()).collect()
     }
 
+    /// The shapes with others in the place of a range.
+    pub(crate) fn with_in_place(&self, range: Range<usize>, own: &[Shape]) -> Vec<Shape> {
+        let mut shapes = self.shapes.clone();
+        shapes.splice(range, own.iter().cloned());
+        shapes
+    }
+
     /// How much of each atom is in it.
     pub(crate) fn amounts(&self) -> Vec<(usize, f64)> {
         amounts(&self.shapes, &self.solution.x)

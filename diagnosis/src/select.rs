@@ -23,6 +23,9 @@ use crate::unexplained::{Unnamed, What};
 const MOST: usize = 8;
 /// Share of what could not be named that a cause has to explain beside it to be named.
 const BEYOND_UNKNOWN: f64 = 0.5;
+/// What is there once: the direction turns over in one way only, and of two high passes in a row the faster is nearly all.
+const ONCE: [&str; 2] = [HYSTERESIS, AC_COUPLING];
+
 /// Shapes of one list, then of the other.
 pub(crate) fn both(a: &[Shape], b: &[Shape]) -> Vec<Shape> {
     a.iter().chain(b).cloned().collect()
@@ -97,9 +100,7 @@ fn tune(system: &mut System, catalogue: &Catalogue, found: &mut Selection) {
         // What all samples tell where they are tried, as far as a part of them shows it.
         let gain = gain * (system.every() / system.tried()) as f64;
         exact::tuned(system, &others, one, gain);
-        let mut shapes = found.fit.shapes.clone();
-        shapes.splice(range, one.candidate.shapes.iter().cloned());
-        found.fit = system.fit(shapes);
+        found.fit = system.fit(found.fit.with_in_place(range, &one.candidate.shapes));
     }
     // Functions that were made for the known causes and that no shape uses.
     keep_used(system, catalogue.atoms, found);
@@ -207,11 +208,9 @@ fn search(
         let residual = system.residual(&found.fit);
         let coloured = system.flicker.is_some();
         let shown = causes::shown(context, &residual, coloured, &mut system.samples.library);
-        // The direction turns over in one way only, and of two high passes in a row the faster is nearly all.
-        let names = found.accepted.iter().map(|a| a.candidate.name);
-        let once: Vec<&str> = names.filter(|name| SLOW.contains(name)).collect();
+        let names: Vec<&str> = found.accepted.iter().map(|a| a.candidate.name).collect();
         let open = |c: &Candidate| {
-            let again = once.contains(&c.name);
+            let again = ONCE.contains(&c.name) && names.contains(&c.name);
             !closed.contains(&c.domain) && !refused.contains(&c.name) && !again
         };
         let beside = Beside::all_that_moves(system, &found.fit.shapes);

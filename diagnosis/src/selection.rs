@@ -70,6 +70,11 @@ impl Accepted {
         exact.is_some_and(|e| !e.inner.is_empty())
     }
 
+    /// Whether some of it is off the signals already, about which its shapes are tangents.
+    pub(crate) fn is_taken_off(&self) -> bool {
+        self.x.iter().any(|x| *x != 0.0)
+    }
+
     /// How much of each atom is known.
     pub(crate) fn amounts(&self) -> Vec<(usize, f64)> {
         amounts(&self.candidate.shapes, &self.x)
@@ -251,10 +256,9 @@ impl Selection {
     pub(crate) fn drop_idle(&mut self, system: &System) {
         let price = price(system.context.samples() as f64);
         loop {
-            let on_signals = |one: &Accepted| one.x.iter().all(|x| *x == 0.0);
             let all = self.accepted.iter().enumerate();
             let idle = all
-                .filter(|(_, one)| on_signals(one))
+                .filter(|(_, one)| !one.is_taken_off())
                 .filter_map(|(i, one)| {
                     let (own, freedom) = self.beside_others(one, system);
                     let worth = own.gain - price * freedom as f64;

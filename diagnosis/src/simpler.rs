@@ -6,7 +6,6 @@
 use crate::beside::Beside;
 use crate::cause::{Candidate, Domain};
 use crate::causes::Catalogue;
-use crate::library::Shape;
 use crate::model::{Fit, System};
 use crate::rivals;
 use crate::score::{Scored, score};
@@ -25,7 +24,7 @@ pub(crate) fn simpler(system: &System, catalogue: &Catalogue, found: &mut Select
     for i in 0..found.accepted.len() {
         let wide = &found.accepted[i];
         // What is off the signals already stays what it is.
-        if wide.x.iter().any(|x| *x != 0.0) {
+        if wide.is_taken_off() {
             continue;
         }
         let simple = catalogue.candidates.iter().filter(|c| {
@@ -49,10 +48,10 @@ fn rivals_anew(system: &System, catalogue: &Catalogue, found: &mut Selection) {
         let one = &found.accepted[i];
         let is_there = |rival: &String| names.contains(&rival.as_str());
         let speed = one.candidate.domain == Domain::Speed;
-        if !speed || !one.confounded.iter().any(is_there) || one.x.iter().any(|x| *x != 0.0) {
+        if !speed || !one.confounded.iter().any(is_there) || one.is_taken_off() {
             continue;
         }
-        let without = system.fit(found.shapes_but(&[i]));
+        let without = system.fit(found.fit.others(&one.range()));
         let beside = Beside::new(&system.total, &without.shapes);
         let Some(own) = score(&beside, one.candidate.clone()) else {
             continue;
@@ -68,8 +67,7 @@ fn rivals_anew(system: &System, catalogue: &Catalogue, found: &mut Selection) {
         let best = others.iter().filter(rival);
         match best.max_by(|a, b| a.gain.total_cmp(&b.gain)) {
             Some(best) if best.gain > own.gain => {
-                let mut shapes = found.fit.shapes.clone();
-                shapes.splice(one.range(), best.candidate.shapes.iter().cloned());
+                let shapes = found.fit.with_in_place(one.range(), &best.candidate.shapes);
                 replace(found, i, best.candidate.clone(), system.fit(shapes));
             }
             best => {
@@ -82,17 +80,13 @@ fn rivals_anew(system: &System, catalogue: &Catalogue, found: &mut Selection) {
 
 /// The fit with a simpler cause in the place of a wide one, if that holds it and explains no more.
 fn swapped(system: &System, found: &Selection, wide: &Accepted, simple: &Candidate) -> Option<Fit> {
-    let mut others: Vec<Shape> = found.fit.shapes.clone();
-    others.drain(wide.range());
-    let beside = Beside::new(&system.total, &others);
+    let beside = Beside::new(&system.total, &found.fit.others(&wide.range()));
     // It has to be one that can be.
     score(&beside, simple.clone())?;
     if !beside.holds(&wide.candidate.shapes, &simple.shapes) {
         return None;
     }
-    let mut shapes = found.fit.shapes.clone();
-    shapes.splice(wide.range(), simple.shapes.iter().cloned());
-    let fit = system.fit(shapes);
+    let fit = system.fit(found.fit.with_in_place(wide.range(), &simple.shapes));
     let samples: f64 = system.context.weight.iter().sum();
     let fewer = wide.candidate.shapes.len() - simple.shapes.len();
     let price = price(samples.max(1.0)) * fewer as f64;

@@ -34,7 +34,8 @@ struct Charged {
 /// not as fast as `moving`, radians per second: had it always stood still, there would be no signal. What was before is the charges'.
 fn slow(
     block: &Block,
-    (rate, moving): (f64, f64),
+    rate: f64,
+    moving: f64,
     tau: f64,
     state: &RefCell<Charged>,
 ) -> Vec<Complex<f64>> {
@@ -101,7 +102,7 @@ fn high_pass(sample_rate: f64, moving: f64) -> impl Fn(f64, &mut Library) -> Vec
         let corner: f64 = f64::max(corner, 1e-300);
         let state: RefCell<Charged> = RefCell::default();
         let mut shapes = vec![library.pair(move |block: &Block, c, s| {
-            let lost = slow(block, (sample_rate, moving), 1.0 / (TAU * corner), &state);
+            let lost = slow(block, sample_rate, moving, 1.0 / (TAU * corner), &state);
             for (k, lost) in lost.into_iter().enumerate() {
                 let left = 1.0 - lost;
                 let (radius, angle) = (left.norm_sqr().sqrt(), angle(left));
