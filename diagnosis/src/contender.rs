@@ -10,6 +10,7 @@ use crate::causes::{self, ACCELERATION_GAIN, Catalogue};
 use crate::channels::Channels;
 use crate::context::Context;
 use crate::exact;
+use crate::exponential;
 use crate::held::holds;
 use crate::library::Shape;
 use crate::model::{Fit, Residual, System};
@@ -79,6 +80,8 @@ pub(crate) fn contender(
         scored.retain(|s| !harmonics(s));
     }
     off_the_grid(system, fit, &mut scored);
+    let near = NEARLY * scored.first().map_or(0.0, |best| best.gain);
+    exponential::join(system, fit, &mut scored, near);
     fewer_first(&mut scored);
     let most = scored[0].gain;
     let large = match scored[0].candidate.domain {

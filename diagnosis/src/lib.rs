@@ -24,6 +24,7 @@ mod diagnose;
 mod doubt;
 mod edges;
 mod exact;
+mod exponential;
 mod finding;
 mod first;
 mod flicker;

@@ -13,7 +13,7 @@ use crate::polygon::{CHANNELS, PIECES, Polygon};
 use crate::polynomial;
 use crate::solve::Normal;
 use crate::statistics::price;
-use crate::warming;
+use crate::warming::{self, Warming};
 
 /// Stretches of the recording between which a step may stand.
 const STRETCHES: usize = 200;
@@ -85,7 +85,8 @@ pub(crate) fn instead(seen: Channels, noise: f64, changes: &[Change]) -> Option<
         let curved = DEGREES
             .map(|degree| polynomial::explained(&gram, &right, degree, price, change.numbers()));
         lines = curved.into_iter().fold(lines, f64::max);
-        lines = lines.max(warming::explained(&gram, &right, price, change.numbers()));
+        let warmed = warming::best(&gram, &right).map(|w| w.paid(price, change.numbers()));
+        lines = lines.max(warmed.unwrap_or(f64::MIN));
         let numbers = change.numbers() as f64;
         steps = steps.max(self::steps(
             &stretches,
@@ -94,6 +95,20 @@ pub(crate) fn instead(seen: Channels, noise: f64, changes: &[Change]) -> Option<
     }
     let clearly = if lines > STRONG { CLEARLY } else { 0.0 };
     (lines < steps + clearly).then_some(steps)
+}
+
+/// How what is seen warms up, if it does.
+pub(crate) fn warming(seen: Channels, noise: f64, change: Change) -> Option<Warming> {
+    let changing = Changing {
+        seen,
+        noise,
+        change,
+    };
+    if seen.samples() < 2 || noise <= 0.0 {
+        return None;
+    }
+    let (gram, right) = changing.products(PIECES + 1);
+    warming::best(&gram, &right)
 }
 
 impl Changing<'_> {

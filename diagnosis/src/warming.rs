@@ -1,5 +1,5 @@
 //! What warms up, or settles: from some moment on it goes to its end as an exponential does, fast at first. Lines need many knots
-//! for that and polynomials of a few numbers do not follow it, where this has four numbers.
+//! for that and polynomials of a few numbers do not follow it, where this has four numbers. Here it is looked for on a grid.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -12,23 +12,49 @@ const SHORTEST: f64 = 0.03;
 const RATIO: f64 = 1.35;
 const CONSTANTS: usize = 12;
 
-/// Log-likelihood that the best such course of each channel explains, each number at its price but for `free` of them; the moment and the
-/// time constant are numbers, too. From the sums that [`crate::polygon::Polygon::new`] takes.
-pub(crate) fn explained(gram: &DMatrix<f64>, right: &DVector<f64>, price: f64, free: usize) -> f64 {
-    /// The moment and the time constant.
-    const PLACES: usize = 2;
-    let mut most = f64::MIN;
+/// Courses that are looked at.
+pub(crate) const COURSES: f64 = (MOMENTS * CONSTANTS) as f64;
+
+/// A course that both channels follow.
+#[derive(Clone, Copy)]
+pub(crate) struct Warming {
+    /// When it begins, and its time constant, in recordings.
+    pub(crate) start: f64,
+    pub(crate) tau: f64,
+    /// Log-likelihood that it explains.
+    gain: f64,
+    /// Numbers of it, but for start and time constant.
+    rank: usize,
+}
+
+impl Warming {
+    /// Log-likelihood that it explains, each number at its price but for `free` of them; start and time constant are numbers, too.
+    pub(crate) fn paid(&self, price: f64, free: usize) -> f64 {
+        /// Start and time constant.
+        const PLACES: usize = 2;
+        self.gain - price * ((self.rank + PLACES) as f64 - free as f64)
+    }
+}
+
+/// The course that explains most; from the sums that [`crate::polygon::Polygon::new`] takes.
+pub(crate) fn best(gram: &DMatrix<f64>, right: &DVector<f64>) -> Option<Warming> {
+    let mut best: Option<Warming> = None;
     for moment in 0..MOMENTS {
-        // From −1 to 1.
-        let begins = 2.0 * moment as f64 / MOMENTS as f64 - 1.0;
+        let start = moment as f64 / MOMENTS as f64;
         for constant in 0..CONSTANTS {
-            let tau = 2.0 * SHORTEST * RATIO.powi(constant as i32);
-            let functions: [&dyn Fn(f64) -> f64; 2] =
-                [&|_| 1.0, &|x: f64| (-(x - begins).max(0.0) / tau).exp()];
+            let tau = SHORTEST * RATIO.powi(constant as i32);
+            let left = |x: f64| (-(0.5 * (x + 1.0) - start).max(0.0) / tau).exp();
+            let functions: [&dyn Fn(f64) -> f64; 2] = [&|_| 1.0, &left];
             let found = sampled(gram, right, &functions);
-            let numbers = (found.rank + PLACES) as f64 - free as f64;
-            most = most.max(found.gain() - price * numbers);
+            if best.is_none_or(|b| found.gain() > b.gain) {
+                best = Some(Warming {
+                    start,
+                    tau,
+                    gain: found.gain(),
+                    rank: found.rank,
+                });
+            }
         }
     }
-    most
+    best
 }

@@ -85,8 +85,8 @@ pub(crate) fn of_one(cause: &Cause, which: usize, y: f64, at: &Moment) -> f64 {
             offset_sin,
         } => of(offset_cos, offset_sin) * at.side,
         Cause::Interference(ref line) => line.at(which, at.time),
-        Cause::OffsetDrift(ref drift) => drift.at(which, at.time / at.whole),
-        Cause::GainDrift(ref drift) => y * drift.at(which, at.time / at.whole),
+        Cause::OffsetDrift(ref drift) => drift.at(which, at.time, at.whole),
+        Cause::GainDrift(ref drift) => y * drift.at(which, at.time, at.whole),
         _ => 0.0,
     }
 }

@@ -113,6 +113,21 @@ fn drifts_bend_between_their_ends() {
 }
 
 #[test]
+fn what_warms_up_is_an_exponential() {
+    let last = 1999.0 / RATE;
+    let gone = |start: f64, tau: f64, t: f64| 1.0 - (-(t - start).max(0.0) / tau).exp();
+    let warmed = |start: f64, tau: f64, t: f64| gone(start, tau, t) / gone(start, tau, last) - 0.5;
+    obeys(
+        "name = \"offset_drift\"\nchange_cos = 0.01\nchange_sin = -0.006\ntau_s = 0.03\nstart_s = 0.05",
+        |_, t| [0.01, -0.006].map(|change| change * warmed(0.05, 0.03, t)),
+    );
+    obeys(
+        "name = \"gain_drift\"\nchange_cos = 0.01\nchange_sin = 0.0\ntau_s = 0.1",
+        |alpha, t| [alpha.cos() * 0.01 * warmed(0.0, 0.1, t), 0.0],
+    );
+}
+
+#[test]
 fn saturation_of_single_rails() {
     let over = |y: f64| (y - 0.8).max(0.0);
     let pair = |alpha: f64| [alpha.cos(), (alpha - BETA).sin()];

@@ -185,6 +185,11 @@ fn causes_with_time() {
     );
     round_trip("name = \"offset_drift\"\nchange_cos = 0.01\nchange_sin = -0.006\n");
     round_trip("name = \"gain_drift\"\nchange_cos = 0.01\nchange_sin = -0.006\n");
+    for name in ["offset_drift", "gain_drift"] {
+        let warms_up = "change_cos = 0.01\nchange_sin = -0.006\ntau_s = 0.3\n";
+        round_trip(&format!("name = \"{name}\"\n{warms_up}"));
+        round_trip(&format!("name = \"{name}\"\n{warms_up}start_s = 0.5\n"));
+    }
 }
 
 #[test]
@@ -238,6 +243,16 @@ fn bad_files_are_refused_with_their_place() {
         &format!("{PLAIN}[[cause]]\nname = \"channel_skew\"\ndelay = 1e-6\n"),
         &["delay", "did you mean `delay_s`?"],
     );
+    let drift = |keys: &str| {
+        let changes = "change_cos = 0.01\nchange_sin = 0.0";
+        format!("{PLAIN}[[cause]]\nname = \"gain_drift\"\n{changes}\n{keys}\n")
+    };
+    refused(&drift("tau_s = -1.0"), &["cause.tau_s = -1", "negative"]);
+    refused(
+        &drift("tau_s = 1.0\ncurve_sin_3 = 0.1"),
+        &["cause.curve_sin_3", "exponential"],
+    );
+    refused(&drift("start_s = 1.0"), &["cause.start_s", "tau_s"]);
     refused(
         &format!("{PLAIN}[[cause]]\nname = \"stuck_bits\"\nbit = 3\n"),
         &["stuck_bits", "did you mean `stuck_bit`?"],

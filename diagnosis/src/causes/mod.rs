@@ -11,6 +11,7 @@ mod mains;
 mod mirror;
 mod place;
 mod revolution;
+mod settling;
 mod speed;
 mod steady;
 mod time;
@@ -27,6 +28,7 @@ use crate::trig::{Trig, rotated};
 
 pub(crate) use line::{crawls, has_harmonics, wave as line_wave};
 pub(crate) use place::{highest_order, order_waves, strongest_order, without_cogging};
+pub(crate) use settling::settling;
 pub(crate) use speed::{varies as speed_varies, varies_much as speed_varies_much};
 pub(crate) use steady::is_one_of_many;
 
