@@ -9,8 +9,8 @@ use crate::cause::{Candidate, Domain, Sign};
 use crate::causes::{self, ACCELERATION_GAIN, Catalogue};
 use crate::channels::Channels;
 use crate::context::Context;
+use crate::courses;
 use crate::exact;
-use crate::exponential;
 use crate::held::holds;
 use crate::library::Shape;
 use crate::model::{Fit, Residual, System};
@@ -81,7 +81,7 @@ pub(crate) fn contender(
     }
     off_the_grid(system, fit, &mut scored);
     let near = NEARLY * scored.first().map_or(0.0, |best| best.gain);
-    exponential::join(system, fit, &mut scored, near);
+    courses::join(system, fit, &mut scored, near);
     fewer_first(&mut scored);
     let most = scored[0].gain;
     let large = match scored[0].candidate.domain {

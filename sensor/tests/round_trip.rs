@@ -183,6 +183,9 @@ fn causes_with_time() {
     round_trip(
         "name = \"offset_drift\"\nchange_cos = 0.01\nchange_sin = -0.006\ncurve_cos_2 = 0.004\ncurve_sin_3 = 0.003\n",
     );
+    round_trip(
+        "name = \"offset_drift\"\nchange_cos = 0.01\nchange_sin = -0.006\ncurve_cos_9 = 0.004\ncurve_sin_11 = 0.003\n",
+    );
     round_trip("name = \"offset_drift\"\nchange_cos = 0.01\nchange_sin = -0.006\n");
     round_trip("name = \"gain_drift\"\nchange_cos = 0.01\nchange_sin = -0.006\n");
     for name in ["offset_drift", "gain_drift"] {
@@ -247,12 +250,16 @@ fn bad_files_are_refused_with_their_place() {
         let changes = "change_cos = 0.01\nchange_sin = 0.0";
         format!("{PLAIN}[[cause]]\nname = \"gain_drift\"\n{changes}\n{keys}\n")
     };
-    refused(&drift("tau_s = -1.0"), &["cause.tau_s = -1", "negative"]);
+    refused(
+        &drift("curve_cos_13 = 0.1"),
+        &["curve_cos_13", "did you mean `curve_cos_"],
+    );
+    refused(&drift("tau_s = -1.0"), &["tau_s = -1", "negative"]);
     refused(
         &drift("tau_s = 1.0\ncurve_sin_3 = 0.1"),
-        &["cause.curve_sin_3", "exponential"],
+        &["curves", "exponential"],
     );
-    refused(&drift("start_s = 1.0"), &["cause.start_s", "tau_s"]);
+    refused(&drift("start_s = 1.0"), &["start_s", "tau_s"]);
     refused(
         &format!("{PLAIN}[[cause]]\nname = \"stuck_bits\"\nbit = 3\n"),
         &["stuck_bits", "did you mean `stuck_bit`?"],

@@ -2,10 +2,10 @@
 
 use std::rc::Rc;
 
-use crate::block::Block;
+use super::time::changes;
 use crate::cause::{Candidate, Domain, Estimate, Exact, Make};
 use crate::finding::{Chip, Parameter};
-use crate::library::{Library, Shape, Use};
+use crate::library::{Library, Shape};
 use crate::warming::{COURSES, Warming};
 
 /// How a course differs from others that are tried near it: its time constant by so much of itself, its start by so much of the recording.
@@ -13,23 +13,9 @@ const STEPS: [f64; 2] = [0.03, 0.01];
 
 /// The change of either channel by one amplitude from one end of the recording, which ends `last` seconds after it began, to the other.
 fn shapes(gain: bool, last: f64, tau: f64, start: f64, library: &mut Library) -> Vec<Shape> {
-    let pairs = move |block: &Block, out: &mut [f64]| {
-        let n = block.len();
-        let gone = |t: f64| -(-(t - start).max(0.0) / tau).exp_m1();
-        let all = gone(last).max(f64::MIN_POSITIVE);
-        let (c, s) = out.split_at_mut(2 * n);
-        for (which, (c, s)) in c.chunks_mut(n).zip(s.chunks_mut(n)).enumerate() {
-            let course = block.time.iter().map(|t| gone(*t) / all - 0.5);
-            let change: Vec<f64> = if gain {
-                course.zip(block.u[which]).map(|(x, u)| x * u).collect()
-            } else {
-                course.collect()
-            };
-            block.channel(which, &change, c, s);
-        }
-    };
-    let place = library.add(2, Use::Pairs, Rc::new(pairs));
-    [0, 1].map(|which| place.both(which)).into()
+    let gone = move |t: f64| -(-(t - start).max(0.0) / tau).exp_m1();
+    let all = gone(last).max(f64::MIN_POSITIVE);
+    changes(gain, 1, move |_, t| gone(t) / all - 0.5, library)
 }
 
 /// Time constant and start, seconds, with their errors.
@@ -45,12 +31,12 @@ fn places(e: &Estimate) -> Vec<Parameter> {
 
 /// Offsets, or gains, that warm up from the beginning of the recording on, which ends `last` seconds later; and from some moment on.
 pub(crate) fn settling(
-    name: &'static str,
     gain: bool,
     last: f64,
     like: Warming,
     library: &mut Library,
 ) -> Vec<Candidate> {
+    let name = if gain { "gain_drift" } else { "offset_drift" };
     let inner = [(like.tau * last).ln(), like.start * last];
     let steps = [STEPS[0], STEPS[1] * last];
     let kinds = if like.start > 0.0 { 1..=2 } else { 1..=1 };

@@ -3,10 +3,11 @@
 use std::rc::Rc;
 
 use super::{Catalogue, Modulated, modulated};
-use crate::cause::{Candidate, Domain};
+use crate::block::Block;
+use crate::cause::{Candidate, Domain, Exact, Make};
 use crate::context::Context;
 use crate::finding::{Chip, Parameter};
-use crate::library::Shape;
+use crate::library::{Library, Shape, Use};
 use crate::polynomial::{DEGREE, legendre};
 use crate::trig::{Trig, channel, normalised};
 
@@ -62,48 +63,101 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
                     (0..per).map(move |by| modulations.shape(by, &parts))
                 })
                 .collect();
-            let name = if gain { "gain_drift" } else { "offset_drift" };
             catalogue.candidates.push(Candidate {
                 trials,
-                chip: Chip::Corrects,
-                parameters: Rc::new(move |e| {
-                    // From one end of the recording to the other: twice the odd polynomials.
-                    let total = |from: usize| {
-                        let odd = (0..per).step_by(2).map(|i| from + i);
-                        let value: f64 = odd.clone().map(|i| 2.0 * e.x[i]).sum();
-                        let error = odd.map(|i| (2.0 * e.error[i]).powi(2)).sum::<f64>().sqrt();
-                        (value, error)
-                    };
-                    let ((c, dc), (s, ds)) = (total(0), total(per));
-                    let mut all = vec![
-                        Parameter::measured("change_cos", c, dc, "amplitude"),
-                        Parameter::measured("change_sin", s, ds, "amplitude"),
-                    ];
-                    for (i, (x, error)) in e.x.iter().zip(e.error).enumerate() {
-                        let (channel, degree) = (["cos", "sin"][i / per], i % per + 1);
-                        if degree > 1 {
-                            let name = format!("curve_{channel}_{degree}");
-                            all.push(Parameter::measured(&name, *x, *error, "amplitude"));
-                        }
-                    }
-                    all
-                }),
-                evidence: Rc::new(move |p| {
-                    let what = if gain { "gains" } else { "offsets" };
-                    let of = if gain { "" } else { " of the amplitude" };
-                    format!(
-                        "the {what} drift with {driver}: {}, they change by {} (cos) and {} (sin){of}",
-                        if driver == "time" {
-                            "from the start of the recording to its end"
-                        } else {
-                            "from one standard deviation below its mean to one above"
-                        },
-                        p[0].brief(),
-                        p[1].brief()
-                    )
-                }),
-                ..Candidate::new(name, Domain::Time, all)
+                ..drift(gain, driver, per, all)
             });
         }
     }
+}
+
+/// A drift of the gains or else of the offsets with time or temperature, by shapes of which either channel has so many, one for each
+/// Legendre polynomial.
+fn drift(gain: bool, driver: &'static str, per: usize, all: Vec<Shape>) -> Candidate {
+    let name = if gain { "gain_drift" } else { "offset_drift" };
+    Candidate {
+        chip: Chip::Corrects,
+        parameters: Rc::new(move |e| {
+            // From one end of the recording to the other: twice the odd polynomials.
+            let total = |from: usize| {
+                let odd = (0..per).step_by(2).map(|i| from + i);
+                let value: f64 = odd.clone().map(|i| 2.0 * e.x[i]).sum();
+                let error = odd.map(|i| (2.0 * e.error[i]).powi(2)).sum::<f64>().sqrt();
+                (value, error)
+            };
+            let ((c, dc), (s, ds)) = (total(0), total(per));
+            let mut all = vec![
+                Parameter::measured("change_cos", c, dc, "amplitude"),
+                Parameter::measured("change_sin", s, ds, "amplitude"),
+            ];
+            for (i, (x, error)) in e.x.iter().zip(e.error).enumerate() {
+                let (channel, degree) = (["cos", "sin"][i / per], i % per + 1);
+                if degree > 1 {
+                    let name = format!("curve_{channel}_{degree}");
+                    all.push(Parameter::measured(&name, *x, *error, "amplitude"));
+                }
+            }
+            all
+        }),
+        evidence: Rc::new(move |p| {
+            let what = if gain { "gains" } else { "offsets" };
+            let of = if gain { "" } else { " of the amplitude" };
+            format!(
+                "the {what} drift with {driver}: {}, they change by {} (cos) and {} (sin){of}",
+                if driver == "time" {
+                    "from the start of the recording to its end"
+                } else {
+                    "from one standard deviation below its mean to one above"
+                },
+                p[0].brief(),
+                p[1].brief()
+            )
+        }),
+        ..Candidate::new(name, Domain::Time, all)
+    }
+}
+
+/// The same along polynomials of the time up to a degree, of a recording that ends `last` seconds after it began; with functions of
+/// its own.
+pub(crate) fn bent(gain: bool, degree: usize, last: f64, library: &mut Library) -> Candidate {
+    let make: Make = Rc::new(move |_, library| {
+        let course = move |i: usize, t: f64| legendre(i + 1, 2.0 * t / last - 1.0);
+        changes(gain, degree, course, library)
+    });
+    let own = make(&[], library);
+    Candidate {
+        exact: Some(Exact {
+            make,
+            inner: vec![],
+            steps: vec![],
+            follows: false,
+        }),
+        ..drift(gain, "time", degree, own)
+    }
+}
+
+/// Changes of the gains, or else of the offsets, of cos and then of sin along so many courses of the time.
+pub(crate) fn changes(
+    gain: bool,
+    count: usize,
+    course: impl Fn(usize, f64) -> f64 + 'static,
+    library: &mut Library,
+) -> Vec<Shape> {
+    let pairs = move |block: &Block, out: &mut [f64]| {
+        let n = block.len();
+        let (c, s) = out.split_at_mut(2 * count * n);
+        let each = c.chunks_mut(n).zip(s.chunks_mut(n));
+        for (i, (c, s)) in each.enumerate() {
+            let (which, by) = (i / count, i % count);
+            let courses = block.time.iter().map(|t| course(by, *t));
+            let change: Vec<f64> = if gain {
+                courses.zip(block.u[which]).map(|(x, u)| x * u).collect()
+            } else {
+                courses.collect()
+            };
+            block.channel(which, &change, c, s);
+        }
+    };
+    let place = library.add(2 * count, Use::Pairs, Rc::new(pairs));
+    (0..2 * count).map(|i| place.both(i)).collect()
 }

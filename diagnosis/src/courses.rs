@@ -1,0 +1,128 @@
+//! A drift that a polynomial of the catalogue follows may be an exponential, which needs fewer numbers and goes where polynomials do
+//! not, or sway more than that polynomial can. Such courses have functions of their own, which cost time: they are looked for where a
+//! polynomial explains about as much as anything else does.
+
+use crate::beside::Beside;
+use crate::cause::{Candidate, Domain};
+use crate::causes::{bent_drift, settling};
+use crate::channels::Channels;
+use crate::contender::GAIN_DRIFT;
+use crate::exact;
+use crate::library::Shape;
+use crate::model::{Fit, System, amounts};
+use crate::polynomial::DEGREE;
+use crate::score::{Scored, score};
+use crate::select::both;
+use crate::selection::Accepted;
+use crate::statistics::price;
+use crate::steps::{self, Change};
+
+/// Numbers from which on a polynomial bends, and may stand in for something else.
+const BENDS: usize = 6;
+/// Degrees of the polynomials that follow where the catalogue's highest does not.
+const HIGHER: [usize; 2] = [9, 12];
+
+/// A polynomial of the catalogue that explains much.
+struct Polynomial {
+    name: &'static str,
+    shapes: Vec<Shape>,
+    /// Log-likelihood that it explains, its numbers paid for.
+    paid: f64,
+}
+
+/// Adds the best other course in each place of polynomials of at least that gain in log-likelihood, where it explains more than they
+/// do, the numbers of either paid for; the list stays in order.
+pub(crate) fn join(system: &mut System, fit: &Fit, scored: &mut Vec<Scored>, least: f64) {
+    let price = price(system.context.samples() as f64);
+    let mut best: Vec<Polynomial> = vec![];
+    for own in scored.iter() {
+        let time = own.candidate.domain == Domain::Time && own.candidate.exact.is_none();
+        if !time || own.candidate.shapes.len() < BENDS || own.gain < least {
+            continue;
+        }
+        let own = Polynomial {
+            name: own.candidate.name,
+            shapes: own.candidate.shapes.clone(),
+            paid: own.paid(price),
+        };
+        // Of offsets and of gains, the one that explains most for its numbers.
+        match best.iter_mut().find(|b| b.name == own.name) {
+            Some(other) if own.paid > other.paid => *other = own,
+            Some(_) => {}
+            None => best.push(own),
+        }
+    }
+    for like in best {
+        let mut found = exponentials(system, fit, &like);
+        if like.shapes.len() == 2 * DEGREE {
+            found.extend(higher(system, fit, &like, price));
+        }
+        let best = found.into_iter().max_by(|a, b| a.0.total_cmp(&b.0));
+        scored.extend(best.filter(|b| b.0 > like.paid).map(|b| b.1));
+    }
+    scored.sort_by(|a, b| a.log_p.total_cmp(&b.log_p));
+}
+
+/// What a candidate explains beside a fit, the numbers of its place paid for, too.
+fn paid(system: &System, fit: &Fit, candidate: Candidate) -> Option<(f64, Scored)> {
+    let price = price(system.context.samples() as f64);
+    let places = candidate.exact.as_ref().map_or(0, |e| e.inner.len());
+    let beside = Beside::new(&system.total, &fit.shapes);
+    let one = score(&beside, candidate)?;
+    Some((one.paid(price) - price * places as f64, one))
+}
+
+/// Polynomials of more numbers in the place of one, as few as are worth them.
+fn higher(system: &mut System, fit: &Fit, like: &Polynomial, price: f64) -> Vec<(f64, Scored)> {
+    let mut found = vec![];
+    let mut before = like.paid;
+    let last = system.context.time.last().copied().unwrap_or_default();
+    for degree in HIGHER {
+        let library = &mut system.samples.library;
+        let candidate = bent_drift(like.name == GAIN_DRIFT, degree, last, library);
+        system.extend();
+        let Some(one) = paid(system, fit, candidate).filter(|one| one.0 > before + price) else {
+            break;
+        };
+        before = one.0;
+        found.push(one);
+    }
+    found
+}
+
+/// Exponentials in the place of a polynomial.
+fn exponentials(system: &mut System, fit: &Fit, like: &Polynomial) -> Vec<(f64, Scored)> {
+    let Some(last) = system.context.time.last().copied() else {
+        return vec![];
+    };
+    let (gain, change) = if like.name == GAIN_DRIFT {
+        (true, Change::Gains)
+    } else {
+        (false, Change::Offsets)
+    };
+    // The five parameters as they are beside the drift, and what is left without it.
+    let named = both(&fit.shapes, &like.shapes);
+    let mut amounts = system.fit(named.clone()).solution.x;
+    amounts[fit.shapes.len()..].fill(0.0);
+    let left = system.left(&self::amounts(&named, &amounts));
+    let seen = Channels::of(system, &left);
+    let Some(warming) = steps::warming(seen, system.noise(), change) else {
+        return vec![];
+    };
+    let candidates = settling(gain, last, warming, &mut system.samples.library);
+    system.extend();
+    let mut found = vec![];
+    for candidate in candidates {
+        let beside = Beside::new(&system.total, &fit.shapes);
+        let gain = beside.gain(&candidate.shapes).0;
+        let mut cause = Accepted::new(candidate);
+        exact::tuned(system, &fit.shapes, &mut cause, gain);
+        system.extend();
+        let inner = cause.candidate.exact.as_ref().map_or(&[][..], |e| &e.inner);
+        // One that began before the recording did begins with it.
+        if inner.get(1).is_none_or(|start| (0.0..last).contains(start)) {
+            found.extend(paid(system, fit, cause.candidate));
+        }
+    }
+    found
+}
