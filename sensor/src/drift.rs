@@ -5,15 +5,15 @@ use std::collections::BTreeMap;
 use serde::Deserialize;
 
 /// Highest degree of the polynomials that a drift may be made of.
-const DEGREE: usize = 12;
+const DEGREE: usize = 6;
 /// The channels, as keys end with them.
 const CHANNELS: [&str; 2] = ["cos", "sin"];
 
 /// A change of each channel from one end of the recording to the other: evenly, and along Legendre polynomials of the time
-/// of degree 2 … 12 that bend the line between the same ends. With a time constant, seconds, it is an exponential in the place
+/// of degree 2 … 6 that bend the line between the same ends. With a time constant, seconds, it is an exponential in the place
 /// of both, which begins at `start_s`: 1 − e^(−(t − start)/τ), half of it on either side of zero. Fractions of the channel's amplitude.
 ///
-/// The keys of `sensor.toml` are `change_cos` and `change_sin`, and, each zero where it is not given, `curve_cos_2` … `curve_sin_12`,
+/// The keys of `sensor.toml` are `change_cos` and `change_sin`, and, each zero where it is not given, `curve_cos_2` … `curve_sin_6`,
 /// `tau_s` and `start_s`.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(try_from = "BTreeMap<String, f64>")]

@@ -183,9 +183,6 @@ fn causes_with_time() {
     round_trip(
         "name = \"offset_drift\"\nchange_cos = 0.01\nchange_sin = -0.006\ncurve_cos_2 = 0.004\ncurve_sin_3 = 0.003\n",
     );
-    round_trip(
-        "name = \"offset_drift\"\nchange_cos = 0.01\nchange_sin = -0.006\ncurve_cos_9 = 0.004\ncurve_sin_11 = 0.003\n",
-    );
     round_trip("name = \"offset_drift\"\nchange_cos = 0.01\nchange_sin = -0.006\n");
     round_trip("name = \"gain_drift\"\nchange_cos = 0.01\nchange_sin = -0.006\n");
     for name in ["offset_drift", "gain_drift"] {
@@ -251,8 +248,8 @@ fn bad_files_are_refused_with_their_place() {
         format!("{PLAIN}[[cause]]\nname = \"gain_drift\"\n{changes}\n{keys}\n")
     };
     refused(
-        &drift("curve_cos_13 = 0.1"),
-        &["curve_cos_13", "did you mean `curve_cos_"],
+        &drift("curve_cos_7 = 0.1"),
+        &["curve_cos_7", "did you mean `curve_cos_"],
     );
     refused(&drift("tau_s = -1.0"), &["tau_s = -1", "negative"]);
     refused(

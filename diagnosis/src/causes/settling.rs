@@ -2,10 +2,10 @@
 
 use std::rc::Rc;
 
-use super::time::changes;
+use crate::block::Block;
 use crate::cause::{Candidate, Domain, Estimate, Exact, Make};
 use crate::finding::{Chip, Parameter};
-use crate::library::{Library, Shape};
+use crate::library::{Library, Shape, Use};
 use crate::warming::{COURSES, Warming};
 
 /// How a course differs from others that are tried near it: its time constant by so much of itself, its start by so much of the recording.
@@ -13,9 +13,23 @@ const STEPS: [f64; 2] = [0.03, 0.01];
 
 /// The change of either channel by one amplitude from one end of the recording, which ends `last` seconds after it began, to the other.
 fn shapes(gain: bool, last: f64, tau: f64, start: f64, library: &mut Library) -> Vec<Shape> {
-    let gone = move |t: f64| -(-(t - start).max(0.0) / tau).exp_m1();
-    let all = gone(last).max(f64::MIN_POSITIVE);
-    changes(gain, 1, move |_, t| gone(t) / all - 0.5, library)
+    let pairs = move |block: &Block, out: &mut [f64]| {
+        let n = block.len();
+        let gone = |t: f64| -(-(t - start).max(0.0) / tau).exp_m1();
+        let all = gone(last).max(f64::MIN_POSITIVE);
+        let course: Vec<f64> = block.time.iter().map(|t| gone(*t) / all - 0.5).collect();
+        let (c, s) = out.split_at_mut(2 * n);
+        for (which, (c, s)) in c.chunks_mut(n).zip(s.chunks_mut(n)).enumerate() {
+            if gain {
+                let changes = course.iter().zip(block.u[which]).map(|(x, u)| x * u);
+                block.channel(which, &changes.collect::<Vec<f64>>(), c, s);
+            } else {
+                block.channel(which, &course, c, s);
+            }
+        }
+    };
+    let place = library.add(2, Use::Pairs, Rc::new(pairs));
+    [0, 1].map(|which| place.both(which)).into()
 }
 
 /// Time constant and start, seconds, with their errors.

@@ -3,11 +3,10 @@
 use std::rc::Rc;
 
 use super::{Catalogue, Modulated, modulated};
-use crate::block::Block;
-use crate::cause::{Candidate, Domain, Exact, Make};
+use crate::cause::{Candidate, Domain};
 use crate::context::Context;
 use crate::finding::{Chip, Parameter};
-use crate::library::{Library, Shape, Use};
+use crate::library::Shape;
 use crate::polynomial::{DEGREE, legendre};
 use crate::trig::{Trig, channel, normalised};
 
@@ -34,10 +33,9 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
         orders.extend((1..=2).flat_map(|order| time.generic(by, order)));
         catalogue.generic(Domain::Time, orders);
     }
-    // Over a period or two, time and angle are one, and a polynomial of time is any shape of the angle.
     let mut drivers: Vec<(&'static str, Modulated, usize)> = [1, 3, DEGREE]
         .into_iter()
-        .filter(|degree| context.periods_travelled() >= 3.0 * *degree as f64)
+        .filter(|degree| tells(context, *degree))
         .map(|degree| ("time", time, degree))
         .collect();
     if drivers.is_empty() {
@@ -69,6 +67,12 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
             });
         }
     }
+}
+
+/// Whether a recording tells a polynomial of the time of that degree from shapes of the angle: over a period or two, time and angle
+/// are one.
+fn tells(context: &Context, degree: usize) -> bool {
+    context.periods_travelled() >= 3.0 * degree as f64
 }
 
 /// A drift of the gains or else of the offsets with time or temperature, by shapes of which either channel has so many, one for each
@@ -115,49 +119,4 @@ fn drift(gain: bool, driver: &'static str, per: usize, all: Vec<Shape>) -> Candi
         }),
         ..Candidate::new(name, Domain::Time, all)
     }
-}
-
-/// The same along polynomials of the time up to a degree, of a recording that ends `last` seconds after it began; with functions of
-/// its own.
-pub(crate) fn bent(gain: bool, degree: usize, last: f64, library: &mut Library) -> Candidate {
-    let make: Make = Rc::new(move |_, library| {
-        let course = move |i: usize, t: f64| legendre(i + 1, 2.0 * t / last - 1.0);
-        changes(gain, degree, course, library)
-    });
-    let own = make(&[], library);
-    Candidate {
-        exact: Some(Exact {
-            make,
-            inner: vec![],
-            steps: vec![],
-            follows: false,
-        }),
-        ..drift(gain, "time", degree, own)
-    }
-}
-
-/// Changes of the gains, or else of the offsets, of cos and then of sin along so many courses of the time.
-pub(crate) fn changes(
-    gain: bool,
-    count: usize,
-    course: impl Fn(usize, f64) -> f64 + 'static,
-    library: &mut Library,
-) -> Vec<Shape> {
-    let pairs = move |block: &Block, out: &mut [f64]| {
-        let n = block.len();
-        let (c, s) = out.split_at_mut(2 * count * n);
-        let each = c.chunks_mut(n).zip(s.chunks_mut(n));
-        for (i, (c, s)) in each.enumerate() {
-            let (which, by) = (i / count, i % count);
-            let courses = block.time.iter().map(|t| course(by, *t));
-            let change: Vec<f64> = if gain {
-                courses.zip(block.u[which]).map(|(x, u)| x * u).collect()
-            } else {
-                courses.collect()
-            };
-            block.channel(which, &change, c, s);
-        }
-    };
-    let place = library.add(2 * count, Use::Pairs, Rc::new(pairs));
-    (0..2 * count).map(|i| place.both(i)).collect()
 }
