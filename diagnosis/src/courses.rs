@@ -5,12 +5,13 @@
 
 use crate::beside::Beside;
 use crate::cause::{Candidate, Domain};
-use crate::causes::settling;
+use crate::causes::{settling, tells};
 use crate::channels::Channels;
 use crate::contender::GAIN_DRIFT;
 use crate::exact;
 use crate::library::Shape;
 use crate::model::{Fit, System, amounts};
+use crate::polynomial::DEGREE;
 use crate::score::{Scored, score};
 use crate::select::both;
 use crate::selection::Accepted;
@@ -30,6 +31,10 @@ struct Polynomial {
 /// Adds the best exponential in each place of polynomials of at least that gain in log-likelihood, where it explains more than they
 /// do, the numbers of either paid for; the list stays in order.
 pub(crate) fn join(system: &mut System, fit: &Fit, scored: &mut Vec<Scored>, least: f64) {
+    // It is as bent as the highest polynomial.
+    if !tells(system.context, DEGREE) {
+        return;
+    }
     let price = price(system.context.samples() as f64);
     let mut best: Vec<Polynomial> = vec![];
     for own in scored.iter() {

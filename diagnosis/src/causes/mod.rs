@@ -31,6 +31,7 @@ pub(crate) use place::{highest_order, order_waves, strongest_order, without_cogg
 pub(crate) use settling::settling;
 pub(crate) use speed::{varies as speed_varies, varies_much as speed_varies_much};
 pub(crate) use steady::is_one_of_many;
+pub(crate) use time::tells;
 
 /// Highest order of the scale period.
 pub(crate) const ORDERS: usize = 8;

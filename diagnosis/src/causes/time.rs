@@ -71,7 +71,7 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
 
 /// Whether a recording tells a polynomial of the time of that degree from shapes of the angle: over a period or two, time and angle
 /// are one.
-fn tells(context: &Context, degree: usize) -> bool {
+pub(crate) fn tells(context: &Context, degree: usize) -> bool {
     context.periods_travelled() >= 3.0 * degree as f64
 }
 
