@@ -58,6 +58,11 @@ fn round_trip_beside(cause: &str, reference: bool) {
         let expected: toml::Table = cause.parse().expect("TOML");
         let name = expected["name"].as_str().expect("a name");
         assert_eq!(names, [name], "{}", found.unexplained.signature);
+        // A drift could be a polynomial, which has neither.
+        for key in ["tau_s", "start_s"] {
+            let known = found.findings[0].parameter(key).is_some();
+            assert_eq!(known, expected.contains_key(key), "{name}: {key}");
+        }
         for p in &found.findings[0].parameters {
             let truth = expected
                 .get(&p.name)

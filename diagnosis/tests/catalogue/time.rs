@@ -108,6 +108,25 @@ fn warming_up_is_a_drift() {
     }
 }
 
+/// A lamp that is switched on while it is recorded: when, and how fast it warms up.
+#[test]
+fn what_warms_up_from_some_moment_on_has_a_start() {
+    let lamp = Case {
+        channels: |c, s, t, _, _| {
+            let gone = 1.0 - (-(t - 0.1).max(0.0) / 0.05).exp();
+            (c * (1.0 + 0.004 * gone), s * (1.0 + 0.003 * gone))
+        },
+        ..PLAIN
+    };
+    let found = finds("gain_drift", &lamp);
+    near(&found, "tau_s", 0.05);
+    near(&found, "start_s", 0.1);
+    near(&found, "change_cos", 0.004);
+    near(&found, "change_sin", 0.003);
+    let said = found.findings[0].named_evidence();
+    assert!(said.contains("from 100.0 ms on"), "{said}");
+}
+
 /// A lamp on a dimmer whose frequency wanders: the highest of its crests is no line.
 #[test]
 fn a_line_that_wanders_has_no_name() {
