@@ -20,6 +20,7 @@ use crate::steps::{self, Change};
 
 /// Numbers from which on a polynomial bends, and may stand in for something else.
 const BENDS: usize = 6;
+
 /// A polynomial of the catalogue that explains much.
 struct Polynomial {
     name: &'static str,
