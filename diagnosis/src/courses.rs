@@ -8,7 +8,7 @@ use crate::cause::{Candidate, Domain};
 use crate::causes::{settling, tells};
 use crate::channels::Channels;
 use crate::contender::GAIN_DRIFT;
-use crate::exact;
+use crate::exact::{self, FITTED};
 use crate::library::Shape;
 use crate::model::{Fit, System, amounts};
 use crate::polynomial::DEGREE;
@@ -40,7 +40,8 @@ pub(crate) fn join(system: &mut System, fit: &Fit, scored: &mut Vec<Scored>, lea
     let mut best: Vec<Polynomial> = vec![];
     for own in scored.iter() {
         let time = own.candidate.domain == Domain::Time && own.candidate.exact.is_none();
-        if !time || own.candidate.shapes.len() < BENDS || own.gain < least {
+        // Of less, neither start nor time constant is told.
+        if !time || own.candidate.shapes.len() < BENDS || own.gain < least.max(FITTED) {
             continue;
         }
         let own = Polynomial {
@@ -100,6 +101,9 @@ fn exponentials(system: &mut System, fit: &Fit, like: &Polynomial) -> Vec<(f64, 
         let mut cause = Accepted::new(candidate);
         exact::tuned(system, &fit.shapes, &mut cause, gain);
         system.extend();
+        if cause.inner_error.is_none() {
+            continue;
+        }
         let inner = cause.candidate.exact.as_ref().map_or(&[][..], |e| &e.inner);
         // One that began before the recording did begins with it.
         if inner.get(1).is_none_or(|start| (0.0..last).contains(start)) {

@@ -17,7 +17,7 @@ use crate::spline::Spline;
 use crate::sweep::Samples;
 
 /// Gain in log-likelihood from which on inner numbers can be fitted.
-const FITTED: f64 = 30.0;
+pub(crate) const FITTED: f64 = 30.0;
 /// Steps of a fit of them.
 const STEPS: usize = 8;
 /// Share of what its shapes explained that those of a number that is known twice have to explain once it is fitted.
