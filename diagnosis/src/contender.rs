@@ -6,7 +6,7 @@ use nonius_quantity::agree;
 use crate::ahead;
 use crate::beside::Beside;
 use crate::cause::{Candidate, Domain, Sign};
-use crate::causes::{self, ACCELERATION_GAIN, Catalogue};
+use crate::causes::{self, ACCELERATION_GAIN, Catalogue, GAIN_DRIFT, OFFSET_DRIFT};
 use crate::channels::Channels;
 use crate::context::Context;
 use crate::courses;
@@ -35,14 +35,9 @@ const NEARLY: f64 = 0.8;
 const AS_WELL: f64 = 0.95;
 /// Highest order of the scale period at which a line may stand.
 const TOP: i32 = causes::ORDERS as i32;
-/// A drift of the offsets.
-const DRIFT: &str = "offset_drift";
-/// A drift of the gains.
-pub(crate) const GAIN_DRIFT: &str = "gain_drift";
-
 /// A drift of the offsets or of the gains: slow, as noise may be.
 pub(crate) fn is_drift(cause: &str) -> bool {
-    [DRIFT, GAIN_DRIFT].contains(&cause)
+    [OFFSET_DRIFT, GAIN_DRIFT].contains(&cause)
 }
 
 /// The cause to accept and others that may turn out better where tangents are exact, or what cannot be named in its
@@ -100,8 +95,9 @@ pub(crate) fn contender(
         if tried.contains(&one) || !near(best) {
             continue;
         }
-        let drifts =
-            |s: &Scored| s.candidate.name == DRIFT && s.gain > AS_WELL * best.gain && near(s);
+        let drifts = |s: &Scored| {
+            s.candidate.name == OFFSET_DRIFT && s.gain > AS_WELL * best.gain && near(s)
+        };
         if best.candidate.as_drift && scored.iter().any(drifts) {
             continue;
         }
@@ -137,8 +133,8 @@ pub(crate) fn contender(
         let wider = rivals::wider(&beside, &own, &rest);
         let other_order = rivals::other_order(&beside, &own, &rest);
         if own.candidate.as_drift {
-            rivals.retain(|name| name != DRIFT);
-            rivals.push(DRIFT.to_owned());
+            rivals.retain(|name| name != OFFSET_DRIFT);
+            rivals.push(OFFSET_DRIFT.to_owned());
         }
         let mark = system.samples.library.atoms.len();
         let held = holds(system, catalogue, fit, &own, &rest);

@@ -5,12 +5,11 @@
 
 use crate::beside::Beside;
 use crate::cause::{Candidate, Domain};
-use crate::causes::{settling, tells};
+use crate::causes::{GAIN_DRIFT, settling, tells};
 use crate::channels::Channels;
-use crate::contender::GAIN_DRIFT;
 use crate::exact::{self, FITTED};
 use crate::library::Shape;
-use crate::model::{Fit, System, amounts};
+use crate::model::{Fit, System};
 use crate::polynomial::DEGREE;
 use crate::score::{Scored, score};
 use crate::select::both;
@@ -85,9 +84,8 @@ fn exponentials(system: &mut System, fit: &Fit, like: &Polynomial) -> Vec<(f64, 
     };
     // The five parameters as they are beside the drift, and what is left without it.
     let named = both(&fit.shapes, &like.shapes);
-    let mut amounts = system.fit(named.clone()).solution.x;
-    amounts[fit.shapes.len()..].fill(0.0);
-    let left = system.left(&self::amounts(&named, &amounts));
+    let range = fit.shapes.len()..named.len();
+    let left = system.left_but(named, range);
     let seen = Channels::of(system, &left);
     let Some(warming) = steps::warming(seen, system.noise(), change) else {
         return vec![];

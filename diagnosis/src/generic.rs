@@ -8,7 +8,7 @@ use std::rc::Rc;
 
 use crate::block::Block;
 use crate::cause::{Candidate, Domain};
-use crate::causes::{AC_COUPLING, line_wave, speed_varies};
+use crate::causes::{AC_COUPLING, GAIN_DRIFT, line_wave, speed_varies};
 use crate::context::Context;
 use crate::library::{Group, Library, Row, Shape, Use};
 
@@ -288,7 +288,7 @@ pub(crate) fn around(
             )
         }
         Domain::Time => {
-            let of: &[Of] = if candidate.name == "gain_drift" {
+            let of: &[Of] = if candidate.name == GAIN_DRIFT {
                 &[Of::Gain]
             } else {
                 &[Of::Offset]

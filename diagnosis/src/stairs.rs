@@ -2,12 +2,11 @@
 //! so does what grows with the speed where that only rises.
 
 use crate::beside::Beside;
-use crate::causes::{AC_COUPLING, HYSTERESIS};
+use crate::causes::{AC_COUPLING, GAIN_DRIFT, HYSTERESIS};
 use crate::channels::Channels;
-use crate::contender::GAIN_DRIFT;
 use crate::held::stand_beside;
 use crate::library::Shape;
-use crate::model::{Fit, System, amounts};
+use crate::model::{Fit, System};
 use crate::score::Scored;
 use crate::select::both;
 use crate::statistics::price;
@@ -49,10 +48,8 @@ pub(crate) fn instead_of_drift(
     };
     // The five parameters and other causes as they are beside the drift: without it they are off by what they take of it.
     explained(system, fit, drift, rest, |named| {
-        let mut amounts = system.fit(named.to_vec()).solution.x;
         let range = fit.shapes.len()..fit.shapes.len() + drift.candidate.shapes.len();
-        amounts[range].fill(0.0);
-        let left = system.left(&self::amounts(named, &amounts));
+        let left = system.left_but(named.to_vec(), range);
         steps::instead(Channels::of(system, &left), system.noise(), changes)
     })
 }

@@ -222,6 +222,19 @@ impl Sensor {
                 });
             }
         }
+        for cause in &self.causes {
+            let (Cause::OffsetDrift(drift) | Cause::GainDrift(drift)) = cause else {
+                continue;
+            };
+            if let Some((key, value, reason)) = drift.wrong() {
+                return Err(SensorError::Value {
+                    file: file.into(),
+                    field: format!("cause.{key}"),
+                    value,
+                    reason,
+                });
+            }
+        }
         Ok(())
     }
 }

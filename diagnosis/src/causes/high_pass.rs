@@ -7,12 +7,12 @@ use std::rc::Rc;
 use nonius_fourier::Complex;
 
 use super::speed::follows;
-use super::{AC_COUPLING, Catalogue};
+use super::{AC_COUPLING, Catalogue, in_time};
 use crate::block::Block;
 use crate::cause::{Candidate, Domain, Estimate, Exact, Sign};
 use crate::context::Context;
 use crate::finding::Parameter;
-use crate::library::{Library, Shape, Use};
+use crate::library::{Library, Shape};
 
 /// Scale periods of travel that ac coupling needs to be told from shapes of the angle.
 const FEWEST: f64 = 6.0;
@@ -119,21 +119,12 @@ fn high_pass(sample_rate: f64, moving: f64) -> impl Fn(f64, &mut Library) -> Vec
 
 /// The charge of either capacitor, leaking away from the beginning of the recording on.
 fn charges(corner: f64, library: &mut Library) -> [Shape; 2] {
-    let pairs = move |block: &Block, out: &mut [f64]| {
-        let n = block.len();
-        let left = |t: &f64| {
-            let x = TAU * corner * t;
-            // Smaller than any rounding, and slow to compute.
-            if x < 40.0 { (-x).exp() } else { 0.0 }
-        };
-        let change: Vec<f64> = block.time.iter().map(left).collect();
-        let (c, s) = out.split_at_mut(2 * n);
-        for (which, (c, s)) in c.chunks_mut(n).zip(s.chunks_mut(n)).enumerate() {
-            block.channel(which, &change, c, s);
-        }
+    let left = move |t: f64| {
+        let x = TAU * corner * t;
+        // Smaller than any rounding, and slow to compute.
+        if x < 40.0 { (-x).exp() } else { 0.0 }
     };
-    let place = library.add(2, Use::Pairs, Rc::new(pairs));
-    [0, 1].map(|which| place.both(which))
+    in_time(false, left, library)
 }
 
 /// The corner, and its error, as fitted or else as it is `known`.

@@ -20,6 +20,7 @@ use std::rc::Rc;
 
 use std::collections::BTreeMap;
 
+use crate::block::Block;
 use crate::cause::{Candidate, Domain};
 use crate::context::Context;
 use crate::library::{Library, Place, Shape, Use};
@@ -46,6 +47,11 @@ pub(crate) const INTERFERENCE: &str = "interference";
 pub(crate) const COMMON_BANDWIDTH: &str = "common_bandwidth";
 /// Real motion at a fixed frequency.
 pub(crate) const VIBRATION: &str = "vibration";
+
+/// Offsets that change slowly.
+pub(crate) const OFFSET_DRIFT: &str = "offset_drift";
+/// Gains that change slowly.
+pub(crate) const GAIN_DRIFT: &str = "gain_drift";
 
 /// Capacitors in the channels.
 pub(crate) const AC_COUPLING: &str = "ac_coupling";
@@ -140,7 +146,7 @@ pub(crate) fn shown_weighed(
 fn modulated(
     library: &mut Library,
     count: usize,
-    modulations: impl Fn(&crate::block::Block, usize) -> Vec<f64> + 'static,
+    modulations: impl Fn(&Block, usize) -> Vec<f64> + 'static,
 ) -> Place {
     const TOP: usize = 2;
     let per = 2 * TOP + 1;
@@ -178,6 +184,25 @@ impl Modulated {
         }
         list
     }
+}
+
+/// A course of the time in cos and in sin: of their gains or else of their offsets, in amplitudes.
+fn in_time(gain: bool, course: impl Fn(f64) -> f64 + 'static, library: &mut Library) -> [Shape; 2] {
+    let pairs = move |block: &Block, out: &mut [f64]| {
+        let n = block.len();
+        let course: Vec<f64> = block.time.iter().map(|t| course(*t)).collect();
+        let (c, s) = out.split_at_mut(2 * n);
+        for (which, (c, s)) in c.chunks_mut(n).zip(s.chunks_mut(n)).enumerate() {
+            if gain {
+                let changes = course.iter().zip(block.u[which]).map(|(x, u)| x * u);
+                block.channel(which, &changes.collect::<Vec<f64>>(), c, s);
+            } else {
+                block.channel(which, &course, c, s);
+            }
+        }
+    };
+    let place = library.add(2, Use::Pairs, Rc::new(pairs));
+    [0, 1].map(|which| place.both(which))
 }
 
 /// The five parameters: cos into c, 1 into c, sin into s, 1 into s, cos into s.

@@ -2,8 +2,8 @@
 
 use std::rc::Rc;
 
-use super::{Catalogue, Modulated, modulated};
-use crate::cause::{Candidate, Domain};
+use super::{Catalogue, GAIN_DRIFT, Modulated, OFFSET_DRIFT, modulated};
+use crate::cause::{Candidate, Domain, Estimate};
 use crate::context::Context;
 use crate::finding::{Chip, Parameter};
 use crate::library::Shape;
@@ -61,9 +61,15 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
                     (0..per).map(move |by| modulations.shape(by, &parts))
                 })
                 .collect();
+            let how = if driver == "time" {
+                "time: from the start of the recording to its end"
+            } else {
+                "temperature: from one standard deviation below its mean to one above"
+            };
             catalogue.candidates.push(Candidate {
                 trials,
-                ..drift(gain, driver, per, all)
+                parameters: Rc::new(move |e| numbers(e, per)),
+                ..drift(gain, |_| how.to_owned(), all)
             });
         }
     }
@@ -75,48 +81,48 @@ pub(crate) fn tells(context: &Context, degree: usize) -> bool {
     context.periods_travelled() >= 3.0 * degree as f64
 }
 
-/// A drift of the gains or else of the offsets with time or temperature, by shapes of which either channel has so many, one for each
-/// Legendre polynomial.
-fn drift(gain: bool, driver: &'static str, per: usize, all: Vec<Shape>) -> Candidate {
-    let name = if gain { "gain_drift" } else { "offset_drift" };
+/// A drift of the gains or else of the offsets, whose first two parameters are the changes of cos and sin; `how` says with what it drifts,
+/// and from where to where.
+pub(super) fn drift(
+    gain: bool,
+    how: impl Fn(&[Parameter]) -> String + 'static,
+    all: Vec<Shape>,
+) -> Candidate {
+    let (name, what, of) = if gain {
+        (GAIN_DRIFT, "gains", "")
+    } else {
+        (OFFSET_DRIFT, "offsets", " of the amplitude")
+    };
     Candidate {
         chip: Chip::Corrects,
-        parameters: Rc::new(move |e| {
-            // From one end of the recording to the other: twice the odd polynomials.
-            let total = |from: usize| {
-                let odd = (0..per).step_by(2).map(|i| from + i);
-                let value: f64 = odd.clone().map(|i| 2.0 * e.x[i]).sum();
-                let error = odd.map(|i| (2.0 * e.error[i]).powi(2)).sum::<f64>().sqrt();
-                (value, error)
-            };
-            let ((c, dc), (s, ds)) = (total(0), total(per));
-            let mut all = vec![
-                Parameter::measured("change_cos", c, dc, "amplitude"),
-                Parameter::measured("change_sin", s, ds, "amplitude"),
-            ];
-            for (i, (x, error)) in e.x.iter().zip(e.error).enumerate() {
-                let (channel, degree) = (["cos", "sin"][i / per], i % per + 1);
-                if degree > 1 {
-                    let name = format!("curve_{channel}_{degree}");
-                    all.push(Parameter::measured(&name, *x, *error, "amplitude"));
-                }
-            }
-            all
-        }),
         evidence: Rc::new(move |p| {
-            let what = if gain { "gains" } else { "offsets" };
-            let of = if gain { "" } else { " of the amplitude" };
-            format!(
-                "the {what} drift with {driver}: {}, they change by {} (cos) and {} (sin){of}",
-                if driver == "time" {
-                    "from the start of the recording to its end"
-                } else {
-                    "from one standard deviation below its mean to one above"
-                },
-                p[0].brief(),
-                p[1].brief()
-            )
+            let (how, cos, sin) = (how(p), p[0].brief(), p[1].brief());
+            format!("the {what} drift with {how}, they change by {cos} (cos) and {sin} (sin){of}")
         }),
         ..Candidate::new(name, Domain::Time, all)
     }
+}
+
+/// The parameters of a drift along so many Legendre polynomials.
+fn numbers(e: &Estimate, per: usize) -> Vec<Parameter> {
+    // From one end of the recording to the other: twice the odd polynomials.
+    let total = |from: usize| {
+        let odd = (0..per).step_by(2).map(|i| from + i);
+        let value: f64 = odd.clone().map(|i| 2.0 * e.x[i]).sum();
+        let error = odd.map(|i| (2.0 * e.error[i]).powi(2)).sum::<f64>().sqrt();
+        (value, error)
+    };
+    let ((c, dc), (s, ds)) = (total(0), total(per));
+    let mut all = vec![
+        Parameter::measured("change_cos", c, dc, "amplitude"),
+        Parameter::measured("change_sin", s, ds, "amplitude"),
+    ];
+    for (i, (x, error)) in e.x.iter().zip(e.error).enumerate() {
+        let (channel, degree) = (["cos", "sin"][i / per], i % per + 1);
+        if degree > 1 {
+            let name = format!("curve_{channel}_{degree}");
+            all.push(Parameter::measured(&name, *x, *error, "amplitude"));
+        }
+    }
+    all
 }

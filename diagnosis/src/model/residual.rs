@@ -1,9 +1,11 @@
 //! What the model leaves of a recording, and what parts of it do, sample by sample.
 
+use std::ops::Range;
+
 use super::{Fit, System, amounts};
 use crate::context::Context;
 use crate::finding::Effect;
-use crate::library::Row;
+use crate::library::{Row, Shape};
 
 /// What the model so far leaves of the recording.
 #[derive(Clone, Debug)]
@@ -56,6 +58,13 @@ impl System<'_> {
     /// What a fit leaves.
     pub(crate) fn residual(&self, fit: &Fit) -> Residual {
         self.left(&fit.amounts())
+    }
+
+    /// What shapes that are fitted together leave where those of a range are not taken off: the others are as they are beside them.
+    pub(crate) fn left_but(&self, shapes: Vec<Shape>, range: Range<usize>) -> Residual {
+        let mut fit = self.fit(shapes);
+        fit.solution.x[range].fill(0.0);
+        self.residual(&fit)
     }
 
     /// What so much of each atom leaves.
