@@ -6,9 +6,9 @@ use nalgebra::{Matrix5, Vector5};
 use nonius_calibration::Ellipse;
 use nonius_recording::{AdcPair, Recording};
 
-use crate::first;
-use crate::solve::dot;
-use crate::spline::Spline;
+use crate::checks::first;
+use crate::motion::spline::Spline;
+use crate::numerics::solve::dot;
 
 /// From so many bad samples in a row on, their own angle tells how far the scale moves meanwhile.
 const MANY: usize = 8;
@@ -207,7 +207,7 @@ impl Context {
             let per = self.periods_per_revolution;
             // A reference tells motion from what repeats with the period, however little the scale moves.
             let told = reference.is_some();
-            let spacing = crate::knots::spacing(&self.measured, &self.weight, per, told);
+            let spacing = crate::motion::knots::spacing(&self.measured, &self.weight, per, told);
             let make = |spacing: f64| Spline::new(n, spacing, &self.weight);
             self.spline = Some(make(spacing.motion));
             let finer = spacing.followed < spacing.motion;

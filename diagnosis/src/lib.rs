@@ -4,89 +4,34 @@
 //! seen above the motion, or whole against a reference. [`diagnose`] fits the five parameters, takes the motion off as a
 //! spline, and asks of every cause of the catalogue how much of the rest it explains. A name is given only to a shape
 //! that holds; what cannot be named is said to be unexplained.
+//!
+//! The way of a recording through the folders is that of [`diagnose`]: `checks` mends its time base, `motion` is taken off,
+//! `causes` are made of `shapes` and weighed in a `model`, `select` accepts them, `drifts` and `noise` say of what is slow or
+//! random which of its kinds it is, `doubt` takes names back, and what is left is `unnamed`.
 
-mod ahead;
-mod beside;
-mod block;
-mod calm;
-mod cause;
 mod causes;
-mod channels;
 mod checks;
-mod choice;
-mod codes;
-mod contender;
 mod context;
-mod correlate;
-mod courses;
-mod curves;
-mod delays;
 mod diagnose;
 mod doubt;
-mod edges;
-mod exact;
+mod drifts;
 mod finding;
-mod first;
-mod flicker;
-mod generic;
-mod glitches;
-mod held;
-mod jumps;
-mod knots;
-mod late;
-mod left;
-mod library;
-mod lines;
-mod louder;
-mod matched;
-mod missing;
 mod model;
 mod motion;
-mod names;
 mod noise;
-mod one_over_f;
-mod pair;
-mod part;
-mod polygon;
-mod polynomial;
-mod rail;
-mod reference;
-mod repair;
+mod numerics;
 mod report;
-mod rivals;
-mod score;
 mod select;
-mod selection;
-mod sensor;
-mod sides;
-mod silent;
-mod simpler;
+mod shapes;
 mod simulation;
-mod slips;
-mod solve;
-mod spline;
-mod stairs;
-mod statistics;
-mod steps;
-mod sweep;
-mod taken;
-mod telegraph;
-mod timebase;
-mod trig;
-mod unexplained;
-mod units;
-mod unseen;
-mod variance;
-mod warming;
-mod whereabouts;
-mod whiten;
+mod unnamed;
 
 pub use context::{Context, ContextError};
 pub use diagnose::{Diagnosis, Extended, diagnose};
 pub use finding::{Chip, Effect, Finding, Gain, OTHER_ORDER, Parameter, Place};
-pub use motion::motion_csv;
 pub use report::{plots, report};
-pub use sensor::{MOTION, sensor_toml};
+pub use simulation::motion::motion_csv;
+pub use simulation::sensor::{MOTION, sensor_toml};
 pub use simulation::{SimulatedCause, Simulation};
-pub use unexplained::Unexplained;
-pub use unseen::unseen;
+pub use unnamed::unexplained::Unexplained;
+pub use unnamed::unseen::unseen;

@@ -5,12 +5,12 @@ use std::rc::Rc;
 use super::{Catalogue, ORDERS};
 use nonius_quantity::ordinal;
 
-use crate::block::Block;
-use crate::cause::{Candidate, Domain, Exact, Sign, each, polar};
+use crate::causes::cause::{Candidate, Domain, Exact, Sign, each, polar};
 use crate::context::Context;
 use crate::finding::{Chip, Parameter};
-use crate::library::{Library, Shape, Use};
-use crate::trig::{Trig, channel, normalised};
+use crate::shapes::block::Block;
+use crate::shapes::library::{Library, Shape, Use};
+use crate::shapes::trig::{Trig, channel, normalised};
 
 const THRESHOLDS: [f64; 7] = [0.5, 0.6, 0.7, 0.8, 0.85, 0.9, 0.95];
 

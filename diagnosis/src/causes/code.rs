@@ -3,11 +3,11 @@
 use std::rc::Rc;
 
 use super::Catalogue;
-use crate::block::Block;
-use crate::cause::{Candidate, Domain};
+use crate::causes::cause::{Candidate, Domain};
 use crate::context::Context;
 use crate::finding::Parameter;
-use crate::library::Shape;
+use crate::shapes::block::Block;
+use crate::shapes::library::Shape;
 
 pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
     let half = 1i64 << (context.bits.min(40) - 1);

@@ -4,9 +4,9 @@ use std::rc::Rc;
 
 use super::speed::{ACCELERATION, SIGN, SOFT, Speed, cause};
 use super::{ACCELERATION_GAIN, HYSTERESIS};
-use crate::cause::Candidate;
+use crate::causes::cause::Candidate;
 use crate::context::Context;
-use crate::trig::{Trig, channel, normalised};
+use crate::shapes::trig::{Trig, channel, normalised};
 
 fn reverses(context: &Context) -> bool {
     let least = 0.02 * context.top_speed();

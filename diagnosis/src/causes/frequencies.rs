@@ -3,8 +3,8 @@
 use super::mains;
 use super::mirror::{self, unmirrored};
 use crate::context::Context;
-use crate::lines::{flattened, pair_spectrum, peak, refined, two_transforms};
-use crate::unseen::REPEATS;
+use crate::numerics::lines::{flattened, pair_spectrum, peak, refined, two_transforms};
+use crate::unnamed::unseen::REPEATS;
 
 /// Lowest frequency of a line, in cycles per recording: below, it is drift.
 const SLOWEST: f64 = 4.0;

@@ -8,11 +8,11 @@ use nonius_fourier::Complex;
 
 use super::speed::follows;
 use super::{AC_COUPLING, Catalogue, in_time};
-use crate::block::Block;
-use crate::cause::{Candidate, Domain, Estimate, Exact, Sign};
+use crate::causes::cause::{Candidate, Domain, Estimate, Exact, Sign};
 use crate::context::Context;
 use crate::finding::Parameter;
-use crate::library::{Library, Shape};
+use crate::shapes::block::Block;
+use crate::shapes::library::{Library, Shape};
 
 /// Scale periods of travel that ac coupling needs to be told from shapes of the angle.
 const FEWEST: f64 = 6.0;

@@ -2,7 +2,7 @@
 
 use nonius_fourier::Complex;
 
-use crate::block::Block;
+use crate::shapes::block::Block;
 
 /// What a first-order low pass of time constant `tau` does to a channel, over `tau`: its response at the speed of the
 /// moment, and the next term, with the acceleration.

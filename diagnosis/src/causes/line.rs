@@ -5,13 +5,13 @@ use std::rc::Rc;
 
 use super::INTERFERENCE;
 use super::frequencies::{self, Line, Search};
-use crate::block::Block;
-use crate::cause::{Candidate, Domain, Estimate, Exact, Make, Reads, polar};
+use crate::causes::cause::{Candidate, Domain, Estimate, Exact, Make, Reads, polar};
 use crate::context::Context;
 use crate::finding::{Chip, Parameter};
-use crate::library::{Fill, Library, Place, Shape, Use};
-use crate::lines::{spectrum, two_spectra};
 use crate::model::{Residual, Weighed};
+use crate::numerics::lines::{spectrum, two_spectra};
+use crate::shapes::block::Block;
+use crate::shapes::library::{Fill, Library, Place, Shape, Use};
 
 /// Samples between two evaluations of a line's sine; between them it is rotated on.
 const ROTATED: usize = 64;

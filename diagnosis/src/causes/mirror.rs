@@ -5,9 +5,9 @@
 
 use super::place::{order_waves, strongest_order};
 use crate::context::Context;
-use crate::lines::{wave, window};
-use crate::solve::dot;
-use crate::spline::Spline;
+use crate::motion::spline::Spline;
+use crate::numerics::lines::{wave, window};
+use crate::numerics::solve::dot;
 
 /// So many times farther apart are knots that tell: the motion's stand closer than it needs by more than that.
 const WIDER: f64 = 1.3;

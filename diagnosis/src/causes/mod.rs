@@ -1,6 +1,7 @@
 //! The catalogue: one file per kind of cause.
 
 mod angle;
+pub(crate) mod cause;
 mod code;
 mod direction;
 mod frequencies;
@@ -20,12 +21,12 @@ use std::rc::Rc;
 
 use std::collections::BTreeMap;
 
-use crate::block::Block;
-use crate::cause::{Candidate, Domain};
+use crate::causes::cause::{Candidate, Domain};
 use crate::context::Context;
-use crate::library::{Library, Place, Shape, Use};
 use crate::model::{Residual, Weighed};
-use crate::trig::{Trig, rotated};
+use crate::shapes::block::Block;
+use crate::shapes::library::{Library, Place, Shape, Use};
+use crate::shapes::trig::{Trig, rotated};
 
 pub(crate) use line::{crawls, has_harmonics, wave as line_wave};
 pub(crate) use place::{highest_order, order_waves, strongest_order, without_cogging};

@@ -9,14 +9,14 @@ use nonius_quantity::times;
 use super::COGGING;
 use super::mirror::unmirrored_order;
 use super::revolution::{harmonic, turns};
-use crate::block::Block;
-use crate::cause::{Candidate, Domain, Exact, Make, Sign, each};
+use crate::causes::cause::{Candidate, Domain, Exact, Make, Sign, each};
 use crate::context::Context;
 use crate::finding::{Chip, Parameter};
-use crate::library::{Fill, Library, Shape, Use};
-use crate::lines::{cos_and_sin, median};
 use crate::model::{Residual, Weighed};
-use crate::solve::{Normal, without};
+use crate::numerics::lines::{cos_and_sin, median};
+use crate::numerics::solve::{Normal, without};
+use crate::shapes::block::Block;
+use crate::shapes::library::{Fill, Library, Shape, Use};
 
 const PLACES: usize = 72;
 /// Times that a place has to be passed on average for a dip to come every time.

@@ -6,11 +6,11 @@ use std::rc::Rc;
 use nonius_quantity::times;
 
 use super::{Catalogue, GRADUATION_ERROR};
-use crate::block::Block;
-use crate::cause::{Candidate, Domain, polar};
+use crate::causes::cause::{Candidate, Domain, polar};
 use crate::context::Context;
 use crate::finding::{Chip, Parameter};
-use crate::library::{Shape, Use};
+use crate::shapes::block::Block;
+use crate::shapes::library::{Shape, Use};
 
 /// Orders of the revolution that a generic error has.
 const ORDERS: usize = 12;
@@ -100,7 +100,11 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
     }
 }
 
-pub(super) fn harmonic(order: u32, name: &'static str, unit: &'static str) -> crate::cause::Reads {
+pub(super) fn harmonic(
+    order: u32,
+    name: &'static str,
+    unit: &'static str,
+) -> crate::causes::cause::Reads {
     Rc::new(move |e| {
         let (a, d, p, ep) = polar(e.x, e.error);
         vec![

@@ -4,10 +4,10 @@ use std::rc::Rc;
 
 use super::in_time;
 use super::time::drift;
-use crate::cause::{Candidate, Estimate, Exact, Make, each};
+use crate::causes::cause::{Candidate, Estimate, Exact, Make, each};
+use crate::drifts::warming::{COURSES, Warming};
 use crate::finding::Parameter;
-use crate::library::{Library, Shape};
-use crate::warming::{COURSES, Warming};
+use crate::shapes::library::{Library, Shape};
 
 /// How a course differs from others that are tried near it: its time constant by so much of itself, its start by so much of the recording.
 const STEPS: [f64; 2] = [0.03, 0.01];

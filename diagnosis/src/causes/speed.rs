@@ -7,12 +7,12 @@ use nonius_fourier::Complex;
 use super::direction::{self, sides};
 use super::lag::{falls, falls_behind, later, low_pass};
 use super::{Catalogue, Modulated, modulated};
-use crate::block::Block;
-use crate::cause::{Candidate, Domain, Exact, Sign, each};
+use crate::causes::cause::{Candidate, Domain, Exact, Sign, each};
 use crate::context::Context;
 use crate::finding::{Chip, Parameter};
-use crate::library::{Library, Shape, Use};
-use crate::trig::{Trig, channel, derivatives};
+use crate::shapes::block::Block;
+use crate::shapes::library::{Library, Shape, Use};
+use crate::shapes::trig::{Trig, channel, derivatives};
 
 /// Share of the speed that has to change for its effects to be told from a phase error.
 const CHANGE: f64 = 5e-4;

@@ -5,10 +5,10 @@
 use std::f64::consts::TAU;
 
 use super::INTERFERENCE;
-use crate::cause::Candidate;
+use crate::causes::cause::Candidate;
 use crate::context::Context;
-use crate::lines::{pair_spectrum, window};
 use crate::model::Residual;
+use crate::numerics::lines::{pair_spectrum, window};
 
 /// Cycles per recording up to which something is beside a line.
 const BESIDE: f64 = 90.0;

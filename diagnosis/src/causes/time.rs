@@ -3,12 +3,12 @@
 use std::rc::Rc;
 
 use super::{Catalogue, GAIN_DRIFT, Modulated, OFFSET_DRIFT, modulated};
-use crate::cause::{Candidate, Domain, Estimate};
+use crate::causes::cause::{Candidate, Domain, Estimate};
 use crate::context::Context;
 use crate::finding::{Chip, Parameter};
-use crate::library::Shape;
-use crate::polynomial::{DEGREE, legendre};
-use crate::trig::{Trig, channel, normalised};
+use crate::numerics::polynomial::{DEGREE, legendre};
+use crate::shapes::library::Shape;
+use crate::shapes::trig::{Trig, channel, normalised};
 
 pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
     let beta = context.ellipse.beta;

@@ -6,11 +6,11 @@
 
 use super::{ROUNDING, System};
 use crate::causes::{self, Catalogue};
-use crate::flicker;
-use crate::library::{ROWS, Row, Shape};
-use crate::solve::Normal;
-use crate::statistics::at_most_of_noise;
-use crate::whiten::Whitener;
+use crate::model::whiten::Whitener;
+use crate::noise::flicker;
+use crate::numerics::solve::Normal;
+use crate::numerics::statistics::at_most_of_noise;
+use crate::shapes::library::{ROWS, Row, Shape};
 
 /// So many times as many samples as a part has tell slow noise from amounts that are off.
 const MORE: usize = 8;

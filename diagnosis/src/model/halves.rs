@@ -3,8 +3,8 @@
 use nalgebra::DVector;
 
 use super::{Fit, Moments, System, atoms_of};
-use crate::library::Shape;
-use crate::solve::Normal;
+use crate::numerics::solve::Normal;
+use crate::shapes::library::Shape;
 
 /// So many times as large as in a fit an amount may well be in half of it.
 const LARGER: f64 = 10.0;

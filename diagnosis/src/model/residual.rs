@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::{Fit, System, amounts};
 use crate::context::Context;
 use crate::finding::Effect;
-use crate::library::{Row, Shape};
+use crate::shapes::library::{Row, Shape};
 
 /// What the model so far leaves of the recording.
 #[derive(Clone, Debug)]

@@ -6,7 +6,7 @@
 //! each, times what the shape does there (the heteroskedasticity-consistent variance of H. White, 1980).
 
 use super::{Fit, System};
-use crate::solve::dot;
+use crate::numerics::solve::dot;
 
 impl System<'_> {
     /// So many times the variance of even noise what noise does to the difference of two fits, `with` some shapes and `without` them; at

@@ -1,7 +1,7 @@
 //! The experiment that tells two causes apart: the first of a list to which they answer differently.
 
 use super::words::capital;
-use crate::names::plain;
+use crate::finding::names::plain;
 
 /// An experiment, and what each cause does in it; causes that do not answer stand in none.
 struct Experiment {

@@ -6,7 +6,7 @@ use nonius_plot::{Axis, Look, Plot, Series};
 
 use crate::diagnose::Diagnosis;
 use crate::finding::Finding;
-use crate::flicker;
+use crate::noise::flicker;
 
 const BINS: usize = 24;
 /// Fewest samples that tell a size.

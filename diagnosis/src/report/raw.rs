@@ -8,7 +8,7 @@ use nonius_recording::Recording;
 use super::jump;
 use crate::diagnose::Diagnosis;
 use crate::finding::{Finding, Place};
-use crate::solve::Normal;
+use crate::numerics::solve::Normal;
 
 /// Samples on either side of a place that is shown.
 const AROUND: usize = 14;

@@ -5,8 +5,8 @@ use nonius_quantity::{Unit, prefixed};
 
 use super::words::probability;
 use crate::diagnose::Diagnosis;
-use crate::left::Bartlett;
-use crate::score::SHOWN;
+use crate::select::score::SHOWN;
+use crate::unnamed::left::Bartlett;
 
 /// Points of the plot.
 const POINTS: usize = 400;

@@ -1,0 +1,201 @@
+//! Channels that are clipped: at the end of the ADC's range, or where an amplifier's output goes no further. Their highest or
+//! lowest code comes far more often than the ones beside it, every time that the signal passes there. What is clipped says
+//! nothing but where the rail is: it is left out, and the rest of the signals is as it was.
+
+use nonius_quantity::{agree, counted};
+use nonius_recording::{Adc, Recording};
+
+use crate::checks::first;
+use crate::finding::{Finding, Parameter, Place};
+
+/// So many times as often as each of the codes beside it, a rail's code comes: the top of a sine at most 3.2 times.
+const PLATEAU: f64 = 8.0;
+/// Codes beside it, of those that come at all: steps may be coarse.
+const BESIDE: usize = 4;
+/// Part of its range that the other channel moves over meanwhile: where it does not, the axis stands still there.
+const MOVES: f64 = 0.03;
+/// Fewest times that the signal passes there, and fewest samples there.
+const PASSES: usize = 4;
+const SAMPLES: usize = 20;
+/// Share of the samples that may be left out: what is clipped more is seen by its shape.
+const MOST: f64 = 0.5;
+/// Part of its width by which more is left out on either side of what is clipped.
+const WIDER: f64 = 0.05;
+/// Single rails, as the catalogue calls them.
+const RAILS: [[&str; 2]; 2] = [["cos_upper", "cos_lower"], ["sin_upper", "sin_lower"]];
+
+/// A channel that is clipped.
+struct Rail {
+    channel: usize,
+    /// The lower one.
+    lower: bool,
+    /// Its code.
+    code: i64,
+    /// Samples that have it.
+    clipped: Vec<usize>,
+}
+
+/// A rail of a channel, looked at with its sign turned where it is the lower one, and the samples there.
+fn rail(codes: &[i64], counts: &[usize], lower: bool) -> Option<(i64, Vec<usize>)> {
+    let up = |k: usize| if lower { -codes[k] } else { codes[k] };
+    let mut all: Vec<i64> = counts.iter().map(|k| up(*k)).collect();
+    all.sort_unstable();
+    all.dedup();
+    let (bottom, top) = (*all.first()?, *all.last()?);
+    let beside = *all.get(all.len().checked_sub(1 + BESIDE)?)?;
+    let middle = bottom + (top - bottom) / 2;
+    // Samples at the rail and beside it, pass by pass: between two passes the signal has been in the other half.
+    let mut passes: Vec<[usize; 2]> = vec![];
+    let mut inside = false;
+    let mut clipped = vec![];
+    for k in counts {
+        let code = up(*k);
+        if code < middle {
+            inside = false;
+        } else if code >= beside {
+            if !inside {
+                passes.push([0, 0]);
+                inside = true;
+            }
+            let Some(pass) = passes.last_mut() else {
+                continue;
+            };
+            if code == top {
+                clipped.push(*k);
+            }
+            pass[usize::from(code != top)] += 1;
+        }
+    }
+    // The longest pass may be a standstill just there.
+    let longest = passes.iter().enumerate().max_by_key(|(_, p)| p[0])?.0;
+    passes.remove(longest);
+    let [at, beside] = passes.iter().fold([0, 0], |[a, b], p| [a + p[0], b + p[1]]);
+    let passing = passes.iter().filter(|p| p[0] > 0).count();
+    let plateau = at as f64 > PLATEAU * beside as f64 / BESIDE as f64;
+    (plateau && passing >= PASSES && at >= SAMPLES)
+        .then_some((if lower { -top } else { top }, clipped))
+}
+
+/// Whether the other channel moves while one is clipped.
+fn moves(other: &[f64], counts: &[usize], clipped: &[usize]) -> bool {
+    let span = |places: &[usize]| {
+        let ends = places.iter().fold((f64::MAX, f64::MIN), |(a, b), k| {
+            (a.min(other[*k]), b.max(other[*k]))
+        });
+        ends.1 - ends.0
+    };
+    span(clipped) > MOVES * span(counts)
+}
+
+/// Leaves out what is clipped, by the other channel, so that noise has no say in it: the samples there, and those beside them.
+fn leave_out(recording: &Recording, rail: &Rail, weight: &mut [f64]) {
+    let own = [&recording.cos, &recording.sin][rail.channel];
+    let other = [&recording.sin, &recording.cos][rail.channel];
+    let mut values: Vec<f64> = rail.clipped.iter().map(|k| other[*k]).collect();
+    values.sort_unstable_by(f64::total_cmp);
+    let (Some(low), Some(high)) = (values.first(), values.last()) else {
+        return;
+    };
+    let wider = WIDER * (high - low);
+    let range = low - wider..=high + wider;
+    let counts: Vec<usize> = (0..weight.len()).filter(|k| weight[*k] > 0.0).collect();
+    let ends = counts.iter().fold((f64::MAX, f64::MIN), |(a, b), k| {
+        (a.min(own[*k]), b.max(own[*k]))
+    });
+    let middle = (ends.0 + ends.1) / 2.0;
+    for k in counts {
+        if range.contains(&other[k]) && (own[k] < middle) == rail.lower {
+            weight[k] = 0.0;
+        }
+    }
+}
+
+/// What is said of a rail; `offset` and `amplitude` are those of its channel.
+fn finding(rail: &Rail, adc: &Adc, offset: f64, amplitude: f64, left_out: usize) -> Finding {
+    let sense = if rail.lower { -1.0 } else { 1.0 };
+    let threshold = sense * (adc.value(rail.code) - offset) / amplitude;
+    let half = 0.5 * adc.lsb / amplitude;
+    let mut parameters = vec![
+        Parameter::measured("threshold", threshold, half, "amplitude"),
+        Parameter::exact("compression", 1.0, "1"),
+    ];
+    for (channel, names) in RAILS.iter().enumerate() {
+        for (name, lower) in names.iter().zip([false, true]) {
+            let own = channel == rail.channel && lower == rail.lower;
+            let value = f64::from(own);
+            parameters.push(Parameter::exact(&format!("compression_{name}"), value, "1"));
+        }
+    }
+    let ends = adc.codes();
+    let end = rail.code == if rail.lower { ends.0 } else { ends.1 };
+    let count = rail.clipped.len();
+    let evidence = format!(
+        "the {} channel is clipped at its {} rail, {} of the amplitude {} its offset: {} {} its {} code, {}{}",
+        ["cos", "sin"][rail.channel],
+        if rail.lower { "lower" } else { "upper" },
+        parameters[0].brief(),
+        if rail.lower { "below" } else { "above" },
+        counted(count, "sample"),
+        agree(count, "has", "have"),
+        if rail.lower { "lowest" } else { "highest" },
+        rail.code,
+        if end {
+            ", the end of the ADC's range"
+        } else {
+            ""
+        },
+    );
+    let place = Place::Rail {
+        channel: rail.channel,
+        code: rail.code,
+    };
+    Finding::digital("saturation", parameters, evidence)
+        .at(place)
+        .repairing(left_out)
+}
+
+/// The rails of a recording, and what is clipped left out; nothing where too little would be left.
+pub(crate) fn rails(recording: &Recording, weight: &mut Vec<f64>) -> Vec<Finding> {
+    let counts: Vec<usize> = (0..weight.len()).filter(|k| weight[*k] > 0.0).collect();
+    let codes: (Vec<i64>, Vec<i64>) = recording.codes().unzip();
+    let others = [&recording.sin, &recording.cos];
+    let mut found = vec![];
+    for (channel, codes) in [&codes.0, &codes.1].into_iter().enumerate() {
+        for lower in [false, true] {
+            let rail = rail(codes, &counts, lower);
+            if let Some((code, clipped)) = rail.filter(|r| moves(others[channel], &counts, &r.1)) {
+                found.push(Rail {
+                    channel,
+                    lower,
+                    code,
+                    clipped,
+                });
+            }
+        }
+    }
+    let mut without = weight.clone();
+    let mut left_out = vec![];
+    for rail in &found {
+        let before: f64 = without.iter().sum();
+        leave_out(recording, rail, &mut without);
+        left_out.push((before - without.iter().sum::<f64>()) as usize);
+    }
+    let sound = without.iter().filter(|w| **w > 0.0).count();
+    if found.is_empty() || (sound as f64) < (1.0 - MOST) * counts.len() as f64 {
+        return vec![];
+    }
+    let Ok(e) = first::ellipse(recording, &without) else {
+        return vec![];
+    };
+    *weight = without;
+    let adc = recording.metadata.adc;
+    let said = |(rail, left_out): (&Rail, usize)| {
+        let (adc, offset, amplitude) = if rail.channel == 0 {
+            (&adc.cos, e.b_c, e.a_c)
+        } else {
+            (&adc.sin, e.b_s, e.a_s)
+        };
+        finding(rail, adc, offset, amplitude, left_out)
+    };
+    found.iter().zip(left_out).map(said).collect()
+}

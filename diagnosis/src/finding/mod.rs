@@ -1,0 +1,273 @@
+//! Findings, as `findings.json` has them.
+
+pub(crate) mod names;
+pub(crate) mod units;
+
+use nonius_quantity::Quantity;
+use serde::Serialize;
+
+use crate::finding::names::plain;
+
+/// A parameter of a cause.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Parameter {
+    /// Its name.
+    pub name: String,
+    /// Its value.
+    pub value: f64,
+    /// Standard error.
+    pub std_error: f64,
+    /// Its unit; "amplitude" is the mean signal amplitude.
+    pub unit: String,
+}
+
+impl Parameter {
+    pub(crate) fn measured(name: &str, value: f64, std_error: f64, unit: &str) -> Self {
+        Self {
+            name: name.into(),
+            value,
+            std_error,
+            unit: unit.into(),
+        }
+    }
+
+    pub(crate) fn exact(name: &str, value: f64, unit: &str) -> Self {
+        Self::measured(name, value, 0.0, unit)
+    }
+
+    /// So many times as large, of the same name.
+    pub(crate) fn times(&self, factor: f64) -> Self {
+        Self {
+            value: factor * self.value,
+            std_error: factor.abs() * self.std_error,
+            ..self.clone()
+        }
+    }
+
+    /// In a sentence: value and unit, in the digits that the error allows.
+    pub(crate) fn brief(&self) -> String {
+        let unit = units::shown(&self.name, &self.unit);
+        Quantity::new(self.value, self.std_error, unit).brief()
+    }
+
+    /// In a table: value ± error, and the unit.
+    pub(crate) fn apart(&self) -> (String, String) {
+        let unit = units::shown(&self.name, &self.unit);
+        let (value, unit) = Quantity::new(self.value, self.std_error, unit).apart();
+        (value, units::of_what(&unit, &self.name, &self.unit))
+    }
+}
+
+/// What naming a cause gains. What is optional beyond the contract is left out where it says nothing.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Gain {
+    /// Residual on data that was not fitted, without the cause, in fractions of the amplitude.
+    pub held_out_residual_rms_before: f64,
+    /// And with it.
+    pub held_out_residual_rms_after: f64,
+    /// Position error against the reference without the cause, radians.
+    pub position_error_rms_before_rad: Option<f64>,
+    /// And with it.
+    pub position_error_rms_after_rad: Option<f64>,
+    /// Size of the cause over the noise: the root of twice the log-likelihood that it explains.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub detection_snr: Option<f64>,
+    /// Of noise: log-likelihood of data that was not fitted, with its name less without it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub held_out_log_likelihood_gain: Option<f64>,
+    /// Samples that were put back, taken out or left out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub repaired_samples: Option<usize>,
+}
+
+impl Gain {
+    /// What is known before the model is judged: how much log-likelihood a cause explains.
+    pub(crate) fn of(log_likelihood: f64) -> Self {
+        Self {
+            detection_snr: Some((2.0 * log_likelihood.max(0.0)).sqrt()),
+            ..Self::default()
+        }
+    }
+
+    /// The same with residuals and position errors of another.
+    pub(crate) fn judged(self, by: Self) -> Self {
+        Self {
+            detection_snr: self.detection_snr,
+            held_out_log_likelihood_gain: self.held_out_log_likelihood_gain,
+            repaired_samples: self.repaired_samples,
+            ..by
+        }
+    }
+}
+
+/// The parameter of a harmonic whose order is not sure: the other one that it may have.
+pub const OTHER_ORDER: &str = "other_order";
+
+/// What the chip can do about a cause.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub enum Chip {
+    /// It corrects it.
+    #[serde(rename = "corrects")]
+    Corrects,
+    /// It cannot.
+    #[serde(rename = "cannot correct")]
+    CannotCorrect,
+    /// Real motion.
+    #[serde(rename = "is not a sensor error")]
+    NotASensorError,
+}
+
+/// What a cause does at each sample, as the fit has it: for plots.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Effect {
+    /// Along the radius, in amplitudes.
+    pub radial: Vec<f32>,
+    /// Along the circle, in radians: above the motion, or against the reference.
+    pub tangential: Vec<f32>,
+    /// As real motion, radians, where that is a row of its own.
+    pub motion: Vec<f32>,
+}
+
+/// Where in the data something is wrong.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// At a sample of the recording.
+    Sample(usize),
+    /// Before a sample of the recording, so many are missing.
+    Gap {
+        /// The sample.
+        sample: usize,
+        /// How many.
+        missing: usize,
+    },
+    /// At a sample that repeats the one before.
+    Repeat {
+        /// The sample.
+        sample: usize,
+        /// It was put in, and does not stand in another's place.
+        inserted: bool,
+    },
+    /// In the codes of a channel (0 is cos), again every `step` of them.
+    Code {
+        /// Which channel.
+        channel: usize,
+        /// Codes.
+        step: i64,
+    },
+    /// At the code of a rail that clips a channel (0 is cos).
+    Rail {
+        /// Which channel.
+        channel: usize,
+        /// The signed code about mid-scale.
+        code: i64,
+    },
+    /// At a code of a channel (0 is cos) that never comes.
+    Missing {
+        /// Which channel.
+        channel: usize,
+        /// The signed code about mid-scale.
+        code: i64,
+    },
+}
+
+/// A cause shown to be in a recording.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Finding {
+    /// Its name, from the contract's list.
+    pub cause: String,
+    /// Another cause that explains the data as well.
+    pub confounded_with: Vec<String>,
+    /// After all trials.
+    pub p_value: f64,
+    /// Its parameters.
+    pub parameters: Vec<Parameter>,
+    /// What it gains.
+    pub gain: Gain,
+    /// One sentence, with numbers; of a group it names both first.
+    pub evidence: String,
+    /// What the chip can do.
+    pub chip: Chip,
+    /// log-likelihood that it explains: the order of the findings.
+    #[serde(skip)]
+    pub weight: f64,
+    /// What it does; `None` for noise, and for what is wrong in the data themselves.
+    #[serde(skip)]
+    pub effect: Option<Effect>,
+    /// Where in the data it is seen first; `None` for what a fit found.
+    #[serde(skip)]
+    pub place: Option<Place>,
+}
+
+impl Finding {
+    /// A parameter's value.
+    #[must_use]
+    pub fn parameter(&self, name: &str) -> Option<f64> {
+        let one = self.parameters.iter().find(|p| p.name == name);
+        one.map(|p| p.value)
+    }
+
+    /// The causes that it may be, as people write them.
+    #[must_use]
+    pub fn plain_name(&self) -> String {
+        let others = self.confounded_with.iter().map(String::as_str);
+        let all: Vec<String> = std::iter::once(self.cause.as_str())
+            .chain(others)
+            .map(plain)
+            .collect();
+        all.join(" or ")
+    }
+
+    /// The evidence after the names of the contract.
+    #[must_use]
+    pub fn named_evidence(&self) -> String {
+        let seen = self
+            .evidence
+            .strip_prefix(&self.group())
+            .unwrap_or(&self.evidence);
+        let all = [&[self.cause.clone()][..], &self.confounded_with].concat();
+        format!("{}: {seen}", all.join(" or "))
+    }
+
+    /// What stands before the evidence of a group; nothing where there is one name.
+    fn group(&self) -> String {
+        if self.confounded_with.is_empty() {
+            String::new()
+        } else {
+            format!("{}: ", self.plain_name())
+        }
+    }
+
+    /// With both names before the evidence, where there are two.
+    pub(crate) fn naming_both(mut self) -> Self {
+        self.evidence.insert_str(0, &self.group());
+        self
+    }
+
+    /// With so many samples that were put back, taken out or left out.
+    pub(crate) fn repairing(mut self, samples: usize) -> Self {
+        self.gain.repaired_samples = Some(samples);
+        self
+    }
+
+    /// The same with where it is seen.
+    pub(crate) fn at(mut self, place: Place) -> Self {
+        self.place = Some(place);
+        self
+    }
+
+    /// From the codes or the time base alone: nothing random about it.
+    pub(crate) fn digital(cause: &str, parameters: Vec<Parameter>, evidence: String) -> Self {
+        Self {
+            cause: cause.into(),
+            confounded_with: vec![],
+            p_value: 0.0,
+            parameters,
+            gain: Gain::default(),
+            evidence,
+            chip: Chip::CannotCorrect,
+            weight: f64::MAX,
+            effect: None,
+            place: None,
+        }
+    }
+}

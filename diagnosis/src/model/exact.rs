@@ -1,0 +1,348 @@
+//! Large effects: numbers that are no amounts are fitted, and the recording is looked at anew where a cause stands.
+//!
+//! Shapes are tangents. Where a cause is large, its second order is above the noise and would be given the name of
+//! something else: then what it does is taken off the signals themselves, the angle followed again, and the tangents
+//! made there.
+
+use nonius_calibration::Ellipse;
+use nonius_recording::Recording;
+
+use crate::causes::Catalogue;
+use crate::context::{Context, Known, unwrapped};
+use crate::model::sweep::Samples;
+use crate::model::{Fit, System, above_motion, amounts, atoms_of};
+use crate::motion::spline::Spline;
+use crate::select::beside::Beside;
+use crate::select::selection::Accepted;
+use crate::shapes::library::{Row, Shape};
+
+/// Gain in log-likelihood from which on inner numbers can be fitted.
+pub(crate) const FITTED: f64 = 30.0;
+/// Steps of a fit of them.
+const STEPS: usize = 8;
+/// Share of what its shapes explained that those of a number that is known twice have to explain once it is fitted.
+const AS_MUCH: f64 = 0.9;
+/// Standard errors from which on a number is told from zero.
+const TOLD: f64 = 3.0;
+/// Small changes that one step may go.
+const REACH: f64 = 12.0;
+/// Samples that are enough to find what is large, and to see the colour of the noise.
+const ENOUGH: usize = 25_000;
+/// Share of its standard error by which a number may still move when its fit ends.
+const AT_REST: f64 = 0.2;
+/// Detection SNR of a remainder from which on a recording is looked at anew before anything else can be named for it.
+pub(crate) const NAMED: f64 = 3.0;
+/// The same once the search is at its end.
+pub(crate) const SEEN: f64 = 1.0;
+/// The same once it was looked at anew: below, estimates are right to a part of their errors.
+const SETTLED: f64 = 0.3;
+/// Times that the angle is followed anew with the same amounts; most times where something turns the pair that may be large.
+const FOLLOWED: (usize, usize) = (3, 20);
+/// Change of the angle, radians rms, below which it has come to rest.
+const STILL: f64 = 1e-5;
+
+/// Fits the inner numbers of a cause beside a fit; its shapes are new functions of the system then.
+pub(crate) fn tuned(system: &mut System, fit: &[Shape], cause: &mut Accepted, gain: f64) {
+    let Some(exact) = cause.candidate.exact.clone() else {
+        return;
+    };
+    if gain < FITTED || exact.inner.is_empty() {
+        return;
+    }
+    let mut inner = exact.inner.clone();
+    let mut errors = None;
+    let mark = system.samples.library.atoms.len();
+    for step in 0..STEPS {
+        let library = &mut system.samples.library;
+        let own = (exact.make)(&inner, library);
+        let mut beside_them = vec![];
+        for (j, small) in exact.steps.iter().enumerate() {
+            let moved = |by: f64| {
+                let mut moved = inner.clone();
+                moved[j] += by;
+                moved
+            };
+            let plus = (exact.make)(&moved(*small), library);
+            let minus = (exact.make)(&moved(-small), library);
+            beside_them.push((plus, minus, *small));
+        }
+        let all: Vec<Shape> = beside_them
+            .iter()
+            .flat_map(|(p, m, _)| p.iter().chain(m))
+            .chain(&own)
+            .chain(fit)
+            .cloned()
+            .collect();
+        let atoms = atoms_of(&all);
+        let whole = system.among(&atoms);
+        let among = |shapes: &[Shape]| Shape::all_among(shapes, &atoms);
+        let beside = Beside::new(&whole, &among(fit));
+        let mut shapes = among(&own);
+        let x = beside.solve(&shapes).x;
+        for (plus, minus, small) in &beside_them {
+            let mut slope = Shape::default();
+            let pairs = among(plus).into_iter().zip(among(minus)).zip(&x);
+            for ((plus, minus), x) in pairs {
+                let by = x / (2.0 * small);
+                slope = slope.plus(&plus.scaled(by)).plus(&minus.scaled(-by));
+            }
+            shapes.push(slope);
+        }
+        let solution = beside.solve(&shapes);
+        system.retain(|i| i < mark);
+        let error = |i: usize| solution.covariance[(i, i)].max(0.0).sqrt();
+        let first = own.len();
+        let moves: Vec<(f64, f64)> = if exact.follows && exact.steps.is_empty() {
+            vec![(x[0] - inner[0], error(0))]
+        } else if exact.follows {
+            // The number is known twice, as an amount and by the shapes.
+            let known = [
+                (x[0] - inner[0], error(0)),
+                (solution.x[first], error(first)),
+            ];
+            let weight = |e: f64| e.powi(-2).min(1e30);
+            let total: f64 = known.iter().map(|k| weight(k.1)).sum();
+            let by = known.iter().map(|k| k.0 * weight(k.1)).sum::<f64>() / total;
+            let most = 0.5 * inner[0];
+            vec![(by.clamp(-most, most), total.sqrt().recip())]
+        } else {
+            (0..inner.len())
+                .map(|j| {
+                    let most = REACH * exact.steps[j];
+                    (solution.x[first + j].clamp(-most, most), error(first + j))
+                })
+                .collect()
+        };
+        if moves.iter().any(|m| !m.0.is_finite()) {
+            break;
+        }
+        let (by, error) = moves[0];
+        if inner == [0.0] && !exact.steps.is_empty() && by.abs() < TOLD * error {
+            // It is not told from none, and its fit would run away.
+            return;
+        }
+        if !exact.steps.is_empty() {
+            errors = Some(moves.iter().map(|m| m.1).collect());
+        }
+        let rests = moves.iter().all(|(by, error)| by.abs() < AT_REST * error);
+        if rests && step == 0 {
+            // Its shapes are good as they are.
+            cause.inner_error = errors.or(cause.inner_error.take());
+            return;
+        }
+        for (value, (by, _)) in inner.iter_mut().zip(&moves) {
+            *value += by;
+        }
+        if rests {
+            break;
+        }
+    }
+    let shapes = (exact.make)(&inner, &mut system.samples.library);
+    system.extend();
+    // A fit that went astray is none. Where the number is known twice, shapes of a wrong one with an amount that is not it may
+    // explain a little more, as the tangents of a large cause are off.
+    let share = if exact.follows { AS_MUCH } else { 1.0 };
+    let beside = Beside::new(&system.total, fit);
+    if beside.gain(&shapes).0 < share * beside.gain(&cause.candidate.shapes).0 - 1.0 {
+        return;
+    }
+    cause.candidate.shapes = shapes;
+    cause.inner_error = errors;
+    if let Some(exact) = &mut cause.candidate.exact {
+        exact.inner = inner;
+    }
+}
+
+/// What a cause does, along the radius and along the circle, where functions are tried.
+fn effect(system: &System, amounts: &[(usize, f64)]) -> [Vec<f64>; 2] {
+    [Row::Radial, Row::Tangential].map(|row| system.samples.sum(amounts, row, system.tried()))
+}
+
+/// Detection SNR of the product of two effects, where functions are tried: what second order leaves.
+fn product(system: &System, a: &[Vec<f64>; 2], b: &[Vec<f64>; 2]) -> f64 {
+    let square = |e: &[Vec<f64>; 2], k: usize| e[0][k].powi(2) + e[1][k].powi(2);
+    let sum: f64 = (0..system.context.samples())
+        .map(|k| system.context.weight[k] * square(a, k) * square(b, k))
+        .sum();
+    sum.sqrt() / system.noise()
+}
+
+/// Whether tangents do for causes of these amounts: the difference to where they were made leaves nothing that is seen,
+/// and for causes that are not known yet nothing of a detection SNR of `least`.
+pub(crate) fn tangents_do(system: &System, fit: &Fit, accepted: &[Accepted], least: f64) -> bool {
+    let (mut middle, mut moved, mut moved_known) = (vec![], vec![], vec![]);
+    for one in accepted {
+        let known = one.is_taken_off();
+        let x = &fit.solution.x[one.range()];
+        for ((shape, x), x0) in one.candidate.shapes.iter().zip(x).zip(&one.x) {
+            // ½ x² less what the tangent at x₀ has of it: (x − x₀) times the middle of both.
+            middle.extend(shape.scaled(0.5 * (x + x0)).0);
+            let by = shape.scaled(x - x0).0;
+            if known {
+                moved_known.extend(by);
+            } else {
+                moved.extend(by);
+            }
+        }
+    }
+    let middle = effect(system, &middle);
+    let seen = |moved: &[(usize, f64)], every: usize, least: f64| {
+        let left = || product(system, &middle, &effect(system, moved));
+        !moved.is_empty() && left() * (every as f64).sqrt() > least
+    };
+    // Amounts that all samples gave, a part of them gives with a larger error: that is not to be seen in it.
+    !seen(&moved, system.tried(), least) && !seen(&moved_known, 1, SETTLED)
+}
+
+/// What is known of a recording: the ellipse, and causes with their amounts.
+#[derive(Clone)]
+pub(crate) struct Start {
+    ellipse: Ellipse,
+    pub(crate) carried: Vec<Accepted>,
+}
+
+/// What a fit knows.
+pub(crate) fn start(system: &System, fit: &Fit, accepted: &[Accepted]) -> Start {
+    let mut carried = accepted.to_vec();
+    for one in &mut carried {
+        one.x = fit.solution.x[one.range()].to_vec();
+        let amount = one.x.first().copied();
+        if let Some(exact) = one
+            .candidate
+            .exact
+            .as_mut()
+            .filter(|e| e.follows && e.steps.is_empty())
+        {
+            exact.inner = amount.into_iter().collect();
+        }
+    }
+    Start {
+        ellipse: ellipse(&system.context.ellipse, &fit.solution.x),
+        carried,
+    }
+}
+
+/// A context in which this is off the signals, and the angle followed without it, by a spline of the given spacing of
+/// knots or of its own choice; where only what is calm counts, by the one that it has.
+pub(crate) fn followed(
+    context: &Context,
+    start: &Start,
+    recording: &Recording,
+    spacing: Option<f64>,
+) -> Context {
+    let mut context = context.clone();
+    let reference = recording.reference_rad.as_deref();
+    let turned = start.carried.iter().any(|a| a.candidate.factor.is_some());
+    let most = if turned { FOLLOWED.1 } else { FOLLOWED.0 };
+    for round in 0..most {
+        let before = (round >= FOLLOWED.0).then(|| context.measured.clone());
+        let known = effects(&context, &mut start.carried.clone(), reference.is_some());
+        // Closer knots may have been needed for what is known now.
+        if round == 0 && !context.calm {
+            context.spline = spacing.map(|s| Spline::new(context.samples(), s, &context.weight));
+            context.finer = context.finer.filter(|_| spacing.is_some());
+        }
+        context.without(start.ellipse, known, reference);
+        // What is large is taken off at an angle that it has turned itself.
+        if before.is_some_and(|before| context.moved_since(&before) < STILL) {
+            break;
+        }
+    }
+    context
+}
+
+/// Of so many blocks of samples one is enough at first.
+pub(crate) fn every(samples: usize) -> usize {
+    (samples / ENOUGH).max(1)
+}
+
+/// The functions and sums of a context, the causes that are known among them; for a long recording, of a part of it.
+pub(crate) fn look<'a>(
+    context: &'a Context,
+    carried: &mut [Accepted],
+    recording: &Recording,
+) -> (System<'a>, Catalogue) {
+    let reference = recording.reference_rad.as_ref();
+    let motion = reference.map(|r| above_motion(context, &unwrapped(r.clone())));
+    let mut catalogue = Catalogue::new(context, motion.is_some());
+    enter(carried, &mut catalogue);
+    let counts: f64 = context.weight.iter().sum();
+    let every = every(counts as usize);
+    let system = System::new(context, motion, &mut catalogue, carried, every);
+    (system, catalogue)
+}
+
+/// What the causes do at the angles of a context.
+fn effects(context: &Context, carried: &mut [Accepted], with_motion: bool) -> Known {
+    let mut catalogue = Catalogue::new(context, with_motion);
+    enter(carried, &mut catalogue);
+    let library = std::mem::take(&mut catalogue.library);
+    let samples = Samples::new(context, library, Default::default(), 1);
+    let of = |wanted: &dyn Fn(&Accepted, Row) -> bool, row: Row| {
+        let chosen = carried.iter().filter(|a| wanted(a, row));
+        let amounts: Vec<(usize, f64)> = chosen.flat_map(Accepted::amounts).collect();
+        samples.sum(&amounts, row, 1)
+    };
+    // What stands along the circle alone is an error of the angle.
+    let turns = |a: &Accepted| {
+        let atoms = atoms_of(&a.candidate.shapes);
+        let row = |i: &usize| samples.library.atoms[*i].row;
+        !a.candidate.motion && atoms.iter().all(|i| row(i) == Row::Tangential)
+    };
+    let added = |a: &Accepted, _: Row| !a.candidate.motion && !turns(a);
+    let fast = if with_motion {
+        Row::Motion
+    } else {
+        Row::Tangential
+    };
+    let (mut radial, mut tangential) = (of(&added, Row::Radial), of(&added, Row::Tangential));
+    for one in carried.iter() {
+        let (Some(factor), [first, ..]) = (one.candidate.factor, &*one.candidate.shapes) else {
+            continue;
+        };
+        let first = amounts(std::slice::from_ref(first), &one.x);
+        let [r, t] = [Row::Radial, Row::Tangential].map(|row| samples.sum(&first, row, 1));
+        for (k, (r, t)) in r.iter().zip(&t).enumerate() {
+            let added = factor(*r, *t) - 1.0;
+            radial[k] += added.re - r;
+            tangential[k] += added.im - t;
+        }
+    }
+    Known {
+        radial,
+        tangential,
+        angle: of(&|a, _| turns(a), Row::Tangential),
+        fast: of(&|a, _| a.candidate.motion, fast),
+    }
+}
+
+/// Gives causes their shapes in another catalogue; the ones that it does not hold are left out by their lack of shapes.
+pub(crate) fn enter(carried: &mut [Accepted], catalogue: &mut Catalogue) {
+    for one in carried {
+        let candidate = &mut one.candidate;
+        candidate.shapes = match &candidate.exact {
+            Some(exact) => (exact.make)(&exact.inner, &mut catalogue.library),
+            None => catalogue
+                .candidates
+                .get(candidate.id)
+                .filter(|c| c.name == candidate.name)
+                .map_or_else(Vec::new, |c| c.shapes.clone()),
+        };
+    }
+}
+
+/// The ellipse with what its five parameters were found to be off: cos into c, 1 into c, sin into s, 1 into s, cos into s.
+pub(crate) fn ellipse(e: &Ellipse, off: &[f64]) -> Ellipse {
+    let [c, one_c, s, one_s, cross] = [off[0], off[1], off[2], off[3], off[4]];
+    let (sin, cos) = e.beta.sin_cos();
+    // y_s = a_s (s cos β − c sin β) + b_s with c and s as they are: a sum of sin α, cos α and 1.
+    let along = e.a_s * (1.0 + s) * cos;
+    let across = e.a_s * ((1.0 + c) * sin - cross * cos);
+    Ellipse {
+        a_c: e.a_c * (1.0 + c),
+        b_c: e.b_c + e.a_c * one_c,
+        a_s: along.hypot(across),
+        b_s: e.b_s + e.a_s * (one_s * cos - one_c * sin),
+        beta: across.atan2(along),
+    }
+}

@@ -1,0 +1,5 @@
+//! Motion is a nuisance: it is a spline in time, as close as the likelihood asks for, and what a drive does at its corners.
+
+pub(crate) mod calm;
+pub(crate) mod knots;
+pub(crate) mod spline;

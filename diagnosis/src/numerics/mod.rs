@@ -1,0 +1,9 @@
+//! Least squares, tail probabilities, spectra and curves, as any program has them.
+
+pub(crate) mod correlate;
+pub(crate) mod lines;
+pub(crate) mod pair;
+pub(crate) mod polygon;
+pub(crate) mod polynomial;
+pub(crate) mod solve;
+pub(crate) mod statistics;

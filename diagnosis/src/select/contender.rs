@@ -1,0 +1,341 @@
+//! Which of the causes that explain most is accepted: one that holds what any shape of its domain explains, and that no
+//! more than one other explains as well.
+
+use nonius_quantity::agree;
+
+use crate::causes::cause::{Candidate, Domain, Sign};
+use crate::causes::{self, ACCELERATION_GAIN, Catalogue, GAIN_DRIFT, OFFSET_DRIFT};
+use crate::context::Context;
+use crate::drifts::channels::Channels;
+use crate::drifts::courses;
+use crate::drifts::stairs;
+use crate::finding::names::plain;
+use crate::model::exact;
+use crate::model::{Fit, Residual, System};
+use crate::numerics::statistics::price;
+use crate::select::ahead;
+use crate::select::beside::Beside;
+use crate::select::held::holds;
+use crate::select::rivals;
+use crate::select::score::{ITSELF, RIVALS, Scored, score};
+use crate::select::selection::Accepted;
+use crate::select::{astray, both};
+use crate::shapes::library::Shape;
+use crate::unnamed::unexplained::{Unnamed, What, like};
+
+/// Gain in log-likelihood (an SNR of 300) from which on a choice between causes is made where tangents are exact.
+const LARGE: f64 = 45_000.0;
+/// The same (an SNR of 95) of what goes with the speed: a delay and low passes are one to first order.
+const LARGE_WITH_SPEED: f64 = 4_500.0;
+/// Most others that are tried there.
+const OTHERS: usize = 3;
+/// Share of the best gain from which on another cause may stand in for one that does not hold.
+const NEARLY: f64 = 0.8;
+/// Share from which on a drift explains as much as what may be one.
+const AS_WELL: f64 = 0.95;
+/// Highest order of the scale period at which a line may stand.
+const TOP: i32 = causes::ORDERS as i32;
+/// A drift of the offsets or of the gains: slow, as noise may be.
+pub(crate) fn is_drift(cause: &str) -> bool {
+    [OFFSET_DRIFT, GAIN_DRIFT].contains(&cause)
+}
+
+/// The cause to accept and others that may turn out better where tangents are exact, or what cannot be named in its
+/// domain and what looks most like it.
+pub(crate) enum Contender {
+    Named(Box<Accepted>, Vec<Accepted>),
+    Unnamed(Nameless),
+}
+
+/// What cannot be named.
+#[derive(Default)]
+pub(crate) struct Nameless {
+    pub(crate) unnamed: Unnamed,
+    pub(crate) domain: Option<Domain>,
+    /// Name of what looks most like it.
+    pub(crate) name: &'static str,
+    /// Shapes that hold it.
+    pub(crate) shapes: Vec<Shape>,
+    /// Log-likelihood that it explains where noise of the channels shows, its numbers paid for, or that steps do.
+    pub(crate) paid: f64,
+    /// Slow noise of the channels explains it as well.
+    pub(crate) is_noise: bool,
+}
+
+/// The best cause that holds; one that explains nearly as much may hold where the first does not. `left` is what the fit leaves.
+pub(crate) fn contender(
+    system: &mut System,
+    catalogue: &Catalogue,
+    fit: &Fit,
+    left: &Residual,
+    mut scored: Vec<Scored>,
+) -> Contender {
+    let harmonics = |s: &Scored| is_of_orders(system.context, &s.candidate);
+    if !scored.iter().all(harmonics) {
+        scored.retain(|s| !harmonics(s));
+    }
+    off_the_grid(system, fit, &mut scored);
+    let near = NEARLY * scored.first().map_or(0.0, |best| best.gain);
+    courses::join(system, fit, &mut scored, near);
+    fewer_first(&mut scored);
+    let most = scored[0].gain;
+    let large = match scored[0].candidate.domain {
+        Domain::Speed => LARGE_WITH_SPEED,
+        _ => LARGE,
+    };
+    let mut large = most * system.every() as f64 > large;
+    let (mut first, mut named): (Option<Contender>, Option<Box<Accepted>>) = (None, None);
+    let mut others = vec![];
+    let mut tried: Vec<(&'static str, Domain)> = vec![];
+    let mut stepped = None;
+    for i in 0..scored.len() {
+        let best = &scored[i];
+        let one = (best.candidate.name, best.candidate.domain);
+        let near = |s: &Scored| s.gain >= NEARLY * most;
+        if tried.contains(&one) || !near(best) {
+            continue;
+        }
+        let drifts = |s: &Scored| {
+            s.candidate.name == OFFSET_DRIFT && s.gain > AS_WELL * best.gain && near(s)
+        };
+        if best.candidate.as_drift && scored.iter().any(drifts) {
+            continue;
+        }
+        // How it was when the recording began, at another corner, may be all of a high pass that is seen.
+        let begins = |s: &Scored| s.candidate.as_drift && s.gain > best.gain - ITSELF && near(s);
+        if best.candidate.given() > 0 && scored.iter().any(begins) {
+            continue;
+        }
+        if stepped.is_some_and(|drift: usize| !stairs::stands_in(system, fit, &scored, drift, i)) {
+            continue;
+        }
+        tried.push(one);
+        let mut cause = Accepted::new(best.candidate.clone());
+        exact::tuned(system, &fit.shapes, &mut cause, best.gain);
+        system.extend();
+        let beside = Beside::new(&system.total, &fit.shapes);
+        let own = Scored {
+            gain: beside.gain(&cause.candidate.shapes).0,
+            candidate: cause.candidate.clone(),
+            ..*best
+        };
+        let rest: Vec<&Scored> = scored[..i].iter().chain(&scored[i + 1..]).collect();
+        let price = price(system.context.samples() as f64);
+        let ahead = ahead::look(system.context, &beside, &own, &rest, price);
+        let mut rivals = rivals::among(system, fit, &beside, &own, &rest);
+        if rivals.is_empty() {
+            rivals.extend(ahead.rival.map(str::to_owned));
+        }
+        if rivals.is_empty() {
+            rivals.extend(rivals::hidden(system, &beside, &own, catalogue));
+        }
+        let richer = rivals::richer(&beside, &own, &rest);
+        let wider = rivals::wider(&beside, &own, &rest);
+        let other_order = rivals::other_order(&beside, &own, &rest);
+        if own.candidate.as_drift {
+            rivals.retain(|name| name != OFFSET_DRIFT);
+            rivals.push(OFFSET_DRIFT.to_owned());
+        }
+        let mark = system.samples.library.atoms.len();
+        let held = holds(system, catalogue, fit, &own, &rest);
+        let steps = match own.candidate.domain {
+            Domain::Time => stairs::instead_of_drift(system, fit, &own, &rest),
+            // Slow noise looks like steps, and is known.
+            Domain::Speed if held.refusal.is_none() && system.flicker.is_none() => {
+                stairs::instead_of_speed(system, fit, &own, &rest)
+            }
+            _ => None,
+        };
+        let slow = steps.is_none();
+        if !slow && stepped.is_none() {
+            stepped = Some(i);
+        }
+        let listed = |name: &str| name != ACCELERATION_GAIN;
+        let locked = goes_with_angle(system.context, &own.candidate);
+        let crawling = causes::crawls(system.context, &own.candidate);
+        let wandering = causes::is_one_of_many(system.context, left, &own.candidate);
+        let nameable = listed(own.candidate.name)
+            && rivals.iter().all(|r| listed(r))
+            && !(locked || crawling || wandering);
+        if nameable && slow && !ahead.outdone && rivals.len() <= 1 && held.refusal.is_none() {
+            if rivals.is_empty() {
+                rivals.extend(richer.or(wider));
+            }
+            system.retain(|i| i < mark);
+            cause.confounded = rivals;
+            // At a speed that hardly changes most of what it does is in the ellipse, and its second order is not.
+            large |= named.is_none()
+                && own.candidate.domain == Domain::Speed
+                && beyond(system, fit, &cause);
+            cause.other_order = other_order;
+            match &named {
+                None => named = Some(Box::new(cause)),
+                Some(_) => others.push(cause),
+            }
+            if large && others.len() < OTHERS {
+                continue;
+            }
+            break;
+        }
+        let why = if !listed(own.candidate.name) {
+            "the catalogue has no such cause".to_owned()
+        } else if locked {
+            "at this constant speed an error that goes with the angle has that frequency, too"
+                .to_owned()
+        } else if crawling {
+            "it goes to and fro less than four times".to_owned()
+        } else if wandering {
+            "many crests beside it are as high: its frequency wanders".to_owned()
+        } else if !slow {
+            "steps explain it as well".to_owned()
+        } else if let Some(refusal) = held.refusal {
+            refusal
+        } else if ahead.outdone {
+            "two other causes together explain more".to_owned()
+        } else {
+            let rivals: Vec<String> = rivals.iter().map(|r| plain(r)).collect();
+            format!(
+                "{} {} it as well",
+                rivals.join(" and "),
+                agree(rivals.len(), "explains", "explain")
+            )
+        };
+        // Such a line says nothing against faster ones.
+        let domain = if crawling {
+            Domain::Time
+        } else {
+            own.candidate.domain
+        };
+        let hertz = own.candidate.inner().filter(|_| domain == Domain::Line);
+        let likeness = like(own.candidate.name, &why);
+        let unnamed = Unnamed {
+            log_p: own.log_p,
+            // What a drift leaves of steps can look like anything, too.
+            gain: own.gain.max(steps.unwrap_or_default()),
+            what: What::Error(domain, hertz, likeness),
+        };
+        if first.is_some() {
+            system.retain(|i| i < mark);
+            continue;
+        }
+        system.extend();
+        let shapes = both(&own.candidate.shapes, &held.beyond);
+        let paid = paid_where_noise_shows(system, fit, &own.candidate.shapes, own.freedom as f64);
+        first = Some(Contender::Unnamed(Nameless {
+            unnamed,
+            domain: Some(domain),
+            name: own.candidate.name,
+            shapes,
+            paid: paid.max(steps.unwrap_or_default()),
+            is_noise: held.is_noise,
+        }));
+    }
+    match (named, first) {
+        (Some(cause), _) => Contender::Named(cause, others),
+        (None, Some(unnamed)) => unnamed,
+        // Nothing was tried: there was nothing to try.
+        (None, None) => Contender::Unnamed(Nameless::default()),
+    }
+}
+
+/// Whether tangents do not do for a cause beside a fit.
+fn beyond(system: &System, fit: &Fit, cause: &Accepted) -> bool {
+    let mut cause = cause.clone();
+    cause.first = fit.shapes.len();
+    let with = system.fit(both(&fit.shapes, &cause.candidate.shapes));
+    astray(system, &with, &[cause])
+}
+
+/// A number that shows twice, as an amount and by the shapes, stands on a grid that is coarse for them, and so does one that
+/// drifts are compared with: the best such cause is compared with the others where its number is fitted.
+fn off_the_grid(system: &mut System, fit: &Fit, scored: &mut [Scored]) {
+    let twice = |c: &Candidate| matches!(c.sign, Sign::Known(_));
+    let as_drift = |c: &Candidate| c.as_drift;
+    for coarse in [&twice as &dyn Fn(&Candidate) -> bool, &as_drift] {
+        let most = scored.iter().map(|s| s.gain).fold(0.0, f64::max);
+        let all = scored
+            .iter_mut()
+            .filter(|s| coarse(&s.candidate) && s.gain > RIVALS * most);
+        let Some(best) = all.max_by(|a, b| a.gain.total_cmp(&b.gain)) else {
+            continue;
+        };
+        let mut cause = Accepted::new(best.candidate.clone());
+        exact::tuned(system, &fit.shapes, &mut cause, best.gain);
+        let beside = Beside::new(&system.total, &fit.shapes);
+        if let Some(fitted) = score(&beside, cause.candidate) {
+            *best = fitted;
+        }
+    }
+    scored.sort_by(|a, b| a.log_p.total_cmp(&b.log_p));
+}
+
+/// What needs far fewer numbers for nearly as much as the best explains goes first: many numbers bend to anything, and the
+/// tangents of a large cause are off by about a hundredth.
+fn fewer_first(scored: &mut [Scored]) {
+    /// So many fewer.
+    const FEWER: usize = 3;
+    /// Share of what the best explains.
+    const AS_MUCH: f64 = 0.99;
+    let Some(best) = scored.first() else { return };
+    let (name, gain, freedom) = (best.candidate.name, best.gain, best.freedom);
+    let other = |s: &Scored| {
+        s.candidate.name != name && s.gain > AS_MUCH * gain && s.freedom + FEWER <= freedom
+    };
+    let others = (0..scored.len()).filter(|i| other(&scored[*i]));
+    if let Some(at) = others.min_by_key(|i| scored[*i].freedom) {
+        scored[..=at].rotate_right(1);
+    }
+}
+
+/// Whether, at a speed that hardly changes, a line stands where something that goes with the angle would: at half orders of
+/// the scale period, or at whole ones beside a fourth or half of the sample rate, where a multiplexer puts them.
+fn goes_with_angle(context: &Context, candidate: &Candidate) -> bool {
+    let halves = (1..2 * TOP).step_by(2).map(|m| (0.0, 0.5 * f64::from(m)));
+    let beside_rate = (-TOP..=TOP).flat_map(|m| [0.25, 0.5].map(|share| (share, f64::from(m))));
+    stands_at(context, candidate, halves.chain(beside_rate))
+}
+
+/// Whether, at a speed that hardly changes, a line with its harmonics stands where harmonics of the scale period do: together they look
+/// like that, and each of them is told by itself.
+fn is_of_orders(context: &Context, candidate: &Candidate) -> bool {
+    causes::has_harmonics(candidate)
+        && stands_at(context, candidate, (1..=TOP).map(|m| (0.0, f64::from(m))))
+}
+
+/// Whether a line stands, at a speed that hardly changes, at a share of the sample rate and an order of the scale period from there.
+fn stands_at(
+    context: &Context,
+    candidate: &Candidate,
+    mut places: impl Iterator<Item = (f64, f64)>,
+) -> bool {
+    /// Cycles per recording by which it may be off.
+    const NEAR: f64 = 0.7;
+    /// Fewest scale periods, so that hardly a line stands there by chance.
+    const FEWEST: f64 = 50.0;
+    // Vibration too: where it goes with the angle it may be an error of the sensor.
+    let line = candidate.domain == Domain::Line || candidate.name == causes::VIBRATION;
+    let many = context.periods_travelled() > FEWEST;
+    let told = line && many && !causes::speed_varies_much(context);
+    let Some(hertz) = candidate.inner().filter(|_| told) else {
+        return false;
+    };
+    let duration = context.samples() as f64 / context.rate;
+    let turning = context.periods_travelled() / duration;
+    places.any(|(share, order)| {
+        (hertz - share * context.rate - order * turning).abs() * duration < NEAR
+    })
+}
+
+/// Log-likelihood that a cause explains where noise of the channels is looked for, its numbers paid for: what it explains along
+/// the circle as well says nothing against that noise.
+pub(crate) fn paid_where_noise_shows(
+    system: &System,
+    fit: &Fit,
+    cause: &[Shape],
+    numbers: f64,
+) -> f64 {
+    let power = |fit: &Fit| Channels::of(system, &system.residual(fit)).power();
+    let with = system.fit(both(&fit.shapes, cause));
+    let gain = 0.5 * (power(fit) - power(&with)) / system.noise().powi(2);
+    gain - price(system.context.samples() as f64) * numbers
+}

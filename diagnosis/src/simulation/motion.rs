@@ -1,0 +1,141 @@
+//! `motion.csv`: the smooth motion of a recording, which the extended simulation is moved along.
+
+use std::f64::consts::TAU;
+use std::fmt::Write;
+
+use nonius_recording::Recording;
+
+use crate::causes::{COGGING, COMMON_BANDWIDTH, VIBRATION};
+use crate::checks::timebase::GAP;
+use crate::context::Context;
+use crate::diagnose::Diagnosis;
+use crate::finding::Finding;
+use crate::motion::spline::Spline;
+
+/// What a sample counts that the diagnosis leaves out: where there is no other, the motion goes along it.
+const LEFT_OUT: f64 = 1e-6;
+
+/// Where the axis is by the extended model, as a spline of the sample's number: radians of the scale period.
+#[derive(Clone, Debug)]
+pub(crate) struct Motion {
+    spline: Spline,
+    coefficients: Vec<f64>,
+}
+
+impl Motion {
+    /// Of an angle less all that the sensor does to it, radians, with knots as close as the angle is followed.
+    pub(crate) fn of(context: &Context, angle: &[f64]) -> Self {
+        let n = context.samples();
+        let spacing = context.followed().map_or(n as f64, Spline::spacing);
+        let weights = weights(context);
+        let spline = Spline::new(n, spacing, &weights);
+        let coefficients = spline.fit(angle, &weights);
+        Self {
+            spline,
+            coefficients,
+        }
+    }
+
+    /// The same less what findings add to it, which the simulation adds itself.
+    fn smooth(&self, context: &Context, findings: &[Finding]) -> Self {
+        let mut added = vec![0.0; context.samples()];
+        for finding in findings {
+            let at = added_by(finding, context);
+            let each = added.iter_mut().enumerate();
+            each.for_each(|(k, added)| *added += at(k));
+        }
+        let added = self.spline.fit(&added, &weights(context));
+        let pairs = self.coefficients.iter().zip(added);
+        Self {
+            spline: self.spline.clone(),
+            coefficients: pairs.map(|(all, added)| all - added).collect(),
+        }
+    }
+}
+
+fn weights(context: &Context) -> Vec<f64> {
+    let weights = context.weight.iter();
+    weights.map(|w| w.max(LEFT_OUT)).collect()
+}
+
+/// What the simulation of a finding adds to the angle at each sample, radians, and the positions hold yet: real motion, and the lag of a
+/// low pass that was seen in the radius.
+fn added_by<'a>(finding: &'a Finding, context: &'a Context) -> impl Fn(usize) -> f64 + 'a {
+    let cause = finding.cause.as_str();
+    let [amplitude, phase, frequency, order, tau] =
+        ["amplitude", "phase", "frequency_hz", "order", "tau_s"]
+            .map(|name| finding.parameter(name).unwrap_or(0.0));
+    move |k| {
+        let angle = match (cause, &context.phi) {
+            (VIBRATION, _) => TAU * frequency * context.time[k],
+            (COGGING, Some(phi)) => order * phi[k],
+            (COMMON_BANDWIDTH, _) => return -(tau * context.speed[k]).atan(),
+            _ => return 0.0,
+        };
+        amplitude * (angle + phase).cos()
+    }
+}
+
+/// Samples in a row, each a usual time after the one before: the first's number, its time in seconds, the last's number.
+struct Run {
+    first: usize,
+    time: f64,
+    last: usize,
+}
+
+/// The recording without its pauses.
+fn runs(context: &Context) -> Vec<Run> {
+    let (time, rate) = (&context.time, context.rate);
+    let mut runs = vec![Run {
+        first: 0,
+        time: 0.0,
+        last: 0,
+    }];
+    for k in 1..time.len() {
+        let pause = (time[k] - time[k - 1]) * rate > GAP;
+        match runs.last_mut() {
+            Some(run) if pause => {
+                // Times that scatter never run back.
+                let next = run.time + (k - run.first) as f64 / rate;
+                runs.push(Run {
+                    first: k,
+                    time: time[k].max(next),
+                    last: k,
+                });
+            }
+            Some(run) => run.last = k,
+            None => {}
+        }
+    }
+    runs
+}
+
+/// The motion of a recording without what findings of motion are: position and speed at its start, at its end, at the knots of its
+/// spline between them, and on either side of a pause. The cubics between these rows are the spline.
+#[must_use]
+pub fn motion_csv(found: &Diagnosis, recording: &Recording) -> String {
+    let context = &found.context;
+    let motion = found.motion.smooth(context, &found.findings);
+    let (spline, rate) = (&motion.spline, context.rate);
+    let start = recording.time_s.first().copied().unwrap_or_default();
+    let mut out = String::from("time_s,position_periods,speed_periods_per_s\n");
+    let mut written = f64::NEG_INFINITY;
+    for run in runs(context) {
+        let [first, last] = [run.first, run.last].map(|k| k as f64);
+        let inside = spline.knots().filter(|knot| *knot > first && *knot < last);
+        let end = (run.last > run.first).then_some(last);
+        for knot in std::iter::once(first).chain(inside).chain(end) {
+            let time = start + (run.time + (knot - first) / rate);
+            // A knot beside the end may be no later, as such a number says it.
+            if time <= written {
+                continue;
+            }
+            written = time;
+            // Of a clock that counts from long ago, this time may be rounded: the position is that of the time that is written.
+            let at = first + (time - start - run.time) * rate;
+            let (angle, speed) = spline.between(&motion.coefficients, at);
+            let _ = writeln!(out, "{time},{},{}", angle / TAU, speed * rate / TAU);
+        }
+    }
+    out
+}
