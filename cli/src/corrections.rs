@@ -1,15 +1,18 @@
 //! What a diagnosis switches on in a design: the corrections that the chip can make.
 
 mod harmonics;
+mod outcome;
 
 use std::f64::consts::TAU;
 
 use anyhow::{Context, Result};
-use nonius_diagnosis::Diagnosis;
+use nonius_diagnosis::{Chip, Diagnosis};
 use nonius_model::design::{Design, DesignError};
 use nonius_model::spec::Spec;
 use nonius_quantity::{Quantity, Unit, agree};
 use toml_edit::{ArrayOfTables, DocumentMut, Item, Table, value};
+
+pub(crate) use outcome::Outcome;
 
 /// Room above the largest bend that was found.
 const ROOM: f64 = 1.5;
@@ -17,14 +20,14 @@ const ROOM: f64 = 1.5;
 /// Scale periods of travel that show what calibration on line would find.
 const FEWEST: f64 = 2.0;
 
-/// Largest coefficient of T2 or T3 in either channel, as a fraction of the amplitude; `None` if no bend was found.
-fn bend(found: &Diagnosis) -> Option<f64> {
+/// The findings that are bends, and the largest coefficient of T2 or T3 in either channel, as a fraction of the amplitude.
+fn bends(found: &Diagnosis) -> (Vec<usize>, f64) {
     let beta = found.context.ellipse.beta;
-    let amounts = found
-        .findings
-        .iter()
-        .filter_map(|f| harmonics::bend(f, beta));
-    amounts.reduce(f64::max)
+    let all = found.findings.iter().enumerate();
+    let (which, amounts): (Vec<usize>, Vec<f64>) = all
+        .filter_map(|(k, f)| Some((k, harmonics::bend(f, beta)?)))
+        .unzip();
+    (which, amounts.into_iter().fold(0.0, f64::max))
 }
 
 /// A bandwidth behind which the completion sees the bend, where the loop of the design is too wide for that and the
@@ -53,23 +56,54 @@ fn designed(document: &DocumentMut) -> Result<Designed> {
     Ok(Design::new(&spec).map(|_| text))
 }
 
-/// The design with the corrections for what was found; a sentence for each that was switched on, or could not be.
+/// The design with the corrections for what was found; what was switched on, or could not be.
 ///
 /// # Errors
 /// The text is no TOML: it was read before, so a defect.
-pub(crate) fn switch_on(text: &str, found: &Diagnosis) -> Result<(String, Vec<String>)> {
-    let (text, mut notes) = correct_skew(text, found)?;
-    let (text, more) = correct_bends(&text, found)?;
-    notes.extend(more);
-    let (text, more) = correct_harmonics(&text, found)?;
-    notes.extend(more);
-    Ok((text, notes))
+pub(crate) fn switch_on(text: &str, found: &Diagnosis) -> Result<(String, Vec<Outcome>)> {
+    let mut outcomes = followed(text, found)?;
+    let mut text = text.to_owned();
+    for correct in [correct_skew, correct_bends, correct_harmonics] {
+        let (changed, more) = correct(&text, found)?;
+        text = changed;
+        outcomes.extend(more);
+    }
+    Ok((text, outcomes))
+}
+
+/// What says that there is no design, of all findings that one could correct.
+pub(crate) fn without_design(found: &Diagnosis, why: &anyhow::Error) -> Outcome {
+    let all = found.findings.iter().enumerate();
+    let could = all.filter(|(_, f)| f.chip == Chip::Corrects);
+    Outcome::said(
+        format!("no design.toml: {why:#}"),
+        could.map(|(k, _)| k).collect(),
+    )
+}
+
+/// The findings of these causes.
+fn of(found: &Diagnosis, causes: &[&str]) -> Vec<usize> {
+    let all = found.findings.iter().enumerate();
+    let named = all.filter(|(_, f)| causes.contains(&f.cause.as_str()));
+    named.map(|(k, _)| k).collect()
+}
+
+/// A drift is followed by the calibration on line, where there is one.
+fn followed(text: &str, found: &Diagnosis) -> Result<Vec<Outcome>> {
+    let drifts = of(found, &["offset_drift", "gain_drift"]);
+    let calibration = Spec::from_toml(text, "design.toml")?.calibration;
+    if drifts.is_empty() || calibration.is_on() {
+        return Ok(vec![]);
+    }
+    let sentence = "the calibration of design.toml is off, so nothing follows the drift";
+    Ok(vec![Outcome::impossible(sentence.into(), drifts)])
 }
 
 /// The delay of the sine as it was measured: that of the raw signals, so it takes the place of one that the design had.
-fn correct_skew(text: &str, found: &Diagnosis) -> Result<(String, Vec<String>)> {
-    let skews = found.findings.iter().filter(|f| f.cause == "channel_skew");
-    let delays: Vec<f64> = skews.filter_map(|f| f.parameter("delay_s")).collect();
+fn correct_skew(text: &str, found: &Diagnosis) -> Result<(String, Vec<Outcome>)> {
+    let skews = of(found, &["channel_skew"]);
+    let delay = |&k: &usize| found.findings[k].parameter("delay_s");
+    let delays: Vec<f64> = skews.iter().filter_map(delay).collect();
     if delays.is_empty() {
         return Ok((text.to_owned(), vec![]));
     }
@@ -80,14 +114,14 @@ fn correct_skew(text: &str, found: &Diagnosis) -> Result<(String, Vec<String>)> 
     Ok(match designed(&document)? {
         Ok(changed) => {
             let note = format!("design.toml corrects that {}", late(delay));
-            (changed, vec![note])
+            (changed, vec![Outcome::said(note, skews)])
         }
         Err(error) => {
             let note = format!(
                 "{}, but the correction of that does not fit the design: {error}",
                 late(delay)
             );
-            (text.to_owned(), vec![note])
+            (text.to_owned(), vec![Outcome::impossible(note, skews)])
         }
     })
 }
@@ -105,21 +139,25 @@ fn late(delay: f64) -> String {
 
 /// The table of harmonics, for what no parameter on line mends. Those that were measured are of the raw signals, so they take
 /// the place of what the design had.
-fn correct_harmonics(text: &str, found: &Diagnosis) -> Result<(String, Vec<String>)> {
+fn correct_harmonics(text: &str, found: &Diagnosis) -> Result<(String, Vec<Outcome>)> {
     let spec = Spec::from_toml(text, "design.toml")?;
-    let (list, mut notes) = harmonics::table(found, spec.calibration.has_bend());
-    if list.is_empty() {
-        return Ok((text.to_owned(), notes));
+    let harmonics::Harmonics {
+        entries,
+        findings,
+        left_out: mut outcomes,
+    } = harmonics::table(found, spec.calibration.has_bend());
+    if entries.is_empty() {
+        return Ok((text.to_owned(), outcomes));
     }
-    let mut entries = ArrayOfTables::new();
-    for h in &list {
+    let mut tables = ArrayOfTables::new();
+    for h in &entries {
         let mut entry = Table::new();
         entry["order"] = value(i64::from(h.order));
         entry["amplitude_cos"] = value(h.amplitude_cos);
         entry["phase_cos"] = value(h.phase_cos);
         entry["amplitude_sin"] = value(h.amplitude_sin);
         entry["phase_sin"] = value(h.phase_sin);
-        entries.push(entry);
+        tables.push(entry);
     }
     let mut document: DocumentMut = text.parse().context("the design is no TOML")?;
     let section = document.entry("correction").or_insert_with(|| {
@@ -133,76 +171,80 @@ fn correct_harmonics(text: &str, found: &Diagnosis) -> Result<(String, Vec<Strin
     if let Some(table) = section.as_table_mut() {
         table.set_dotted(false);
     }
-    section["harmonics"] = Item::ArrayOfTables(entries);
-    let orders: Vec<String> = list.iter().map(|h| h.order.to_string()).collect();
+    section["harmonics"] = Item::ArrayOfTables(tables);
+    let orders: Vec<String> = entries.iter().map(|h| h.order.to_string()).collect();
     let orders = format!(
         "{} {}",
-        agree(list.len(), "order", "orders"),
+        agree(entries.len(), "order", "orders"),
         orders.join(", ")
     );
     Ok(match designed(&document)? {
         Ok(changed) => {
-            notes.push(format!(
-                "design.toml corrects harmonics of the scale period by a table: {orders}"
-            ));
-            (changed, notes)
+            let note =
+                format!("design.toml corrects harmonics of the scale period by a table: {orders}");
+            outcomes.push(Outcome::said(note, findings));
+            (changed, outcomes)
         }
         Err(error) => {
-            notes.push(format!(
+            let note = format!(
                 "harmonics were found ({orders}), but a table of them does not fit the design: {error}"
-            ));
-            (text.to_owned(), notes)
+            );
+            outcomes.push(Outcome::impossible(note, findings));
+            (text.to_owned(), outcomes)
         }
     })
 }
 
 /// Nine parameters for channels that bend.
-fn correct_bends(text: &str, found: &Diagnosis) -> Result<(String, Vec<String>)> {
-    let unchanged = |notes| Ok((text.to_owned(), notes));
-    let Some(bend) = bend(found) else {
-        return unchanged(vec![]);
-    };
+fn correct_bends(text: &str, found: &Diagnosis) -> Result<(String, Vec<Outcome>)> {
+    let (which, bend) = bends(found);
+    let said = |note: String| vec![Outcome::said(note, which.clone())];
+    let unchanged = |note: String| Ok((text.to_owned(), said(note)));
     let spec = Spec::from_toml(text, "design.toml")?;
-    if spec.calibration.has_bend() || !spec.calibration.is_on() {
-        return unchanged(vec![]);
+    if which.is_empty() || !spec.calibration.is_on() {
+        return Ok((text.to_owned(), vec![]));
+    }
+    if spec.calibration.has_bend() {
+        return unchanged("design.toml calibrates bends already".into());
     }
     if spec.sensor.periods_per_revolution == Some(1.0) {
-        return unchanged(vec![
+        return unchanged(
             "the channels bend, but a scale period is a revolution: motion at two cycles per revolution would be learnt \
              as a bend, so the design keeps its parameters, and the bend goes into the table of harmonics"
                 .into(),
-        ]);
+        );
     }
     if found.context.periods_travelled() < FEWEST {
-        return unchanged(vec![
+        return unchanged(
             "the channels bend, but hardly a scale period was travelled: whether they do elsewhere, and whether a scale \
              period is a revolution, cannot be seen, so the design keeps its parameters, and the bend goes into the table \
              of harmonics"
                 .into(),
-        ]);
+        );
     }
     let mut document: DocumentMut = text.parse().context("the design is no TOML")?;
     document["calibration"]["parameters"] = value(9);
     let bend_max = (ROOM * bend).clamp(0.02, 0.2);
     document["sensor"]["bend_max"] = value(format!("{bend_max:.2e}").parse::<f64>()?);
-    let mut notes = vec![];
+    let mut outcomes = vec![];
     if let Some(bandwidth) = narrower(&spec, found) {
         document["loop"]["bandwidth_hz"] = value(bandwidth);
-        notes.push(format!(
+        outcomes.extend(said(format!(
             "its loop is narrowed to {bandwidth} Hz, twice the usual signal frequency: what a wider loop follows it \
              cannot tell from motion"
-        ));
+        )));
     }
     match designed(&document)? {
         Ok(changed) => {
-            notes.push(format!(
+            outcomes.extend(said(format!(
                 "design.toml calibrates nine parameters now, for the bend of the channels (up to {:.2} %)",
                 100.0 * bend
-            ));
-            Ok((changed, notes))
+            )));
+            Ok((changed, outcomes))
         }
-        Err(error) => unchanged(vec![format!(
+        // The table of harmonics may hold it then.
+        Err(error) => unchanged(format!(
             "the channels bend, but nine parameters do not fit the design: {error}"
-        )]),
+        )),
     }
 }

@@ -10,6 +10,7 @@ use nonius_quantity::{Unit, before_after, digits};
 use nonius_recording::Recording;
 use serde::Serialize;
 
+use crate::corrections::Outcome;
 use crate::recording_args::RecordingArgs;
 
 /// What to diagnose.
@@ -59,9 +60,27 @@ pub(crate) fn run(args: &Diagnose) -> Result<bool> {
     let hash = hash(&args.recording)?;
     let given = args.design.as_deref();
     let design = given.map(crate::design_file::read).transpose()?;
-    let found = diagnose(&recording)
+    let mut found = diagnose(&recording)
         .map_err(|error| anyhow::anyhow!("{}: {error}", args.recording.display()))?;
     crate::notes(&found.notes);
+    let design = match design {
+        Some((_, text)) => Ok(text),
+        None => crate::new::fitted_text("fitted", &args.recording, &recording),
+    };
+    let (design, outcomes) = match design {
+        Ok(text) => {
+            let (text, outcomes) = crate::corrections::switch_on(&text, &found)?;
+            (Some(text), outcomes)
+        }
+        Err(why) => {
+            let outcome = crate::corrections::without_design(&found, &why);
+            (None, vec![outcome])
+        }
+    };
+    for outcome in &outcomes {
+        outcome.tell(&mut found);
+    }
+    crate::notes(outcomes.iter().map(Outcome::sentence));
     let json = serde_json::to_string_pretty(&Findings {
         schema: "nonius.findings/1",
         recording: About {
@@ -96,15 +115,7 @@ pub(crate) fn run(args: &Diagnose) -> Result<bool> {
                 .into_bytes(),
         ),
     ];
-    let design = match design {
-        Some((_, text)) => Some(text),
-        None => crate::new::fitted_text("fitted", &args.recording, &recording)
-            .map_err(|error| eprintln!("note: no design.toml: {error:#}"))
-            .ok(),
-    };
     if let Some(text) = design {
-        let (text, notes) = crate::corrections::switch_on(&text, &found)?;
-        crate::notes(notes);
         files.push(("design.toml".into(), text.into_bytes()));
     }
     nonius_package::write(&files, &args.output)?;

@@ -143,6 +143,58 @@ fn a_harmonic_of_either_order_is_not_corrected() {
 }
 
 /// At standstill nothing can be told from offset and gain: no names, but what to record.
+/// A recording of an axis to and fro whose channels are what is said of time and angle, in amplitudes.
+fn recorded(channels: impl Fn(f64, f64) -> (f64, f64)) -> String {
+    let mut noise = noise();
+    let mut text = String::from("# adc_bits: 14\n# full_scale: 1\ntime_s,cos,sin\n");
+    for k in 0..20_000 {
+        let t = f64::from(k) * 2e-5;
+        let (cos, sin) = channels(t, 90.0 * (30.0 * t).sin() + 200.0 * t);
+        let mut code = |v: f64| (0.8 * (v + 1e-3 * noise()) * 8192.0).round() / 8192.0;
+        text += &format!("{t:.6},{},{}\n", code(cos), code(sin));
+    }
+    text
+}
+
+/// What the design cannot hold is not said to be corrected, neither in findings.json nor in the report, which has the reason.
+#[test]
+fn what_does_not_fit_the_design_is_said() {
+    let dir = tempfile::tempdir().expect("scratch");
+    let read = |file: &str| fs::read_to_string(dir.path().join(file)).expect("written");
+    let first = |out: &str| {
+        let json = read(&format!("{out}/findings.json"));
+        let json: serde_json::Value = serde_json::from_str(&json).expect("JSON");
+        json["findings"][0].clone()
+    };
+    // A loop would lose half its bandwidth along a period by the table of so large a harmonic.
+    let steep = |_: f64, a: f64| {
+        let of = |phase: f64| 0.09 * (7.0 * a + phase).cos();
+        (a.cos() + of(0.4), a.sin() + of(-1.2))
+    };
+    fs::write(dir.path().join("r.csv"), recorded(steep)).expect("recording");
+    let said = done(dir.path(), &["diagnose", "r.csv", "-o", "steep"]);
+    let reason = "(order 7), but a table of them does not fit the design";
+    assert!(said.contains(reason), "{said}");
+    let found = first("steep");
+    assert_eq!(found["cause"], "spatial_harmonic");
+    assert_eq!(found["chip"], "cannot correct");
+    assert!(read("steep/report.html").contains(reason));
+    // The chip of the given design follows nothing.
+    let drifting = |t: f64, a: f64| (a.cos() + 0.05 * t, a.sin());
+    fs::write(dir.path().join("r.csv"), recorded(drifting)).expect("recording");
+    done(dir.path(), &["diagnose", "r.csv", "-o", "fitted"]);
+    let found = first("fitted");
+    assert_eq!(found["cause"], "offset_drift");
+    assert_eq!(found["chip"], "corrects");
+    let design = read("fitted/design.toml").replace("parameters = 5", "parameters = 0");
+    fs::write(dir.path().join("off.toml"), design).expect("a design");
+    let call = ["diagnose", "r.csv", "-o", "off", "--design", "off.toml"];
+    done(dir.path(), &call);
+    assert_eq!(first("off")["chip"], "cannot correct");
+    let reason = "the calibration of design.toml is off, so nothing follows the drift";
+    assert!(read("off/report.html").contains(&reason[1..]));
+}
+
 #[test]
 fn a_standstill_is_refused() {
     let dir = tempfile::tempdir().expect("scratch");

@@ -8,6 +8,8 @@ use nonius_model::design::ORDER_MAX;
 use nonius_model::spec::Harmonic;
 use nonius_quantity::ordinal;
 
+use super::Outcome;
+
 /// Phase by which a harmonic may miss that of a bend, radians.
 const PHASE: f64 = 0.3;
 
@@ -108,34 +110,47 @@ fn unsure(finding: &Finding) -> bool {
     error.is_nan() || value.is_nan() || error > UNSURE * value
 }
 
-/// The table for what was found and what no bend mends, by order; `bends`: the design has parameters for those. With it what
-/// was left out because it is not measured well enough.
-pub(super) fn table(found: &Diagnosis, bends: bool) -> (Vec<Harmonic>, Vec<String>) {
+/// A table of harmonics.
+pub(super) struct Harmonics {
+    /// By order.
+    pub(super) entries: Vec<Harmonic>,
+    /// The findings that it corrects, by their place in the list.
+    pub(super) findings: Vec<usize>,
+    /// What is not in it because it is not measured well enough.
+    pub(super) left_out: Vec<Outcome>,
+}
+
+/// The table for what was found and what no bend mends; `bends`: the design has parameters for those.
+pub(super) fn table(found: &Diagnosis, bends: bool) -> Harmonics {
     let beta = found.context.ellipse.beta;
     let whole = found.context.periods_per_revolution == Some(1);
     let mut orders: BTreeMap<u32, Pair> = BTreeMap::new();
     let mut left_out = vec![];
-    for finding in &found.findings {
+    let mut findings = vec![];
+    for (k, finding) in found.findings.iter().enumerate() {
         let waves = waves(finding, beta, whole);
         if waves.is_empty() || (bends && bend(finding, beta).is_some()) {
             continue;
         }
         // By the wrong one the angle would be twice as wrong.
         if let Some(other) = finding.parameter(OTHER_ORDER) {
-            left_out.push(format!(
+            let why = format!(
                 "{} is not in the table of harmonics: it may be the {} harmonic as well, which errs the other way",
                 finding.cause,
                 ordinal(other as usize)
-            ));
+            );
+            left_out.push(Outcome::said(why, vec![k]));
             continue;
         }
         if unsure(finding) {
-            left_out.push(format!(
+            let why = format!(
                 "{} is not in the table of harmonics: its standard error is more than a third of it",
                 finding.cause
-            ));
+            );
+            left_out.push(Outcome::said(why, vec![k]));
             continue;
         }
+        findings.push(k);
         for (order, cos, sin) in waves {
             if !(2..=ORDER_MAX).contains(&order) {
                 continue;
@@ -158,7 +173,11 @@ pub(super) fn table(found: &Diagnosis, bends: bool) -> (Vec<Harmonic>, Vec<Strin
             phase_sin,
         }
     });
-    (list.collect(), left_out)
+    Harmonics {
+        entries: list.collect(),
+        findings,
+        left_out,
+    }
 }
 
 /// Rounded to a multiple of `step`, as short as it can be written.

@@ -187,6 +187,9 @@ pub struct Finding {
     pub evidence: String,
     /// What the chip can do.
     pub chip: Chip,
+    /// What `design.toml` does about it, in sentences; the program that writes the design says so.
+    #[serde(skip)]
+    pub design: Vec<String>,
     /// log-likelihood that it explains: the order of the findings.
     #[serde(skip)]
     pub weight: f64,
@@ -265,6 +268,7 @@ impl Finding {
             gain: Gain::default(),
             evidence,
             chip: Chip::CannotCorrect,
+            design: vec![],
             weight: f64::MAX,
             effect: None,
             place: None,

@@ -375,6 +375,7 @@ fn finding(
         },
         evidence,
         chip: Chip::CannotCorrect,
+        design: vec![],
         weight: gain,
         effect: None,
         place: None,

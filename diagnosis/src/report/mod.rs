@@ -60,7 +60,7 @@ struct Section {
     snr: Option<f64>,
     chance: String,
     confused: Vec<(String, String)>,
-    chip: &'static str,
+    chip: String,
     plots: Vec<String>,
 }
 

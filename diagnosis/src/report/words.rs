@@ -19,24 +19,41 @@ pub(super) fn capital(sentence: &str) -> String {
     first.unwrap_or_default() + letters.as_str()
 }
 
+/// What the chip can do about it, and what `design.toml` does.
+pub(super) fn chip(finding: &Finding) -> String {
+    let mut said = able(finding).to_owned();
+    for sentence in &finding.design {
+        // A file's name stays as it is.
+        let begins = sentence.split(' ').next().unwrap_or_default();
+        let sentence = if begins.contains('.') {
+            sentence.clone()
+        } else {
+            capital(sentence)
+        };
+        let end = if sentence.ends_with('.') { "" } else { "." };
+        said += &format!(" {sentence}{end}");
+    }
+    said
+}
+
 /// What the chip can do about it.
-pub(super) fn chip(finding: &Finding) -> &'static str {
+fn able(finding: &Finding) -> &'static str {
     let order = finding.parameter("order");
     match (finding.chip, finding.cause.as_str()) {
         (Chip::Corrects, "even_nonlinearity" | "odd_nonlinearity") => {
-            "The chip corrects it with nine parameters on line, or from its table of harmonics where a scale period is a revolution; design.toml switches them on where it can."
+            "The chip corrects it with nine parameters on line, or from its table of harmonics where a scale period is a revolution."
         }
         (Chip::Corrects, "spatial_harmonic") if finding.parameter(OTHER_ORDER).is_some() => {
-            "The chip can correct it from its table of harmonics once its order is known; by the wrong one the angle would be twice as wrong, so design.toml leaves it out. A reference tells, or a speed at which the motion is smoother than this."
+            "The chip can correct it from its table of harmonics once its order is known; by the wrong one the angle would be twice as wrong. A reference tells, or a speed at which the motion is smoother than this."
         }
         (Chip::Corrects, "spatial_harmonic") if order == Some(2.0) || order == Some(3.0) => {
-            "The chip corrects it: with nine parameters on line where it is a bend of the channels, else from its table of harmonics; design.toml switches either on."
+            "The chip corrects it: with nine parameters on line where it is a bend of the channels, else from its table of harmonics."
         }
         (Chip::Corrects, "spatial_harmonic" | "graduation_error") => {
-            "The chip corrects it from its table of harmonics, which design.toml holds."
+            "The chip corrects it from its table of harmonics."
         }
         (Chip::Corrects, "channel_skew") => {
-            "The chip corrects it: it turns the sine back by the speed times this delay, which design.toml tells it."
+            "The chip corrects it: it turns the sine back by the speed times this delay."
         }
         (Chip::Corrects, "offset_drift" | "gain_drift") => {
             "The chip corrects it: the calibration on line follows it."
@@ -44,6 +61,9 @@ pub(super) fn chip(finding: &Finding) -> &'static str {
         (Chip::Corrects, _) => "The chip corrects it.",
         (Chip::CannotCorrect, "latency") => {
             "The chip cannot correct it. Behind the chip: add the speed times this delay to the position."
+        }
+        (Chip::CannotCorrect, _) if !finding.design.is_empty() => {
+            "The chip of this design does not correct it."
         }
         (Chip::CannotCorrect, _) => "The chip cannot correct it; mend it in front of the ADC.",
         (Chip::NotASensorError, _) if !finding.confounded_with.is_empty() => {

@@ -321,6 +321,7 @@ impl Selection {
                     ..Gain::of(gain)
                 },
                 chip: accepted.candidate.chip,
+                design: vec![],
                 weight: gain,
                 effect: Some(system.effect(fit, range)),
                 place: None,

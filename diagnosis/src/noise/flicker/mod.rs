@@ -281,6 +281,7 @@ impl Flicker {
             },
             evidence,
             chip: Chip::CannotCorrect,
+            design: vec![],
             weight: self.gain,
             effect: None,
             place: None,
