@@ -9,6 +9,7 @@ use nonius_recording::{AdcPair, Recording};
 use crate::checks::first;
 use crate::motion::spline::Spline;
 use crate::numerics::solve::dot;
+use crate::shapes::trig::Trig;
 
 /// From so many bad samples in a row on, their own angle tells how far the scale moves meanwhile.
 const MANY: usize = 8;
@@ -70,6 +71,8 @@ pub struct Context {
     pub(crate) finer: Option<Spline>,
     /// Corners of the motion hardly count, and the motion's knots are those that do beside them.
     pub(crate) calm: bool,
+    /// What is known to be added to each channel, in its amplitudes, at each angle.
+    pub(crate) periodic: [Trig; 2],
     periods_travelled: f64,
     top_speed: f64,
 }
@@ -144,6 +147,7 @@ impl Context {
             spline: None,
             finer: None,
             calm: false,
+            periodic: [(); 2].map(|()| Trig::constant(0.0)),
             periods_travelled: 0.0,
             top_speed: f64::MIN_POSITIVE,
         };

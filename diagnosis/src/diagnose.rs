@@ -20,11 +20,11 @@ use crate::motion::calm;
 use crate::noise;
 use crate::noise::flicker::{self, Flicker};
 use crate::numerics::statistics;
-use crate::select::choice;
 use crate::select::contender::is_drift;
 use crate::select::score::KINDS;
 use crate::select::select;
 use crate::select::selection::{Accepted, Selection};
+use crate::select::{behind, choice};
 use crate::shapes::library::Row;
 use crate::simulation::motion::Motion;
 use crate::simulation::{Simulation, simulation};
@@ -42,7 +42,7 @@ pub struct Extended {
     pub residual_rms: f64,
     /// The same on data that was not fitted.
     pub held_out_residual_rms: f64,
-    /// Against the reference, radians.
+    /// Against the reference, on data that was not fitted, radians.
     pub position_error_rms_rad: Option<f64>,
 }
 
@@ -222,6 +222,7 @@ fn search(
         let Some(known) = choice::best(&context, selection.again, recording) else {
             continue;
         };
+        let known = behind::decided_anew(&known, recording).unwrap_or(known);
         // A look that makes it worse has gone astray: the tangents have to do.
         if worse(&known, &context) {
             last = true;
@@ -305,8 +306,8 @@ fn conclude(
         halves.held_out(&extended.fit, own, 0),
     );
     let (position_before, position_after) = (
-        halves.position_error(&selection.base),
-        halves.position_error(&extended.fit),
+        halves.position_error(&selection.base, own, 0),
+        halves.position_error(&extended.fit, own, 0),
     );
     for finding in &mut findings {
         finding.gain.held_out_residual_rms_before = held_before;

@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 
 use crate::cause::Cause;
+use crate::lag::Passed;
 use crate::sensor::Sensor;
 
 /// A moment of the recording.
@@ -43,19 +44,40 @@ pub(crate) fn of_both(cause: &Cause, time: f64, phi: f64) -> f64 {
     }
 }
 
-/// What is added to a channel y, in its amplitudes.
-pub(crate) fn of_one(cause: &Cause, which: usize, y: f64, at: &Moment) -> f64 {
+/// What the scale and the bends of a channel add to it, in its amplitudes; delays and filters come behind. The channel is
+/// `amplitude` · cos(α + `phase`), and so its powers are waves: u² = (1 + cos 2)/2 and u³ = (3 cos + cos 3)/4.
+pub(crate) fn of_scale(
+    cause: &Cause,
+    which: usize,
+    amplitude: f64,
+    phase: f64,
+    passed: &Passed,
+) -> f64 {
     let of = |cos: f64, sin: f64| if which == 0 { cos } else { sin };
     match *cause {
-        Cause::EvenNonlinearity { k_cos, k_sin } => of(k_cos, k_sin) * y * y,
-        Cause::OddNonlinearity { k_cos, k_sin } => of(k_cos, k_sin) * y * y * y,
+        Cause::EvenNonlinearity { k_cos, k_sin } => {
+            let square = 0.5 * (1.0 + passed.wave(2.0, 2.0 * phase));
+            of(k_cos, k_sin) * amplitude.powi(2) * square
+        }
+        Cause::OddNonlinearity { k_cos, k_sin } => {
+            let cube = 0.25 * (3.0 * passed.wave(1.0, phase) + passed.wave(3.0, 3.0 * phase));
+            of(k_cos, k_sin) * amplitude.powi(3) * cube
+        }
         Cause::SpatialHarmonic {
             order,
             amplitude_cos,
             phase_cos,
             amplitude_sin,
             phase_sin,
-        } => of(amplitude_cos, amplitude_sin) * (order * at.alpha + of(phase_cos, phase_sin)).cos(),
+        } => of(amplitude_cos, amplitude_sin) * passed.wave(order, of(phase_cos, phase_sin)),
+        _ => 0.0,
+    }
+}
+
+/// What is added to a channel y, in its amplitudes.
+pub(crate) fn of_one(cause: &Cause, which: usize, y: f64, at: &Moment) -> f64 {
+    let of = |cos: f64, sin: f64| if which == 0 { cos } else { sin };
+    match *cause {
         Cause::Saturation {
             threshold,
             compression,

@@ -33,29 +33,32 @@ impl Sensor {
     }
 }
 
-/// cos α or sin(α − β) behind a first-order low pass: the response at the speed of the moment, and the next term.
-pub(crate) fn low_passed(
-    alpha: f64,
-    which: usize,
-    beta: f64,
-    speed: f64,
-    acceleration: f64,
-    tau: f64,
-) -> f64 {
-    let (y, slope) = if which == 0 {
-        (alpha.cos(), -alpha.sin())
-    } else {
-        ((alpha - beta).sin(), (alpha - beta).cos())
-    };
-    // 1/(1 + jωτ) + j ω' τ²/(1 + jωτ)³, of which the real part takes y and the imaginary part its derivative.
-    let x = speed * tau;
-    let one = 1.0 + x * x;
-    let (re, im) = (1.0 / one, -x / one);
-    let (square_re, square_im) = (re * re - im * im, 2.0 * re * im);
-    let (cube_re, cube_im) = (
-        square_re * re - square_im * im,
-        square_re * im + square_im * re,
-    );
-    let turn = acceleration * tau * tau;
-    y * (re - turn * cube_im) + slope * (im + turn * cube_re)
+/// What reaches the ADC of a wave of a channel: later, and behind a first-order low pass.
+pub(crate) struct Passed {
+    /// Angle at which the channel is sampled, radians.
+    pub(crate) late: f64,
+    /// Radians per second.
+    pub(crate) speed: f64,
+    /// Radians per second squared.
+    pub(crate) acceleration: f64,
+    /// Time constant, s.
+    pub(crate) tau: f64,
+}
+
+impl Passed {
+    /// cos(order α + phase) behind it: the response at the wave's speed of the moment, and the next term.
+    pub(crate) fn wave(&self, order: f64, phase: f64) -> f64 {
+        let (sin, cos) = (order * self.late + phase).sin_cos();
+        // 1/(1 + jωτ) + j ω' τ²/(1 + jωτ)³, of which the real part takes the cosine and the imaginary part its derivative.
+        let x = order * self.speed * self.tau;
+        let one = 1.0 + x * x;
+        let (re, im) = (1.0 / one, -x / one);
+        let (square_re, square_im) = (re * re - im * im, 2.0 * re * im);
+        let (cube_re, cube_im) = (
+            square_re * re - square_im * im,
+            square_re * im + square_im * re,
+        );
+        let turn = order * self.acceleration * self.tau * self.tau;
+        cos * (re - turn * cube_im) - sin * (im + turn * cube_re)
+    }
 }

@@ -1,15 +1,15 @@
 //! Samples of a sensor that is moved.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{FRAC_PI_2, TAU};
 
 use rand::{Rng, SeedableRng, rngs::StdRng};
 use rand_distr::StandardNormal;
 
 use crate::cause::Cause;
-use crate::channel::{Moment, of_both, of_one};
+use crate::channel::{Moment, of_both, of_one, of_scale};
 use crate::coupling::Coupling;
 use crate::flicker;
-use crate::lag::low_passed;
+use crate::lag::Passed;
 use crate::motion::Motion;
 use crate::sensor::Sensor;
 use crate::side::sides;
@@ -67,15 +67,15 @@ impl Sensor {
             let pair: [f64; 2] = std::array::from_fn(|which| {
                 let lag = lags[which];
                 let late = alpha - speed[k] * lag.delay + 0.5 * acceleration[k] * lag.delay.powi(2);
-                let y = amplitude
-                    * low_passed(
-                        late,
-                        which,
-                        self.signals.beta,
-                        speed[k],
-                        acceleration[k],
-                        lag.tau,
-                    );
+                let passed = Passed {
+                    late,
+                    speed: speed[k],
+                    acceleration: acceleration[k],
+                    tau: lag.tau,
+                };
+                // cos α, and sin(α − β).
+                let phase = [0.0, -self.signals.beta - FRAC_PI_2][which];
+                let y = amplitude * passed.wave(1.0, phase);
                 let x = Moment {
                     alpha,
                     time,
@@ -83,7 +83,8 @@ impl Sensor {
                     speed: speed[k],
                     side: side[k],
                 };
-                y + self.sum(|c| of_one(c, which, y, &x))
+                y + self.sum(|c| of_scale(c, which, amplitude, phase, &passed))
+                    + self.sum(|c| of_one(c, which, y, &x))
                     + self.sum(|c| self.of_other(c, which, &x))
             });
             let pair = coupling.passed(pair);

@@ -58,6 +58,27 @@ fn obeys(cause: &str, equation: impl Fn(f64, f64) -> [f64; 2]) {
     assert!(largest > 1e-4, "{cause} does nothing");
 }
 
+/// A channel that is sampled later is bent later: at constant speed it is what it was at the angle before.
+#[test]
+fn bends_are_as_late_as_the_channel() {
+    let delay = 4e-5;
+    let before = |alpha: f64| alpha - TAU * 130.0 * delay;
+    let bent = |u: f64| u + 0.05 * u * u - 0.04 * u.powi(3);
+    let causes = "name = \"channel_skew\"\ndelay_s = -4e-5\n\
+        [[cause]]\nname = \"even_nonlinearity\"\nk_cos = 0.05\nk_sin = 0.05\n\
+        [[cause]]\nname = \"odd_nonlinearity\"\nk_cos = -0.04\nk_sin = -0.04\n\
+        [[cause]]\nname = \"spatial_harmonic\"\norder = 5\namplitude_cos = 0.02\nphase_cos = 0.3\n\
+        amplitude_sin = 0.03\nphase_sin = -0.9\n";
+    obeys(causes, |alpha, _| {
+        let cos = alpha.cos();
+        let (sin, late) = ((alpha - BETA).sin(), (before(alpha) - BETA).sin());
+        [
+            bent(cos) - cos + 0.02 * (5.0 * alpha + 0.3).cos(),
+            bent(late) - sin + 0.03 * (5.0 * before(alpha) - 0.9).cos(),
+        ]
+    });
+}
+
 #[test]
 fn delayed_crosstalk() {
     let (into_cos, into_sin, omega) = (3e-6, -2e-6, TAU * 130.0);

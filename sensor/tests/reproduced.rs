@@ -180,6 +180,10 @@ const CROSSTALK: &str =
 const VIBRATION: &str =
     "name = \"vibration\"\nfrequency_hz = 1210.0\namplitude = 0.01\nphase = 0.3";
 const COGGING: &str = "name = \"cogging\"\norder = 48.0\namplitude = 0.03\nphase = 0.3";
+const LATE: &str = "name = \"channel_skew\"\ndelay_s = 2e-5";
+const LARGE_HARMONIC: &str = "name = \"spatial_harmonic\"\norder = 3.0\namplitude_cos = 0.03\nphase_cos = 0.7\namplitude_sin = 0.03\nphase_sin = -2.0";
+const BENT: &str = "name = \"odd_nonlinearity\"\nk_cos = 0.04\nk_sin = -0.03";
+const ONE_LOW_PASS: &str = "name = \"bandwidth_mismatch\"\ntau_cos_s = 0.0\ntau_sin_s = 3e-5";
 const STUCK: &str = "name = \"stuck_bit\"\nbit = 0.0\nchannel = \"cos\"\nlevel = 1.0";
 const LOW_PASS: &str = "name = \"common_bandwidth\"\ntau_s = 2e-5";
 const HYSTERESIS: &str = "name = \"hysteresis\"\noffset_cos = 0.008\noffset_sin = -0.006";
@@ -205,6 +209,10 @@ fn one_cause() {
 fn two_causes() {
     reproduced(&[HARMONIC, HUM]);
     reproduced(&[HYSTERESIS, RUNOUT]);
+    // What a delay does to a harmonic of three per cent or to a bend is a tenth of what it does.
+    reproduced(&[LATE, LARGE_HARMONIC]);
+    reproduced(&[LATE, BENT]);
+    reproduced(&[ONE_LOW_PASS, BENT]);
 }
 
 /// Knots that corners need follow a vibration, too: it is named from the stretches between them, and is in the motion once.

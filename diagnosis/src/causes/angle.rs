@@ -5,7 +5,7 @@ use std::rc::Rc;
 use super::{Catalogue, ORDERS};
 use nonius_quantity::ordinal;
 
-use crate::causes::cause::{Candidate, Domain, Exact, Sign, each, polar};
+use crate::causes::cause::{Adds, Candidate, Domain, Exact, Sign, each, polar};
 use crate::context::Context;
 use crate::finding::{Chip, Parameter};
 use crate::shapes::block::Block;
@@ -47,6 +47,21 @@ fn loses(compression: &Parameter, at_most: bool) -> String {
     format!("the slope is {most}{} lower", compression.brief())
 }
 
+/// A power of each channel, by its amount.
+fn powers<const N: usize>(beta: f64, x: &[f64]) -> [Trig; 2] {
+    let u = normalised(beta);
+    std::array::from_fn(|which| u[which].power(N).scaled(x[which]))
+}
+
+/// Cosine and sine of an order, by their amounts in each channel.
+fn waves<const N: usize>(_: f64, x: &[f64]) -> [Trig; 2] {
+    std::array::from_fn(|which| {
+        let [cos, sin] = [x[2 * which], x[2 * which + 1]];
+        let wave = Trig::cos(N, 0.0).scaled(cos);
+        wave.plus(&Trig::sin(N, 0.0).scaled(sin))
+    })
+}
+
 pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
     let beta = context.ellipse.beta;
     let angle = catalogue.library.add(
@@ -61,10 +76,11 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
         |which: usize, change: &Trig| angle.waves(&channel(beta, which, change), 0, ORDERS);
     let u = normalised(beta);
     let per_channel = |n: usize| (0..2).map(|i| of_channel(i, &u[i].power(n))).collect();
-    let of = |name, shapes: Vec<Shape>, what: &'static str| Candidate {
+    let of = |name, shapes: Vec<Shape>, adds: Adds, what: &'static str| Candidate {
         trials: 2.0,
         // By the bends of 8 and 9 parameters, or by the table of harmonics.
         chip: Chip::Corrects,
+        adds: Some(adds),
         parameters: each(&["k_cos", "k_sin"], "amplitude"),
         evidence: Rc::new(move |p| {
             format!(
@@ -77,10 +93,13 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
     };
     let list = &mut catalogue.candidates;
     list.extend([
-        of("even_nonlinearity", per_channel(2), "y + k·y²"),
-        of("odd_nonlinearity", per_channel(3), "y + k·y³"),
+        of("even_nonlinearity", per_channel(2), powers::<2>, "y + k·y²"),
+        of("odd_nonlinearity", per_channel(3), powers::<3>, "y + k·y³"),
     ]);
-    for order in 2..=7 {
+    let waves: [Adds; 6] = [
+        waves::<2>, waves::<3>, waves::<4>, waves::<5>, waves::<6>, waves::<7>,
+    ];
+    for (order, adds) in (2..=7).zip(waves) {
         let shapes = (0..2)
             .flat_map(|which| {
                 [Trig::cos(order, 0.0), Trig::sin(order, 0.0)].map(|wave| of_channel(which, &wave))
@@ -89,6 +108,7 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
         list.push(Candidate {
             trials: 6.0,
             order: Some(order),
+            adds: Some(adds),
             chip: Chip::Corrects,
             parameters: Rc::new(move |e| {
                 let (a_c, d_c, p_c, e_c) = polar(&e.x[..2], &e.error[..2]);

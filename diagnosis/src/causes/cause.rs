@@ -6,6 +6,7 @@ use nonius_fourier::Complex;
 
 use crate::finding::{Chip, Parameter};
 use crate::shapes::library::{Library, Shape};
+use crate::shapes::trig::Trig;
 
 /// Where a cause lives; what no cause of a domain explains is measured with a generic basis of that domain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -55,6 +56,8 @@ pub(crate) struct Exact {
 }
 /// A factor of the pair, by what its shape says of the radius, less one, and of the angle, radians.
 pub(crate) type Factor = fn(f64, f64) -> Complex<f64>;
+/// What amounts add to each channel, in its amplitudes, at each angle, by the phase error in radians.
+pub(crate) type Adds = fn(f64, &[f64]) -> [Trig; 2];
 /// Makes parameters of an estimate.
 pub(crate) type Reads = Rc<dyn Fn(&Estimate) -> Vec<Parameter>>;
 /// Makes a sentence of parameters.
@@ -96,6 +99,8 @@ pub(crate) struct Candidate {
     pub as_drift: bool,
     /// Where its first shape is a factor of the pair, which is the same as something added only where it is small.
     pub factor: Option<Factor>,
+    /// What it adds to the channels, where that is the same in every period: what delays and filters see, too.
+    pub adds: Option<Adds>,
     /// What the chip can do.
     pub chip: Chip,
     /// How the shapes depend on numbers that are no amounts, where they do.
@@ -127,6 +132,7 @@ impl Candidate {
             sign: Sign::Any,
             as_drift: false,
             factor: None,
+            adds: None,
             chip: Chip::CannotCorrect,
             exact: None,
             parameters: Rc::new(|_| vec![]),

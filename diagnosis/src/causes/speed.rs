@@ -71,6 +71,8 @@ pub(super) struct Speed {
     pub(super) beta: f64,
     /// Largest speed, radians per second.
     top: f64,
+    /// Nothing is known of the channels but that they are sines.
+    sines: bool,
 }
 
 impl Speed {
@@ -96,6 +98,7 @@ impl Speed {
             by: Modulated(modulated(library, 5, functions)),
             beta: context.ellipse.beta,
             top,
+            sines: context.periodic.iter().all(Trig::is_constant),
         }
     }
 
@@ -149,12 +152,12 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
         list.extend(late_bandwidths(&speed, &mut catalogue.library));
     }
     if changes {
-        list.push(skew(&speed));
+        list.push(skew(&speed, &mut catalogue.library));
         list.extend(mismatches(&speed, &mut catalogue.library));
     }
     if varies {
         list.push(common_bandwidth(&speed));
-        list.push(crosstalk(&speed));
+        list.push(crosstalk(&speed, &mut catalogue.library));
     }
     list.extend(direction::hysteresis(context, &speed));
     list.push(direction::tilt(&speed));
@@ -208,15 +211,20 @@ fn late_bandwidths(speed: &Speed, library: &mut Library) -> Vec<Candidate> {
     speed.time_constants().map(one).collect()
 }
 
-fn skew(speed: &Speed) -> Candidate {
-    let shape = speed.times(1, &derivatives(speed.beta)[1]);
+fn skew(speed: &Speed, library: &mut Library) -> Candidate {
+    let make = |delay, library: &mut Library| {
+        vec![library.pair(move |block: &Block, c, s| {
+            block.channel(1, &later(block, 1, delay), c, s);
+        })]
+    };
+    let shapes = if speed.sines {
+        vec![speed.times(1, &derivatives(speed.beta)[1])]
+    } else {
+        make(0.0, library)
+    };
     Candidate {
         chip: Chip::Corrects,
-        exact: follows(0.0, |delay, library| {
-            vec![library.pair(move |block: &Block, c, s| {
-                block.channel(1, &later(block, 1, delay), c, s);
-            })]
-        }),
+        exact: follows(0.0, make),
         evidence: Rc::new(|p| {
             let (late, [first, second]) = if p[0].value < 0.0 {
                 (-1.0, ["sin", "cos"])
@@ -228,7 +236,7 @@ fn skew(speed: &Speed) -> Candidate {
                 "the phase error grows in proportion to speed, as if {second} were sampled {delay} after {first}"
             )
         }),
-        ..cause("channel_skew", vec![shape], &["delay_s"], "s")
+        ..cause("channel_skew", shapes, &["delay_s"], "s")
     }
 }
 
@@ -294,9 +302,7 @@ fn common_bandwidth(speed: &Speed) -> Candidate {
     }
 }
 
-fn crosstalk(speed: &Speed) -> Candidate {
-    let slope = derivatives(speed.beta);
-    let shapes = vec![speed.times(0, &slope[1]), speed.times(1, &slope[0])];
+fn crosstalk(speed: &Speed, library: &mut Library) -> Candidate {
     let make = |inner: &[f64], library: &mut Library| {
         let delay = inner[0];
         let into = |which: usize| {
@@ -305,6 +311,12 @@ fn crosstalk(speed: &Speed) -> Candidate {
             })
         };
         [0, 1].map(into).into()
+    };
+    let slope = derivatives(speed.beta);
+    let shapes = if speed.sines {
+        vec![speed.times(0, &slope[1]), speed.times(1, &slope[0])]
+    } else {
+        make(&[0.0], library)
     };
     Candidate {
         exact: Some(Exact {

@@ -13,18 +13,19 @@ use crate::select::score::{Scored, score};
 use crate::select::selection::{Accepted, Selection};
 
 /// Drops names to which the others leave nothing, then puts the simpler cause in the place of each wider one that holds it
-/// and explains no more.
-pub(crate) fn simpler(system: &System, catalogue: &Catalogue, found: &mut Selection) {
+/// and explains no more. Whether one of these was off the signals: of a large one the amounts depend on the ellipse, which is another then.
+pub(crate) fn simpler(system: &System, catalogue: &Catalogue, found: &mut Selection) -> bool {
     // What stands in for something without a name would make up for anything.
     if !found.unnamed.is_empty() {
-        return;
+        return false;
     }
+    let mut large = false;
     found.drop_idle(system);
     rivals_anew(system, catalogue, found);
     for i in 0..found.accepted.len() {
         let wide = &found.accepted[i];
-        // What is off the signals already stays what it is.
-        if wide.is_taken_off() {
+        // What is off the signals already stays what it is, but for waves of the channels: those are the same taken off.
+        if wide.is_taken_off() && wide.candidate.adds.is_none() {
             continue;
         }
         let simple = catalogue.candidates.iter().filter(|c| {
@@ -35,9 +36,11 @@ pub(crate) fn simpler(system: &System, catalogue: &Catalogue, found: &mut Select
         let swaps = simple.filter_map(|c| Some((c.clone(), swapped(system, found, wide, c)?)));
         let best = swaps.max_by(|a, b| a.1.solution.gain().total_cmp(&b.1.solution.gain()));
         if let Some((candidate, fit)) = best {
+            large |= wide.is_taken_off();
             replace(found, i, candidate, fit);
         }
     }
+    large
 }
 
 /// Looks anew for what an error of speed cannot be told from, where that is known by now to be there as well: what was like two causes
@@ -99,6 +102,11 @@ fn replace(found: &mut Selection, i: usize, candidate: Candidate, fit: Fit) {
         wide.first,
         wide.candidate.shapes.len() - candidate.shapes.len(),
     );
+    let x = if wide.is_taken_off() {
+        fit.solution.x[first..first + candidate.shapes.len()].to_vec()
+    } else {
+        vec![0.0; candidate.shapes.len()]
+    };
     // Of an order that may be another, it is the one that a bend with fewer numbers has.
     let confounded = vec![wide.candidate.name.to_owned()];
     for other in &mut found.accepted {
@@ -109,6 +117,7 @@ fn replace(found: &mut Selection, i: usize, candidate: Candidate, fit: Fit) {
     found.accepted[i] = Accepted {
         first,
         confounded,
+        x,
         ..Accepted::new(candidate)
     };
     found.fit = fit;

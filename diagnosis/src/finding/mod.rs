@@ -65,7 +65,7 @@ pub struct Gain {
     pub held_out_residual_rms_before: f64,
     /// And with it.
     pub held_out_residual_rms_after: f64,
-    /// Position error against the reference without the cause, radians.
+    /// Position error against the reference without the cause, radians, on the same data.
     pub position_error_rms_before_rad: Option<f64>,
     /// And with it.
     pub position_error_rms_after_rad: Option<f64>,

@@ -15,6 +15,7 @@ use crate::motion::spline::Spline;
 use crate::select::beside::Beside;
 use crate::select::selection::Accepted;
 use crate::shapes::library::{Row, Shape};
+use crate::shapes::trig::Trig;
 
 /// Gain in log-likelihood from which on inner numbers can be fitted.
 pub(crate) const FITTED: f64 = 30.0;
@@ -201,11 +202,35 @@ pub(crate) struct Start {
     pub(crate) carried: Vec<Accepted>,
 }
 
+impl Start {
+    /// What is off the signals of a context, but for these causes, whose amounts are known.
+    pub(crate) fn of(context: &Context, carried: Vec<Accepted>) -> Self {
+        Self {
+            ellipse: context.ellipse,
+            carried,
+        }
+    }
+}
+
+/// Detection SNR of the product of what two causes do that are taken off: what one does to the other.
+pub(crate) fn seen_together(system: &System, a: &Accepted, b: &Accepted) -> f64 {
+    let [a, b] = [a, b].map(|one| effect(system, &one.amounts()));
+    product(system, &a, &b) * (system.tried() as f64).sqrt()
+}
+
 /// What a fit knows.
 pub(crate) fn start(system: &System, fit: &Fit, accepted: &[Accepted]) -> Start {
     let mut carried = accepted.to_vec();
+    let off = &fit.solution.x;
     for one in &mut carried {
         one.x = fit.solution.x[one.range()].to_vec();
+        if one.candidate.adds.is_some() {
+            // Of the amplitudes that were: half of them of the cosine's.
+            let half = one.x.len() / 2;
+            let (of_cos, of_sin) = one.x.split_at_mut(half);
+            of_cos.iter_mut().for_each(|x| *x /= 1.0 + off[0]);
+            of_sin.iter_mut().for_each(|x| *x /= 1.0 + off[2]);
+        }
         let amount = one.x.first().copied();
         if let Some(exact) = one
             .candidate
@@ -217,7 +242,7 @@ pub(crate) fn start(system: &System, fit: &Fit, accepted: &[Accepted]) -> Start 
         }
     }
     Start {
-        ellipse: ellipse(&system.context.ellipse, &fit.solution.x),
+        ellipse: ellipse(&system.context.ellipse, off),
         carried,
     }
 }
@@ -236,6 +261,7 @@ pub(crate) fn followed(
     let most = if turned { FOLLOWED.1 } else { FOLLOWED.0 };
     for round in 0..most {
         let before = (round >= FOLLOWED.0).then(|| context.measured.clone());
+        context.periodic = periodic(&context, &start.carried);
         let known = effects(&context, &mut start.carried.clone(), reference.is_some());
         // Closer knots may have been needed for what is known now.
         if round == 0 && !context.calm {
@@ -270,6 +296,17 @@ pub(crate) fn look<'a>(
     let every = every(counts as usize);
     let system = System::new(context, motion, &mut catalogue, carried, every);
     (system, catalogue)
+}
+
+/// What the causes add to the channels in every period.
+fn periodic(context: &Context, carried: &[Accepted]) -> [Trig; 2] {
+    let beta = context.ellipse.beta;
+    let known = carried.iter().filter(|a| a.is_taken_off());
+    let all = known.filter_map(|a| Some(a.candidate.adds?(beta, &a.x)));
+    let nothing = [(); 2].map(|()| Trig::constant(0.0));
+    all.fold(nothing, |[c, s], [more_c, more_s]| {
+        [c.plus(&more_c), s.plus(&more_s)]
+    })
 }
 
 /// What the causes do at the angles of a context.

@@ -144,11 +144,12 @@ impl Halves {
         (self.square(fit, row) / count).max(1e-300)
     }
 
-    /// Position error against the reference, rms in radians.
-    pub(crate) fn position_error(&self, fit: &Fit) -> Option<f64> {
-        let count = self.counts[0] + self.counts[1];
+    /// Position error against the reference, rms in radians, on blocks that were not fitted; see [`Self::held_out`].
+    pub(crate) fn position_error(&self, fit: &Fit, own: usize, given: usize) -> Option<f64> {
+        let left = |half: usize, shapes: &[Shape], x: &[f64]| self.left(half, 1, shapes, x);
+        // It is one residual, and that a mean of two.
         self.against
-            .then(|| (self.square(fit, 1).max(0.0) / count.max(1.0)).sqrt())
+            .then(|| 2f64.sqrt() * self.rms_held_out(fit, own, given, left))
     }
 
     fn square(&self, fit: &Fit, row: usize) -> f64 {

@@ -1,6 +1,7 @@
 //! Which causes are in a recording: the one that explains most first, rivals named, unknown shapes left unnamed.
 
 mod ahead;
+pub(crate) mod behind;
 pub(crate) mod beside;
 pub(crate) mod choice;
 pub(crate) mod contender;
@@ -326,12 +327,12 @@ fn search(
             return found;
         }
     }
-    if !last && !exact::tangents_do(system, &found.fit, &found.accepted, exact::SEEN) {
+    let seen = !last && !exact::tangents_do(system, &found.fit, &found.accepted, exact::SEEN);
+    if seen || system.every() == 1 && simpler(system, catalogue, &mut found) && !last {
         found.again = vec![exact::start(system, &found.fit, &found.accepted)];
         return found;
     }
     if system.every() == 1 {
-        simpler(system, catalogue, &mut found);
         closed.extend(doubt(system, catalogue, &mut found));
         let curves = curves::of_drifts(system, &mut found);
         found.unnamed.extend(curves);

@@ -316,8 +316,8 @@ impl Selection {
                 gain: Gain {
                     held_out_residual_rms_before: halves.held_out(&without, own, 0),
                     held_out_residual_rms_after: halves.held_out(fit, own, 0),
-                    position_error_rms_before_rad: halves.position_error(&without),
-                    position_error_rms_after_rad: halves.position_error(fit),
+                    position_error_rms_before_rad: halves.position_error(&without, own, 0),
+                    position_error_rms_after_rad: halves.position_error(fit, own, 0),
                     ..Gain::of(gain)
                 },
                 chip: accepted.candidate.chip,

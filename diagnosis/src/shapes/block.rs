@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use crate::context::Context;
+use crate::shapes::trig::Trig;
 
 /// Samples from `start` on. One value per sample in every slice.
 #[derive(Clone, Copy)]
@@ -29,6 +30,8 @@ pub(crate) struct Block<'a> {
     pub slope: [&'a [f64]; 2],
     /// Phase error, radians.
     pub beta: f64,
+    /// What is known to be added to them at each angle.
+    pub periodic: &'a [Trig; 2],
 }
 
 /// What blocks share, made once for each.
@@ -64,6 +67,7 @@ impl Context {
             phi: self.phi.as_deref().map(|v| &v[range.clone()]),
             temperature: self.temperature.as_deref().map(|v| &v[range]),
             beta: self.ellipse.beta,
+            periodic: &self.periodic,
         }
     }
 }

@@ -60,6 +60,11 @@ impl Trig {
         Self(list)
     }
 
+    /// Whether it is the same at all angles.
+    pub(crate) fn is_constant(&self) -> bool {
+        self.0.iter().skip(1).flatten().all(|v| *v == 0.0)
+    }
+
     pub(crate) fn power(&self, exponent: usize) -> Self {
         (0..exponent).fold(Self::constant(1.0), |p, _| p.times(self))
     }

@@ -19,7 +19,7 @@ pub struct Simulation {
     pub residual_rms: f64,
     /// The same on data that was not fitted.
     pub held_out_residual_rms: f64,
-    /// Against the reference, radians.
+    /// Against the reference, on data that was not fitted, radians.
     pub position_error_rms_rad: Option<f64>,
 }
 

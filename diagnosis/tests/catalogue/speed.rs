@@ -2,7 +2,7 @@
 
 use crate::harness::{
     Case, LSB, NOISE, PLAIN, alone, diagnosed, finds, finds_beside, finds_nothing, names, near,
-    shows, within_errors,
+    of_cause, shows, within_errors,
 };
 use crate::motion::rumble;
 
@@ -191,4 +191,45 @@ fn a_capacitor_before_each_channel() {
             }
         }
     });
+}
+
+/// Both channels bend, and the sine is sampled so many tenths of a microsecond later: its bends are.
+fn bent_and_late<const TENTHS: i32, const COS: i32, const SIN: i32>() -> Case {
+    Case {
+        seen: |a, v| (a, a + 1e-7 * f64::from(TENTHS) * v),
+        channels: |c, s, _, _, _| {
+            let bent = |u: f64, per_mille: i32| u + 1e-3 * f64::from(per_mille) * u.powi(3);
+            (bent(c, COS), bent(s, SIN))
+        },
+        reference: true,
+        ..PLAIN
+    }
+}
+
+/// What a delay does to a bend is many times the noise here, and would be a low pass, or have no name; and which of the two explains
+/// more is no matter.
+#[test]
+fn a_channel_that_is_late_bends_late() {
+    fn is_found<const TENTHS: i32, const COS: i32, const SIN: i32>() {
+        for seed in [7, 8] {
+            let found = diagnosed(&bent_and_late::<TENTHS, COS, SIN>(), seed);
+            let mut named = names(&found);
+            named.sort_unstable();
+            let what = format!(
+                "{TENTHS} {COS} {SIN} {seed}: {}",
+                found.unexplained.signature
+            );
+            assert_eq!(named, ["channel_skew", "odd_nonlinearity"], "{what}");
+            assert!(!found.unexplained.significant, "{what}");
+            let delay = 1e-7 * f64::from(TENTHS);
+            of_cause(&found, "channel_skew", "delay_s", delay);
+            of_cause(&found, "odd_nonlinearity", "k_cos", 1e-3 * f64::from(COS));
+            of_cause(&found, "odd_nonlinearity", "k_sin", 1e-3 * f64::from(SIN));
+        }
+    }
+    is_found::<60, 40, -20>();
+    is_found::<-60, 40, -20>();
+    is_found::<200, 40, 40>();
+    is_found::<-200, -60, 40>();
+    is_found::<10, -60, -60>();
 }
