@@ -13,6 +13,7 @@ mod graph_support;
 mod harmonics;
 mod harmonics_refused;
 mod on_line_commensurate;
+mod on_line_drift;
 mod on_line_figures;
 mod on_line_held;
 mod on_line_interrupted;
