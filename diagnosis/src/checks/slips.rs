@@ -12,6 +12,8 @@ use crate::motion::calm::Calm;
 
 /// Samples on either side of a place in which a slip that is not repaired shows.
 const REACH: usize = 256;
+/// Samples on either side of it between which the angle jumps.
+const SIDES: [usize; 3] = [4, 16, 64];
 /// Sum of squares, in units of the noise, that the slips have to be worth: half of what the surest was found by.
 const WORTH: f64 = 32.0;
 /// Errors of the code or the angle that may look like slips.
@@ -40,18 +42,21 @@ impl Looked {
         })
     }
 
-    /// Sum of squares that is left near samples of the recording, in units of the noise.
+    /// How much slips show in what is left near samples of the recording, in units of the noise: as a sum of squares along the radius, and
+    /// as squares of the jumps of the angle there.
     fn left_near(&self, places: &[usize], noise: f64) -> f64 {
         let (radial, tangential) = &self.found.residuals[1];
         // A reference slips with the sensor, and what is between them does not show it.
         let circle = self.found.left_motion.as_ref().unwrap_or(tangential);
+        let jumps = Jumps::of(circle, &self.repaired.weight);
+        let places: Vec<usize> = places.iter().map(|k| self.repaired.place[*k]).collect();
         let mut near = vec![false; radial.len()];
-        for k in places.iter().map(|k| self.repaired.place[*k]) {
+        for k in &places {
             near[k.saturating_sub(REACH)..(k + REACH).min(radial.len())].fill(true);
         }
         let near = (0..near.len()).filter(|k| near[*k]);
-        let square = |k: usize| (radial[k].powi(2) + circle[k].powi(2)) / noise.powi(2);
-        near.map(square).sum()
+        let along_radius: f64 = near.map(|k| (radial[k] / noise).powi(2)).sum();
+        along_radius + places.iter().map(|k| jumps.at(*k)).sum::<f64>()
     }
 
     /// Samples before which some are missing, and those that repeat the one before.
@@ -78,10 +83,7 @@ impl Looked {
         };
         let stranger = other.found.unexplained.significant && !self.found.unexplained.significant;
         // Of the radius, in which no axis shakes.
-        let radial = &self.found.residuals[1].0;
-        let counts: f64 = self.repaired.weight.iter().sum();
-        let power: f64 = radial.iter().map(|r| r * r).sum();
-        let noise = (power / counts.max(1.0)).sqrt();
+        let noise = rms(&self.found.residuals[1].0, &self.repaired.weight);
         let worth = other.left_near(&slips, noise) - self.left_near(&slips, noise);
         let as_well = other.is_steep() && !stranger && worth < WORTH;
         if as_well { other } else { self }
@@ -91,4 +93,60 @@ impl Looked {
         let mut causes = self.found.findings.iter().map(|f| f.cause.as_str());
         causes.any(|cause| STEEP.contains(&cause))
     }
+}
+
+/// How values jump: between the means of so many samples that count on either side.
+struct Jumps {
+    /// Sums of values that count, and their numbers, before each sample.
+    sums: Vec<(f64, f64)>,
+    /// Mean square of the jumps at all samples, by how many there are on a side. What an axis at work leaves goes to and fro everywhere.
+    usual: [f64; SIDES.len()],
+}
+
+impl Jumps {
+    fn of(values: &[f64], weight: &[f64]) -> Self {
+        let mut sums = vec![(0.0, 0.0)];
+        let (mut sum, mut count) = (0.0, 0.0);
+        for (value, weight) in values.iter().zip(weight) {
+            sum += value * weight;
+            count += weight;
+            sums.push((sum, count));
+        }
+        let mut this = Self {
+            sums,
+            usual: [1.0; SIDES.len()],
+        };
+        this.usual = SIDES.map(|side| {
+            let squares: f64 = (0..values.len()).map(|k| this.jump(k, side).powi(2)).sum();
+            (squares / values.len().max(1) as f64).max(f64::MIN_POSITIVE)
+        });
+        this
+    }
+
+    fn jump(&self, at: usize, side: usize) -> f64 {
+        let mean = |from: usize, to: usize| {
+            let ((before, few), (after, many)) = (self.sums[from], self.sums[to]);
+            (many > few).then(|| (after - before) / (many - few))
+        };
+        let last = self.sums.len() - 1;
+        let before = mean(at.saturating_sub(side), at);
+        let after = mean(at, (at + side).min(last));
+        before
+            .zip(after)
+            .map_or(0.0, |(before, after)| after - before)
+    }
+
+    /// The square of the clearest jump at a sample, over what is usual.
+    fn at(&self, at: usize) -> f64 {
+        let each = SIDES.iter().zip(self.usual);
+        let over = each.map(|(side, usual)| self.jump(at, *side).powi(2) / usual);
+        over.fold(0.0, f64::max)
+    }
+}
+
+/// Rms of what samples that count have.
+fn rms(values: &[f64], weight: &[f64]) -> f64 {
+    let counts: f64 = weight.iter().sum();
+    let power: f64 = values.iter().map(|v| v * v).sum();
+    (power / counts.max(1.0)).sqrt()
 }
