@@ -70,7 +70,7 @@ fn section(
     let (before, after) = (&found.simulation, &found.extended);
     let change = match (before.position_error_rms_rad, after.position_error_rms_rad) {
         (Some(a), Some(b)) => format!(
-            "Angle error {:.3}° rms with five parameters, {:.3}° with what was found",
+            "Angle error {:.3}° rms with five parameters, {:.3}° with what was found, on data that was not fitted",
             a.to_degrees(),
             b.to_degrees()
         ),

@@ -50,6 +50,9 @@ impl Scored {
     }
 }
 
+/// Share of the largest of a cause's amounts that another may be below zero and be none.
+const SMALL: f64 = 0.1;
+
 /// Whether a cause can have the amounts of a solution.
 fn possible(candidate: &Candidate, solution: &Solution) -> bool {
     can_be(candidate, &solution.x, |i| {
@@ -63,7 +66,8 @@ pub(crate) fn can_be(candidate: &Candidate, own: &[f64], error: impl Fn(usize) -
         Sign::Any => true,
         Sign::Positive => {
             let most = own.iter().copied().fold(f64::MIN, f64::max);
-            let below_zero = |(i, x): (usize, &f64)| *x < -4.0 * error(i);
+            // Of a large one a threshold that is not fitted yet leaves more than the noise does.
+            let below_zero = |(i, x): (usize, &f64)| *x < -4.0 * error(i) && *x < -SMALL * most;
             most > 0.0 && !own.iter().enumerate().any(below_zero)
         }
         Sign::Known(least) => candidate.inner().is_none_or(|f| {

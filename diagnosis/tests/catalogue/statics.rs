@@ -3,7 +3,7 @@
 use std::f64::consts::FRAC_PI_2;
 
 use crate::harness::{
-    Case, LSB, PLAIN, alone, damaged, evenly, finds, names, near, shows, within_errors,
+    Case, LSB, PLAIN, alone, damaged, evenly, finds, names, near, of_cause, shows, within_errors,
 };
 
 #[test]
@@ -235,4 +235,19 @@ fn an_order_that_may_be_another() {
         "{}",
         finding.evidence
     );
+}
+
+/// One rail of one channel, far above the noise and off the grid of thresholds: at the nearest of them the other rails come out below zero.
+#[test]
+fn one_rail_of_one_channel() {
+    let found = finds(
+        "saturation",
+        &Case {
+            channels: |c, s, _, _, _| (c, s + 0.05 * (-s - 0.874).max(0.0)),
+            ..PLAIN
+        },
+    );
+    of_cause(&found, "saturation", "threshold", 0.874);
+    of_cause(&found, "saturation", "compression_sin_lower", 0.05);
+    of_cause(&found, "saturation", "compression_sin_upper", 0.0);
 }
