@@ -226,20 +226,21 @@ fn correct_bends(text: &str, found: &Diagnosis) -> Result<(String, Vec<Outcome>)
     document["calibration"]["parameters"] = value(9);
     let bend_max = (ROOM * bend).clamp(0.02, 0.2);
     document["sensor"]["bend_max"] = value(format!("{bend_max:.2e}").parse::<f64>()?);
-    let mut outcomes = vec![];
+    let mut narrowed = vec![];
     if let Some(bandwidth) = narrower(&spec, found) {
         document["loop"]["bandwidth_hz"] = value(bandwidth);
-        outcomes.extend(said(format!(
+        narrowed = said(format!(
             "its loop is narrowed to {bandwidth} Hz, twice the usual signal frequency: what a wider loop follows it \
              cannot tell from motion"
-        )));
+        ));
     }
     match designed(&document)? {
         Ok(changed) => {
-            outcomes.extend(said(format!(
+            let mut outcomes = said(format!(
                 "design.toml calibrates nine parameters now, for the bend of the channels (up to {:.2} %)",
                 100.0 * bend
-            )));
+            ));
+            outcomes.extend(narrowed);
             Ok((changed, outcomes))
         }
         // The table of harmonics may hold it then.
