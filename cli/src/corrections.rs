@@ -210,15 +210,14 @@ fn correct_bends(text: &str, found: &Diagnosis) -> Result<(String, Vec<Outcome>)
     if spec.sensor.periods_per_revolution == Some(1.0) {
         return unchanged(
             "the channels bend, but a scale period is a revolution: motion at two cycles per revolution would be learnt \
-             as a bend, so the design keeps its parameters, and the bend goes into the table of harmonics"
+             as a bend, so the design keeps its parameters"
                 .into(),
         );
     }
     if found.context.periods_travelled() < FEWEST {
         return unchanged(
             "the channels bend, but hardly a scale period was travelled: whether they do elsewhere, and whether a scale \
-             period is a revolution, cannot be seen, so the design keeps its parameters, and the bend goes into the table \
-             of harmonics"
+             period is a revolution, cannot be seen, so the design keeps its parameters"
                 .into(),
         );
     }

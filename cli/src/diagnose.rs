@@ -171,7 +171,9 @@ fn summary(found: &Diagnosis, output: &Path) {
     ) {
         let degrees = [before, after].map(f64::to_degrees);
         let (before, after) = before_after(degrees[0], degrees[1], Unit::Plain("°"));
-        say!("angle error against the reference: {before} → {after} rms (electrical)");
+        say!(
+            "angle error against the reference, on held-out data: {before} → {after} rms (electrical)"
+        );
     }
     say!("written: {}/", output.display());
 }

@@ -142,7 +142,6 @@ fn a_harmonic_of_either_order_is_not_corrected() {
     );
 }
 
-/// At standstill nothing can be told from offset and gain: no names, but what to record.
 /// A recording of an axis to and fro whose channels are what is said of time and angle, in amplitudes.
 fn recorded(channels: impl Fn(f64, f64) -> (f64, f64)) -> String {
     let mut noise = noise();
@@ -178,6 +177,8 @@ fn what_does_not_fit_the_design_is_said() {
     let found = first("steep");
     assert_eq!(found["cause"], "spatial_harmonic");
     assert_eq!(found["chip"], "cannot correct");
+    let design = found["design"][0].as_str().expect("a sentence");
+    assert!(design.contains(reason), "{design}");
     assert!(read("steep/report.html").contains(reason));
     // The chip of the given design follows nothing.
     let drifting = |t: f64, a: f64| (a.cos() + 0.05 * t, a.sin());
@@ -195,6 +196,7 @@ fn what_does_not_fit_the_design_is_said() {
     assert!(read("off/report.html").contains(&reason[1..]));
 }
 
+/// At standstill nothing can be told from offset and gain: no names, but what to record.
 #[test]
 fn a_standstill_is_refused() {
     let dir = tempfile::tempdir().expect("scratch");

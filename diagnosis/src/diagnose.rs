@@ -24,7 +24,7 @@ use crate::select::contender::is_drift;
 use crate::select::score::KINDS;
 use crate::select::select;
 use crate::select::selection::{Accepted, Selection};
-use crate::select::{behind, choice};
+use crate::select::{choice, speed_anew};
 use crate::shapes::library::Row;
 use crate::simulation::motion::Motion;
 use crate::simulation::{Simulation, simulation};
@@ -222,7 +222,13 @@ fn search(
         let Some(known) = choice::best(&context, selection.again, recording) else {
             continue;
         };
-        let known = behind::decided_anew(&known, recording).unwrap_or(known);
+        let other = (known.1.len() > carried.len())
+            .then(|| speed_anew::decided_anew(&known.0, &known.1, recording))
+            .flatten();
+        let known = match other {
+            Some(other) if !worse(&other, &context) => other,
+            _ => known,
+        };
         // A look that makes it worse has gone astray: the tangents have to do.
         if worse(&known, &context) {
             last = true;

@@ -1,6 +1,6 @@
 //! What causes do to a channel at a moment.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{FRAC_PI_2, TAU};
 
 use crate::cause::Cause;
 use crate::lag::Passed;
@@ -114,6 +114,11 @@ pub(crate) fn of_one(cause: &Cause, which: usize, y: f64, at: &Moment) -> f64 {
 }
 
 impl Sensor {
+    /// Phase of a channel, which is cos(α + phase): cos α, and sin(α − β).
+    pub(crate) fn phase(&self, which: usize) -> f64 {
+        [0.0, -self.signals.beta - FRAC_PI_2][which]
+    }
+
     /// What a channel has of the other, in amplitudes.
     pub(crate) fn of_other(&self, cause: &Cause, which: usize, at: &Moment) -> f64 {
         let Cause::DelayedCrosstalk {
@@ -124,11 +129,17 @@ impl Sensor {
         else {
             return 0.0;
         };
+        /// Angle over which the slope of a channel is taken, radians.
+        const SMALL: f64 = 1e-4;
         let product = [product_into_cos_s, product_into_sin_s][which];
-        let beta = self.signals.beta;
-        let other = |alpha: f64| [(alpha - beta).sin(), alpha.cos()][which];
-        let slope = [(at.alpha - beta).cos(), -at.alpha.sin()][which];
+        let (from, phase) = (1 - which, self.phase(1 - which));
+        // The other channel with its bends.
+        let other = |alpha: f64| {
+            let passed = Passed::undisturbed(alpha);
+            passed.wave(1.0, phase) + self.sum(|c| of_scale(c, from, 1.0, phase, &passed))
+        };
         if delay_s == 0.0 {
+            let slope = (other(at.alpha + SMALL) - other(at.alpha - SMALL)) / (2.0 * SMALL);
             -product * at.speed * slope
         } else {
             // The part that is not delayed stands in gain and phase.

@@ -46,6 +46,16 @@ pub(crate) struct Passed {
 }
 
 impl Passed {
+    /// Nothing is late.
+    pub(crate) fn undisturbed(alpha: f64) -> Self {
+        Self {
+            late: alpha,
+            speed: 0.0,
+            acceleration: 0.0,
+            tau: 0.0,
+        }
+    }
+
     /// cos(order α + phase) behind it: the response at the wave's speed of the moment, and the next term.
     pub(crate) fn wave(&self, order: f64, phase: f64) -> f64 {
         let (sin, cos) = (order * self.late + phase).sin_cos();

@@ -1,6 +1,6 @@
 //! Samples of a sensor that is moved.
 
-use std::f64::consts::{FRAC_PI_2, TAU};
+use std::f64::consts::TAU;
 
 use rand::{Rng, SeedableRng, rngs::StdRng};
 use rand_distr::StandardNormal;
@@ -73,8 +73,7 @@ impl Sensor {
                     acceleration: acceleration[k],
                     tau: lag.tau,
                 };
-                // cos α, and sin(α − β).
-                let phase = [0.0, -self.signals.beta - FRAC_PI_2][which];
+                let phase = self.phase(which);
                 let y = amplitude * passed.wave(1.0, phase);
                 let x = Moment {
                     alpha,

@@ -183,6 +183,8 @@ const COGGING: &str = "name = \"cogging\"\norder = 48.0\namplitude = 0.03\nphase
 const LATE: &str = "name = \"channel_skew\"\ndelay_s = 2e-5";
 const LARGE_HARMONIC: &str = "name = \"spatial_harmonic\"\norder = 3.0\namplitude_cos = 0.03\nphase_cos = 0.7\namplitude_sin = 0.03\nphase_sin = -2.0";
 const BENT: &str = "name = \"odd_nonlinearity\"\nk_cos = 0.04\nk_sin = -0.03";
+const LARGE_CROSSTALK: &str =
+    "name = \"delayed_crosstalk\"\nproduct_into_cos_s = 2e-5\nproduct_into_sin_s = -1e-5";
 const ONE_LOW_PASS: &str = "name = \"bandwidth_mismatch\"\ntau_cos_s = 0.0\ntau_sin_s = 3e-5";
 const STUCK: &str = "name = \"stuck_bit\"\nbit = 0.0\nchannel = \"cos\"\nlevel = 1.0";
 const LOW_PASS: &str = "name = \"common_bandwidth\"\ntau_s = 2e-5";
@@ -213,6 +215,7 @@ fn two_causes() {
     reproduced(&[LATE, LARGE_HARMONIC]);
     reproduced(&[LATE, BENT]);
     reproduced(&[ONE_LOW_PASS, BENT]);
+    reproduced(&[LARGE_CROSSTALK, BENT]);
 }
 
 /// Knots that corners need follow a vibration, too: it is named from the stretches between them, and is in the motion once.

@@ -135,8 +135,8 @@ pub(super) fn table(found: &Diagnosis, bends: bool) -> Harmonics {
         // By the wrong one the angle would be twice as wrong.
         if let Some(other) = finding.parameter(OTHER_ORDER) {
             let why = format!(
-                "{} is not in the table of harmonics: it may be the {} harmonic as well, which errs the other way",
-                finding.cause,
+                "the {} is not in the table of harmonics: it may be the {} harmonic as well, which errs the other way",
+                finding.plain_name(),
                 ordinal(other as usize)
             );
             left_out.push(Outcome::said(why, vec![k]));
@@ -144,8 +144,8 @@ pub(super) fn table(found: &Diagnosis, bends: bool) -> Harmonics {
         }
         if unsure(finding) {
             let why = format!(
-                "{} is not in the table of harmonics: its standard error is more than a third of it",
-                finding.cause
+                "the {} is not in the table of harmonics: its standard error is more than a third of it",
+                finding.plain_name()
             );
             left_out.push(Outcome::said(why, vec![k]));
             continue;

@@ -1,5 +1,5 @@
-//! What delays and first-order low passes do to the channels, from the smooth motion. They see the whole channel: what is known to
-//! be added to it in every period comes as late as its sine does.
+//! What delays and first-order low passes do to the channels, from the smooth motion. In one channel they see all of it: what is known to
+//! be added to it in every period comes as late as its sine does. In both they see the pair.
 
 use nonius_fourier::Complex;
 

@@ -14,8 +14,10 @@ use crate::motion::calm::Calm;
 const REACH: usize = 256;
 /// Samples on either side of it between which the angle jumps.
 const SIDES: [usize; 3] = [4, 16, 64];
-/// Sum of squares, in units of the noise, that the slips have to be worth: half of what the surest was found by.
+/// Sum of squares, each in units of what is usual, that the slips have to be worth, of up to so many: half of what the surest was found by.
+/// By chance the sum of more goes further with their root.
 const WORTH: f64 = 32.0;
+const UP_TO: f64 = 16.0;
 /// Errors of the code or the angle that may look like slips.
 const STEEP: [&str; 3] = ["adc_nonlinearity", "spatial_harmonic", "saturation"];
 
@@ -85,7 +87,8 @@ impl Looked {
         // Of the radius, in which no axis shakes.
         let noise = rms(&self.found.residuals[1].0, &self.repaired.weight);
         let worth = other.left_near(&slips, noise) - self.left_near(&slips, noise);
-        let as_well = other.is_steep() && !stranger && worth < WORTH;
+        let asked = WORTH * (slips.len() as f64 / UP_TO).sqrt().max(1.0);
+        let as_well = other.is_steep() && !stranger && worth < asked;
         if as_well { other } else { self }
     }
 

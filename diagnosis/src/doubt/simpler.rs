@@ -13,8 +13,14 @@ use crate::select::score::{Scored, score};
 use crate::select::selection::{Accepted, Selection};
 
 /// Drops names to which the others leave nothing, then puts the simpler cause in the place of each wider one that holds it
-/// and explains no more. Whether one of these was off the signals: of a large one the amounts depend on the ellipse, which is another then.
-pub(crate) fn simpler(system: &System, catalogue: &Catalogue, found: &mut Selection) -> bool {
+/// and explains no more. Whether one of these was off the signals, which have to be looked at anew then: the amounts of a large one depend
+/// on the ellipse, which is another. In the `last` look those stay what they are.
+pub(crate) fn simpler(
+    system: &System,
+    catalogue: &Catalogue,
+    found: &mut Selection,
+    last: bool,
+) -> bool {
     // What stands in for something without a name would make up for anything.
     if !found.unnamed.is_empty() {
         return false;
@@ -25,7 +31,7 @@ pub(crate) fn simpler(system: &System, catalogue: &Catalogue, found: &mut Select
     for i in 0..found.accepted.len() {
         let wide = &found.accepted[i];
         // What is off the signals already stays what it is, but for waves of the channels: those are the same taken off.
-        if wide.is_taken_off() && wide.candidate.adds.is_none() {
+        if wide.is_taken_off() && (last || wide.candidate.adds.is_none()) {
             continue;
         }
         let simple = catalogue.candidates.iter().filter(|c| {

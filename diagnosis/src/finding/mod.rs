@@ -188,7 +188,7 @@ pub struct Finding {
     /// What the chip can do.
     pub chip: Chip,
     /// What `design.toml` does about it, in sentences; the program that writes the design says so.
-    #[serde(skip)]
+    #[serde(skip_serializing_if = "Vec::is_empty")]
     pub design: Vec<String>,
     /// log-likelihood that it explains: the order of the findings.
     #[serde(skip)]

@@ -14,7 +14,7 @@ pub(super) struct Gain {
     pub(super) change: String,
 }
 
-const ANGLE: &str = "angle error against the reference, rms";
+const ANGLE: &str = "angle error against the reference on held-out data, rms";
 const RESIDUAL: &str = "residual on held-out data, rms";
 const UNCHANGED: &str = "unchanged";
 

@@ -1,7 +1,6 @@
 //! Which causes are in a recording: the one that explains most first, rivals named, unknown shapes left unnamed.
 
 mod ahead;
-pub(crate) mod behind;
 pub(crate) mod beside;
 pub(crate) mod choice;
 pub(crate) mod contender;
@@ -9,6 +8,7 @@ pub(crate) mod held;
 pub(crate) mod rivals;
 pub(crate) mod score;
 pub(crate) mod selection;
+pub(crate) mod speed_anew;
 
 use crate::causes::cause::{Candidate, Domain};
 use crate::causes::{self, AC_COUPLING, Catalogue, HYSTERESIS};
@@ -328,7 +328,7 @@ fn search(
         }
     }
     let seen = !last && !exact::tangents_do(system, &found.fit, &found.accepted, exact::SEEN);
-    if seen || system.every() == 1 && simpler(system, catalogue, &mut found) && !last {
+    if seen || system.every() == 1 && simpler(system, catalogue, &mut found, last) {
         found.again = vec![exact::start(system, &found.fit, &found.accepted)];
         return found;
     }

@@ -76,10 +76,13 @@ impl Closed {
         found
     }
 
-    /// Names of all that was found.
-    pub(super) fn names(&self) -> String {
-        let name =
-            |found: &serde_json::Value| format!("`{}`", found["cause"].as_str().expect("a name"));
+    /// Names of all that was found, of which there are no others than these.
+    pub(super) fn names(&self, known: &[&str]) -> String {
+        let name = |found: &serde_json::Value| {
+            let name = found["cause"].as_str().expect("a name");
+            assert!(known.contains(&name), "{found:#}");
+            format!("`{name}`")
+        };
         let names: Vec<String> = self.findings.iter().map(name).collect();
         names.join(", ")
     }
