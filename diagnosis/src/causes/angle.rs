@@ -10,7 +10,7 @@ use crate::context::Context;
 use crate::finding::{Chip, Parameter};
 use crate::shapes::block::Block;
 use crate::shapes::library::{Library, Shape, Use};
-use crate::shapes::trig::{Trig, channel, normalised};
+use crate::shapes::trig::{Trig, normalised, raw};
 
 const THRESHOLDS: [f64; 7] = [0.5, 0.6, 0.7, 0.8, 0.85, 0.9, 0.95];
 
@@ -48,17 +48,21 @@ fn loses(compression: &Parameter, at_most: bool) -> String {
 }
 
 /// A power of each channel, by its amount.
-fn powers<const N: usize>(beta: f64, x: &[f64]) -> [Trig; 2] {
-    let u = normalised(beta);
-    std::array::from_fn(|which| u[which].power(N).scaled(x[which]))
+fn powers(n: usize) -> Adds {
+    Rc::new(move |beta, x| {
+        let u = normalised(beta);
+        std::array::from_fn(|which| u[which].power(n).scaled(x[which]))
+    })
 }
 
 /// Cosine and sine of an order, by their amounts in each channel.
-fn waves<const N: usize>(_: f64, x: &[f64]) -> [Trig; 2] {
-    std::array::from_fn(|which| {
-        let [cos, sin] = [x[2 * which], x[2 * which + 1]];
-        let wave = Trig::cos(N, 0.0).scaled(cos);
-        wave.plus(&Trig::sin(N, 0.0).scaled(sin))
+fn waves(order: usize) -> Adds {
+    Rc::new(move |_, x| {
+        std::array::from_fn(|which| {
+            let [cos, sin] = [x[2 * which], x[2 * which + 1]];
+            let wave = Trig::cos(order, 0.0).scaled(cos);
+            wave.plus(&Trig::sin(order, 0.0).scaled(sin))
+        })
     })
 }
 
@@ -72,15 +76,23 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
     catalogue.parameters = super::parameters(&angle);
     let basis = (1..=2 * ORDERS).flat_map(|i| [angle.radial(i), angle.tangential(i)]);
     catalogue.generic(Domain::Angle, basis);
-    let of_channel =
-        |which: usize, change: &Trig| angle.waves(&channel(beta, which, change), 0, ORDERS);
-    let u = normalised(beta);
-    let per_channel = |n: usize| (0..2).map(|i| of_channel(i, &u[i].power(n))).collect();
-    let of = |name, shapes: Vec<Shape>, adds: Adds, what: &'static str| Candidate {
+    // So many amounts, each of them one.
+    let shapes = |adds: &Adds, amounts: usize| -> Vec<Shape> {
+        let unit = |j: usize| {
+            (0..amounts)
+                .map(|i| f64::from(i == j))
+                .collect::<Vec<f64>>()
+        };
+        let added = (0..amounts).map(|j| adds(beta, &unit(j)));
+        added
+            .map(|[cos, sin]| angle.waves(&raw(beta, &cos, &sin), 0, ORDERS))
+            .collect()
+    };
+    let of = |name, adds: Adds, what: &'static str| Candidate {
         trials: 2.0,
         // By the bends of 8 and 9 parameters, or by the table of harmonics.
         chip: Chip::Corrects,
-        adds: Some(adds),
+        adds: Some(adds.clone()),
         parameters: each(&["k_cos", "k_sin"], "amplitude"),
         evidence: Rc::new(move |p| {
             format!(
@@ -89,22 +101,16 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
                 p[1].brief()
             )
         }),
-        ..Candidate::new(name, Domain::Angle, shapes)
+        ..Candidate::new(name, Domain::Angle, shapes(&adds, 2))
     };
     let list = &mut catalogue.candidates;
     list.extend([
-        of("even_nonlinearity", per_channel(2), powers::<2>, "y + k·y²"),
-        of("odd_nonlinearity", per_channel(3), powers::<3>, "y + k·y³"),
+        of("even_nonlinearity", powers(2), "y + k·y²"),
+        of("odd_nonlinearity", powers(3), "y + k·y³"),
     ]);
-    let waves: [Adds; 6] = [
-        waves::<2>, waves::<3>, waves::<4>, waves::<5>, waves::<6>, waves::<7>,
-    ];
-    for (order, adds) in (2..=7).zip(waves) {
-        let shapes = (0..2)
-            .flat_map(|which| {
-                [Trig::cos(order, 0.0), Trig::sin(order, 0.0)].map(|wave| of_channel(which, &wave))
-            })
-            .collect();
+    for order in 2..=7 {
+        let adds = waves(order);
+        let shapes = shapes(&adds, 4);
         list.push(Candidate {
             trials: 6.0,
             order: Some(order),

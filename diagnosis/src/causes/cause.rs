@@ -57,7 +57,7 @@ pub(crate) struct Exact {
 /// A factor of the pair, by what its shape says of the radius, less one, and of the angle, radians.
 pub(crate) type Factor = fn(f64, f64) -> Complex<f64>;
 /// What amounts add to each channel, in its amplitudes, at each angle, by the phase error in radians.
-pub(crate) type Adds = fn(f64, &[f64]) -> [Trig; 2];
+pub(crate) type Adds = Rc<dyn Fn(f64, &[f64]) -> [Trig; 2]>;
 /// Makes parameters of an estimate.
 pub(crate) type Reads = Rc<dyn Fn(&Estimate) -> Vec<Parameter>>;
 /// Makes a sentence of parameters.

@@ -108,11 +108,6 @@ fn replace(found: &mut Selection, i: usize, candidate: Candidate, fit: Fit) {
         wide.first,
         wide.candidate.shapes.len() - candidate.shapes.len(),
     );
-    let x = if wide.is_taken_off() {
-        fit.solution.x[first..first + candidate.shapes.len()].to_vec()
-    } else {
-        vec![0.0; candidate.shapes.len()]
-    };
     // Of an order that may be another, it is the one that a bend with fewer numbers has.
     let confounded = vec![wide.candidate.name.to_owned()];
     for other in &mut found.accepted {
@@ -123,7 +118,6 @@ fn replace(found: &mut Selection, i: usize, candidate: Candidate, fit: Fit) {
     found.accepted[i] = Accepted {
         first,
         confounded,
-        x,
         ..Accepted::new(candidate)
     };
     found.fit = fit;

@@ -302,7 +302,7 @@ pub(crate) fn look<'a>(
 fn periodic(context: &Context, carried: &[Accepted]) -> [Trig; 2] {
     let beta = context.ellipse.beta;
     let known = carried.iter().filter(|a| a.is_taken_off());
-    let all = known.filter_map(|a| Some(a.candidate.adds?(beta, &a.x)));
+    let all = known.filter_map(|a| Some(a.candidate.adds.as_ref()?(beta, &a.x)));
     let nothing = [(); 2].map(|()| Trig::constant(0.0));
     all.fold(nothing, |[c, s], [more_c, more_s]| {
         [c.plus(&more_c), s.plus(&more_s)]

@@ -3,7 +3,7 @@
 
 use nonius_recording::Recording;
 
-use crate::causes::cause::Domain;
+use crate::causes::cause::{Candidate, Domain};
 use crate::context::Context;
 use crate::model::exact::{NAMED, Start, followed, look, seen_together};
 use crate::select::beside::Beside;
@@ -24,7 +24,7 @@ pub(crate) fn decided_anew(
     recording: &Recording,
 ) -> Option<(Context, Vec<Accepted>)> {
     let (bend, earlier) = carried.split_last()?;
-    bend.candidate.adds?;
+    bend.candidate.adds.as_ref()?;
     let (at, seen) = most_changed(context, carried, recording)?;
     if seen < NAMED {
         return None;
@@ -37,8 +37,9 @@ pub(crate) fn decided_anew(
     let (mut system, catalogue) = look(&without, &mut beside_it, recording);
     let mut found = begin(&mut system, &catalogue, beside_it);
     let beside = Beside::all_that_moves(&system, &found.fit.shapes);
-    let with_speed = catalogue.candidates.iter().filter(goes_with_speed);
-    let mut scored: Vec<Scored> = with_speed
+    let all = catalogue.candidates.iter();
+    let mut scored: Vec<Scored> = all
+        .filter(|c| goes_with_speed(c))
         .filter_map(|c| score(&beside, c.clone()))
         .collect();
     scored.sort_by(|a, b| a.log_p.total_cmp(&b.log_p));
@@ -62,7 +63,7 @@ pub(crate) fn decided_anew(
     (was != is || OF_EITHER_CHANNEL.contains(&is)).then_some(new)
 }
 
-fn goes_with_speed(candidate: &&crate::causes::cause::Candidate) -> bool {
+fn goes_with_speed(candidate: &Candidate) -> bool {
     candidate.domain == Domain::Speed
 }
 
@@ -72,14 +73,14 @@ fn most_changed(
     carried: &[Accepted],
     recording: &Recording,
 ) -> Option<(usize, f64)> {
-    let mut entered = carried.to_vec();
-    if !carried.iter().any(|a| goes_with_speed(&&a.candidate)) {
+    if !carried.iter().any(|a| goes_with_speed(&a.candidate)) {
         return None;
     }
+    let mut entered = carried.to_vec();
     let (system, _) = look(context, &mut entered, recording);
     let (bend, earlier) = entered.split_last()?;
     let all = earlier.iter().enumerate();
-    all.filter(|(_, a)| goes_with_speed(&&a.candidate))
+    all.filter(|(_, a)| goes_with_speed(&a.candidate))
         .map(|(at, a)| (at, seen_together(&system, a, bend)))
         .max_by(|a, b| a.1.total_cmp(&b.1))
 }
