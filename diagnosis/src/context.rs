@@ -12,7 +12,10 @@ use crate::numerics::solve::dot;
 use crate::shapes::trig::Trig;
 
 /// From so many bad samples in a row on, their own angle tells how far the scale moves meanwhile.
-const MANY: usize = 8;
+pub(crate) const MANY: usize = 8;
+
+/// Least gain that is taken off as one: of less, hardly anything of the signals is left.
+const LEAST_GAIN: f64 = 0.1;
 
 /// So near to one, what the angle does for each radian that its reference moves fast has to be, or that motion is noise.
 const FOLLOWS: f64 = 0.1;
@@ -265,6 +268,15 @@ impl Context {
             .collect()
     }
 
+    /// The same where the channels see these errors of the angle, radians: not followed anew.
+    pub(crate) fn turned_by(&self, errors: &[f64]) -> Self {
+        let mut turned = self.clone();
+        let angles = turned.alpha.iter_mut().zip(errors);
+        angles.for_each(|(alpha, error)| *alpha += error);
+        (turned.sin, turned.cos) = turned.alpha.iter().map(|a| a.sin_cos()).unzip();
+        turned
+    }
+
     /// Change of the angle, radians rms.
     pub(crate) fn moved_since(&self, before: &[f64]) -> f64 {
         let pairs = self.measured.iter().zip(before).zip(&self.weight);
@@ -335,13 +347,15 @@ impl Context {
         let (mut c, mut s) = (Vec::with_capacity(n), Vec::with_capacity(n));
         for k in 0..n {
             let (x, y) = ellipse.corrected(self.raw[0][k], self.raw[1][k]);
+            // An error of the angle turns the pair, and the channels see the angle with it; a gain is one of all that is in them.
+            let gain = (1.0 + known.gain[k]).max(LEAST_GAIN);
+            let (x, y) = (x / gain, y / gain);
+            let (turn_s, turn_c) = known.angle[k].sin_cos();
+            let (x, y) = (x * turn_c + y * turn_s, y * turn_c - x * turn_s);
             let (cos, sin) = (self.cos[k], self.sin[k]);
             let (r, t) = (known.radial[k], known.tangential[k]);
-            let (x, y) = (x - r * cos + t * sin, y - r * sin - t * cos);
-            // An error of the angle turns the pair.
-            let (sin, cos) = known.angle[k].sin_cos();
-            c.push(x * cos + y * sin);
-            s.push(y * cos - x * sin);
+            c.push(x - r * cos + t * sin);
+            s.push(y - r * sin - t * cos);
         }
         self.fast = known.fast;
         self.set_pair(c, s, reference);
@@ -354,6 +368,8 @@ pub(crate) struct Known {
     pub(crate) radial: Vec<f64>,
     /// Added along the circle, in amplitudes.
     pub(crate) tangential: Vec<f64>,
+    /// Gains of both channels, less one.
+    pub(crate) gain: Vec<f64>,
     /// Errors of the angle, radians.
     pub(crate) angle: Vec<f64>,
     /// Fast real motion, radians.

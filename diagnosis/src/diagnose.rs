@@ -21,19 +21,17 @@ use crate::noise;
 use crate::noise::flicker::{self, Flicker};
 use crate::numerics::statistics;
 use crate::select::contender::is_drift;
+use crate::select::rounds::Rounds;
 use crate::select::score::KINDS;
 use crate::select::select;
 use crate::select::selection::{Accepted, Selection};
 use crate::select::{choice, speed_anew};
 use crate::shapes::library::Row;
-use crate::simulation::motion::Motion;
+use crate::simulation::motion::{self, Motion};
 use crate::simulation::{Simulation, simulation};
 use crate::unnamed::left;
 use crate::unnamed::unexplained::Unexplained;
 use crate::unnamed::whereabouts::Left;
-
-/// Most times that a recording is looked at anew.
-const ROUNDS: usize = 10;
 
 /// The model with the causes that were found.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -197,17 +195,15 @@ fn search(
     let recording = &repaired.recording;
     let mut carried: Vec<Accepted> = vec![];
     // Large causes are taken off the signals themselves, and what is left is looked at anew.
-    let mut round = 0;
-    let mut last = false;
+    let mut rounds = Rounds::default();
     loop {
-        round += 1;
-        last |= round == ROUNDS;
         let (mut system, catalogue) = exact::look(&context, &mut carried, recording);
         if !coloured {
             system.flicker = None;
             system.only_white = true;
         }
-        let mut selection = select(&context, &mut system, &catalogue, carried.clone(), last);
+        let anew = rounds.begin();
+        let mut selection = select(&context, &mut system, &catalogue, carried.clone(), anew);
         if selection.again.is_empty() {
             let noise = system.flicker.clone();
             let note = codes::beside(&system, &mut selection, &checked.findings);
@@ -220,6 +216,7 @@ fn search(
         // Its samples are not needed any longer, and the next look has its own.
         drop(system);
         let Some(known) = choice::best(&context, selection.again, recording) else {
+            rounds.end();
             continue;
         };
         let other = (known.1.len() > carried.len())
@@ -229,25 +226,27 @@ fn search(
             Some(other) if !worse(&other, &context) => other,
             _ => known,
         };
-        // A look that makes it worse has gone astray: the tangents have to do.
         if worse(&known, &context) {
-            last = true;
-        } else {
+            rounds.went_astray(&known.1);
+        } else if rounds.goes_on(&known.1, left_of(&known.0, &known.1)) {
             (context, carried) = known;
         }
     }
 }
 
-/// Whether a context leaves clearly more of the radius than another one did. What turns the pair far changes the ellipse, too, which
-/// the next look finds.
+/// Power that a context leaves of the radius. What turns the pair far changes the ellipse, too, which the next look finds.
+fn left_of(context: &Context, known: &[Accepted]) -> f64 {
+    let turned = known.iter().any(|one| one.candidate.factor.is_some());
+    match turned {
+        true => context.power_off_the_ellipse(),
+        false => context.radial().iter().map(|r| r * r).sum(),
+    }
+}
+
+/// Whether a context leaves clearly more of the radius than another one did.
 fn worse((new, known): &(Context, Vec<Accepted>), old: &Context) -> bool {
     const CLEARLY: f64 = 1.5;
-    let turned = known.iter().any(|one| one.candidate.factor.is_some());
-    let power = |c: &Context| match turned {
-        true => c.power_off_the_ellipse(),
-        false => c.radial().iter().map(|r| r * r).sum(),
-    };
-    let (new, old) = (power(new), power(old));
+    let (new, old) = (left_of(new, known), left_of(old, known));
     !new.is_finite() || new > CLEARLY * CLEARLY * old
 }
 
@@ -367,7 +366,8 @@ fn conclude(
         .samples
         .sum(&extended.sensor_amounts(), Row::Tangential, 1);
     let pairs = context.measured.iter().zip(&change);
-    let angle: Vec<f64> = pairs.map(|(measured, change)| measured - change).collect();
+    let mut angle: Vec<f64> = pairs.map(|(measured, change)| measured - change).collect();
+    motion::bridge(context, &mut angle);
     let own = repaired.place.iter();
     let positions = own.map(|&k| angle[k] / std::f64::consts::TAU).collect();
     let motion = Motion::of(context, &angle);

@@ -87,7 +87,7 @@ pub(crate) struct Candidate {
     pub by_radius: f64,
     /// The shapes.
     pub shapes: Vec<Shape>,
-    /// Its number in the catalogue.
+    /// Its number among those of its name in the catalogue: that may hold other names after another look.
     pub id: usize,
     /// Of a harmonic of the scale period, its order.
     pub order: Option<usize>,

@@ -44,6 +44,10 @@ pub(crate) const HYSTERESIS: &str = "hysteresis";
 pub(crate) const COGGING: &str = "cogging";
 /// A line that is added to the channels.
 pub(crate) const INTERFERENCE: &str = "interference";
+/// A channel that is sampled later.
+pub(crate) const CHANNEL_SKEW: &str = "channel_skew";
+/// A low pass in one channel.
+pub(crate) const BANDWIDTH_MISMATCH: &str = "bandwidth_mismatch";
 /// A low pass in both channels.
 pub(crate) const COMMON_BANDWIDTH: &str = "common_bandwidth";
 /// Real motion at a fixed frequency.
@@ -91,8 +95,11 @@ impl Catalogue {
         high_pass::enter(context, &mut this);
         time::enter(context, &mut this);
         revolution::enter(context, &mut this);
-        for (id, candidate) in this.candidates.iter_mut().enumerate() {
-            candidate.id = id;
+        let mut so_far: BTreeMap<&str, usize> = BTreeMap::new();
+        for candidate in &mut this.candidates {
+            let count = so_far.entry(candidate.name).or_default();
+            candidate.id = *count;
+            *count += 1;
         }
         let shapes = this.generic.values().flatten().chain(&this.parameters);
         this.broad = shapes.flat_map(|s| s.0.iter().map(|p| p.0)).collect();
@@ -111,6 +118,12 @@ impl Catalogue {
             domain
         };
         self.generic.get(&domain).map_or(&[], |list| list)
+    }
+
+    /// The cause of a name that has a number among those of that name.
+    pub(crate) fn cause(&self, name: &str, id: usize) -> Option<&Candidate> {
+        let mut all = self.candidates.iter();
+        all.find(|c| c.name == name && c.id == id)
     }
 
     fn generic(&mut self, domain: Domain, shapes: impl IntoIterator<Item = Shape>) {

@@ -236,7 +236,7 @@ fn skew(speed: &Speed, library: &mut Library) -> Candidate {
                 "the phase error grows in proportion to speed, as if {second} were sampled {delay} after {first}"
             )
         }),
-        ..cause("channel_skew", shapes, &["delay_s"], "s")
+        ..cause(super::CHANNEL_SKEW, shapes, &["delay_s"], "s")
     }
 }
 
@@ -261,7 +261,7 @@ fn mismatches(speed: &Speed, library: &mut Library) -> Vec<Candidate> {
                     time_constant(&p[0])
                 )
             }),
-            ..cause("bandwidth_mismatch", shapes, names[which], "s")
+            ..cause(super::BANDWIDTH_MISMATCH, shapes, names[which], "s")
         }
     };
     let all = [0, 1]

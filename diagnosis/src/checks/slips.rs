@@ -19,7 +19,13 @@ const SIDES: [usize; 3] = [4, 16, 64];
 const WORTH: f64 = 32.0;
 const UP_TO: f64 = 16.0;
 /// Errors of the code or the angle that may look like slips.
-const STEEP: [&str; 3] = ["adc_nonlinearity", "spatial_harmonic", "saturation"];
+const STEEP: [&str; 5] = [
+    "adc_nonlinearity",
+    "spatial_harmonic",
+    "even_nonlinearity",
+    "odd_nonlinearity",
+    "saturation",
+];
 
 /// A diagnosis, and what it was made of.
 pub(crate) struct Looked {

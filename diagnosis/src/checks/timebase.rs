@@ -56,6 +56,16 @@ fn slope(values: &[f64], k: usize) -> f64 {
     (line(&values[k - LINE..k]) + line(&values[k..k + LINE])) / 2.0
 }
 
+/// The middle one of each value and its two neighbours: a wild sample by itself is no motion.
+fn without_spikes(values: &[f64]) -> Vec<f64> {
+    let mut calm = values.to_vec();
+    for (k, w) in values.windows(3).enumerate() {
+        let (low, high) = (w[0].min(w[1]), w[0].max(w[1]));
+        calm[k + 1] = w[2].clamp(low, high);
+    }
+    calm
+}
+
 /// How far the step to the next sample is off the slope about it, rms over √2, block by block: by noise, by an axis that
 /// shakes, and by the bend of fast motion.
 fn uneven(values: &[f64]) -> Vec<f64> {
@@ -69,6 +79,8 @@ fn uneven(values: &[f64]) -> Vec<f64> {
 /// A channel, and how its samples scatter; all in the unit of its values.
 struct Channel<'a> {
     values: &'a [f64],
+    /// See [`without_spikes`].
+    calm: Vec<f64>,
     /// The smallest step between two values.
     step: f64,
     /// Of each sample by itself, rms.
@@ -82,11 +94,11 @@ impl Channel<'_> {
     /// samples' noise, no narrower than a step. Less than by its own noise below what the samples next to it or the slopes
     /// on either side say, it moves hardly ever.
     fn chance(&self, k: usize) -> f64 {
-        let chord = (self.values[k + 1] - self.values[k - 2]).abs() / 3.0 - self.noise;
+        let chord = (self.calm[k + 1] - self.calm[k - 2]).abs() / 3.0 - self.noise;
         let block = (k - LINE) / BLOCK;
         let near = &self.uneven[block.saturating_sub(1)..(block + 2).min(self.uneven.len())];
         let uneven = near.iter().copied().fold(self.noise, f64::max);
-        let along = slope(self.values, k).abs() - uneven / 4.0;
+        let along = slope(&self.calm, k).abs() - uneven / 4.0;
         let wide = self.noise.hypot(self.step);
         let far = (chord / wide).max(along / uneven.hypot(self.step)) / 2.0;
         let far = far.max(0.0);
@@ -128,6 +140,7 @@ pub(crate) fn repeated(recording: &Recording, checked: &mut Checked) {
     let channels = [(&recording.cos, adc.cos.lsb), (&recording.sin, adc.sin.lsb)];
     let channels = channels.map(|(v, lsb)| Channel {
         values: v,
+        calm: without_spikes(v),
         step: step(v, lsb),
         noise: noise(v),
         uneven: uneven(v),

@@ -14,7 +14,7 @@ use crate::model::{Fit, System, above_motion, amounts, atoms_of};
 use crate::motion::spline::Spline;
 use crate::select::beside::Beside;
 use crate::select::selection::Accepted;
-use crate::shapes::library::{Row, Shape};
+use crate::shapes::library::{Library, Row, Shape};
 use crate::shapes::trig::Trig;
 
 /// Gain in log-likelihood from which on inner numbers can be fitted.
@@ -309,8 +309,29 @@ fn periodic(context: &Context, carried: &[Accepted]) -> [Trig; 2] {
     })
 }
 
-/// What the causes do at the angles of a context.
+/// Whether a cause of the sensor stands in one row alone. Along the circle it is an error of the angle, as a graduation's is; along the
+/// radius a gain of both channels, of all that is in them.
+fn is_all(one: &Accepted, row: Row, library: &Library) -> bool {
+    let atoms = atoms_of(&one.candidate.shapes);
+    !one.candidate.motion && atoms.iter().all(|i| library.atoms[*i].row == row)
+}
+
+/// What the causes do at the angles of a context. A graduation's errors turn what the channels see, and theirs are those of that angle.
 fn effects(context: &Context, carried: &mut [Accepted], with_motion: bool) -> Known {
+    let known = effects_at(context, carried, with_motion);
+    if known.angle.iter().all(|error| *error == 0.0) {
+        return known;
+    }
+    let seen = context.turned_by(&known.angle);
+    let angle = known.angle;
+    Known {
+        angle,
+        ..effects_at(&seen, carried, with_motion)
+    }
+}
+
+/// The same, where the channels see the angle that the context has.
+fn effects_at(context: &Context, carried: &mut [Accepted], with_motion: bool) -> Known {
     let mut catalogue = Catalogue::new(context, with_motion);
     enter(carried, &mut catalogue);
     let library = std::mem::take(&mut catalogue.library);
@@ -320,13 +341,10 @@ fn effects(context: &Context, carried: &mut [Accepted], with_motion: bool) -> Kn
         let amounts: Vec<(usize, f64)> = chosen.flat_map(Accepted::amounts).collect();
         samples.sum(&amounts, row, 1)
     };
-    // What stands along the circle alone is an error of the angle.
-    let turns = |a: &Accepted| {
-        let atoms = atoms_of(&a.candidate.shapes);
-        let row = |i: &usize| samples.library.atoms[*i].row;
-        !a.candidate.motion && atoms.iter().all(|i| row(i) == Row::Tangential)
-    };
-    let added = |a: &Accepted, _: Row| !a.candidate.motion && !turns(a);
+    let turns = |a: &Accepted| is_all(a, Row::Tangential, &samples.library);
+    let gains =
+        |a: &Accepted| a.candidate.factor.is_none() && is_all(a, Row::Radial, &samples.library);
+    let added = |a: &Accepted, _: Row| !a.candidate.motion && !turns(a) && !gains(a);
     let fast = if with_motion {
         Row::Motion
     } else {
@@ -349,6 +367,7 @@ fn effects(context: &Context, carried: &mut [Accepted], with_motion: bool) -> Kn
         radial,
         tangential,
         angle: of(&|a, _| turns(a), Row::Tangential),
+        gain: of(&|a, _| gains(a), Row::Radial),
         fast: of(&|a, _| a.candidate.motion, fast),
     }
 }
@@ -360,9 +379,7 @@ pub(crate) fn enter(carried: &mut [Accepted], catalogue: &mut Catalogue) {
         candidate.shapes = match &candidate.exact {
             Some(exact) => (exact.make)(&exact.inner, &mut catalogue.library),
             None => catalogue
-                .candidates
-                .get(candidate.id)
-                .filter(|c| c.name == candidate.name)
+                .cause(candidate.name, candidate.id)
                 .map_or_else(Vec::new, |c| c.shapes.clone()),
         };
     }

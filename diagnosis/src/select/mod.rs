@@ -6,12 +6,13 @@ pub(crate) mod choice;
 pub(crate) mod contender;
 pub(crate) mod held;
 pub(crate) mod rivals;
+pub(crate) mod rounds;
 pub(crate) mod score;
 pub(crate) mod selection;
 pub(crate) mod speed_anew;
 
 use crate::causes::cause::{Candidate, Domain};
-use crate::causes::{self, AC_COUPLING, Catalogue, HYSTERESIS};
+use crate::causes::{self, AC_COUPLING, BANDWIDTH_MISMATCH, CHANNEL_SKEW, Catalogue, HYSTERESIS};
 use crate::context::Context;
 use crate::doubt::curves;
 use crate::doubt::simpler::simpler;
@@ -24,6 +25,7 @@ use crate::noise::louder::{beyond_uneven_noise, widen_where_slow, widen_where_un
 use crate::numerics::statistics::{by_chance, price};
 use crate::select::beside::Beside;
 use crate::select::contender::{Contender, contender, paid_where_noise_shows};
+use crate::select::rounds::Anew;
 use crate::select::score::{CLEAR, SHOWN, Scored, retain_likely, score, worth};
 use crate::select::selection::{Accepted, Selection};
 use crate::shapes::library::Shape;
@@ -33,8 +35,9 @@ use crate::unnamed::unexplained::{Unnamed, What};
 const MOST: usize = 8;
 /// Share of what could not be named that a cause has to explain beside it to be named.
 const BEYOND_UNKNOWN: f64 = 0.5;
-/// What is there once: the direction turns over in one way only, and of two high passes in a row the faster is nearly all.
-const ONCE: [&str; 2] = [HYSTERESIS, AC_COUPLING];
+/// What is there once: the direction turns over in one way only, of two high passes in a row the faster is nearly all, and two delays
+/// are one.
+const ONCE: [&str; 4] = [HYSTERESIS, AC_COUPLING, CHANNEL_SKEW, BANDWIDTH_MISMATCH];
 
 /// Shapes of one list, then of the other.
 pub(crate) fn both(a: &[Shape], b: &[Shape]) -> Vec<Shape> {
@@ -127,17 +130,18 @@ pub(crate) fn anew(system: &System, found: &Selection) -> Option<Start> {
     astray.then(|| exact::start(system, &found.fit, &found.accepted))
 }
 
-/// Accepts causes one after the other, beside those that are known; ends where the tangents do not do, unless this is
-/// the last look. In a long recording, what is large is found in a part of it first.
+/// Accepts causes one after the other, beside those that are known; ends where the tangents do not do, as far as it may. In a long
+/// recording, what is large is found in a part of it first.
 pub(crate) fn select(
     context: &Context,
     system: &mut System,
     catalogue: &Catalogue,
     carried: Vec<Accepted>,
-    last: bool,
+    may: Anew,
 ) -> Selection {
     let found = begin(system, catalogue, carried);
-    let mut found = search(context, system, catalogue, found, last);
+    let known = found.accepted.len();
+    let mut found = search(context, system, catalogue, found, may);
     if system.every() == 1 {
         return found;
     }
@@ -154,7 +158,9 @@ pub(crate) fn select(
     system.try_on_all();
     let mut found = begin(system, catalogue, found.accepted);
     found.fit = system.fit_tried(found.fit.shapes);
-    if !last && let Some(start) = anew(system, &found) {
+    if may.with(found.accepted.len() > known)
+        && let Some(start) = anew(system, &found)
+    {
         found.again = vec![start];
         return found;
     }
@@ -165,7 +171,7 @@ pub(crate) fn select(
         // Each was fitted beside others that were not yet.
         tune(system, catalogue, &mut found);
     }
-    search(context, system, catalogue, found, last)
+    search(context, system, catalogue, found, may)
 }
 
 /// Beside flicker noise, what is slow in the channels is that noise: drift cannot be told from it, nor can these.
@@ -199,10 +205,11 @@ fn search(
     system: &mut System,
     catalogue: &Catalogue,
     mut found: Selection,
-    last: bool,
+    may: Anew,
 ) -> Selection {
     let fixed = catalogue.atoms;
-    if !last {
+    let known = found.accepted.len();
+    if may.with(false) {
         found.again.extend(anew(system, &found));
     }
     if !found.again.is_empty() {
@@ -308,7 +315,7 @@ fn search(
                 let (name, turns) = (cause.candidate.name, cause.candidate.factor.is_some());
                 let mut accepted = found.accepted.clone();
                 accepted.push(*cause);
-                let anew = !last && astray(system, &fit, &accepted);
+                let anew = may.with(true) && astray(system, &fit, &accepted);
                 // What does not hold on data that was not fitted is no cause, unless it turns the pair so far that its tangents do not.
                 if fails && !(turns && anew) {
                     refused.push(name);
@@ -316,7 +323,7 @@ fn search(
                     let before = std::mem::replace(&mut found.fit, fit);
                     found.accepted = accepted;
                     // Second orders may decide between causes long before they show beside one of them.
-                    if anew || !last && !others.is_empty() {
+                    if anew || may.with(true) && !others.is_empty() {
                         found.again = starts(system, &before, &found, others);
                     }
                 }
@@ -327,8 +334,10 @@ fn search(
             return found;
         }
     }
-    let seen = !last && !exact::tangents_do(system, &found.fit, &found.accepted, exact::SEEN);
-    if seen || system.every() == 1 && simpler(system, catalogue, &mut found, last) {
+    let joined = found.accepted.len() > known;
+    let seen =
+        may.with(joined) && !exact::tangents_do(system, &found.fit, &found.accepted, exact::SEEN);
+    if seen || system.every() == 1 && simpler(system, catalogue, &mut found, !may.with(true)) {
         found.again = vec![exact::start(system, &found.fit, &found.accepted)];
         return found;
     }

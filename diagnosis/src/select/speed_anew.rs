@@ -3,6 +3,7 @@
 
 use nonius_recording::Recording;
 
+use crate::causes::BANDWIDTH_MISMATCH;
 use crate::causes::cause::{Candidate, Domain};
 use crate::context::Context;
 use crate::model::exact::{NAMED, Start, followed, look, seen_together};
@@ -12,9 +13,6 @@ use crate::select::contender::{Contender, contender};
 use crate::select::score::{Scored, score};
 use crate::select::selection::Accepted;
 use crate::select::{begin, both, starts};
-
-/// Names that one channel or the other may have.
-const OF_EITHER_CHANNEL: [&str; 1] = ["bandwidth_mismatch"];
 
 /// Where the last cause that is carried bends the channels, and one that goes with speed changes with that: what is known of the recording
 /// with another choice of the one that it changes most. `None` where it stays what it was.
@@ -60,7 +58,8 @@ pub(crate) fn decided_anew(
     drop(system);
     let new = best(&without, choices, recording)?;
     let (was, is) = (earlier[at].candidate.name, new.1.last()?.candidate.name);
-    (was != is || OF_EITHER_CHANNEL.contains(&is)).then_some(new)
+    // The same name may be another channel's.
+    (was != is || is == BANDWIDTH_MISMATCH).then_some(new)
 }
 
 fn goes_with_speed(candidate: &Candidate) -> bool {

@@ -74,47 +74,36 @@ struct Taken {
     members: Vec<(usize, bool, usize, f64)>,
 }
 
-/// Shapes times each of `count` functions.
-fn modulated(
-    shapes: &[Shape],
-    count: usize,
-    by: Modulation,
-    motion: bool,
-    library: &mut Library,
-) -> Vec<Shape> {
-    let mut parts: Vec<Taken> = vec![];
-    let mut known: Vec<usize> = vec![];
-    for (which, shape) in shapes.iter().enumerate() {
-        for (atom, share) in &shape.0 {
-            let atom = library.atoms[*atom];
-            let at = known.iter().position(|g| *g == atom.group);
-            let at = at.unwrap_or_else(|| {
-                known.push(atom.group);
-                parts.push(Taken {
-                    group: library.groups[atom.group].clone(),
-                    members: vec![],
+impl Taken {
+    /// Of all these shapes.
+    fn of(shapes: &[Shape], library: &Library) -> Vec<Self> {
+        let mut parts: Vec<Self> = vec![];
+        let mut known: Vec<usize> = vec![];
+        for (which, shape) in shapes.iter().enumerate() {
+            for (atom, share) in &shape.0 {
+                let atom = library.atoms[*atom];
+                let at = known.iter().position(|g| *g == atom.group);
+                let at = at.unwrap_or_else(|| {
+                    known.push(atom.group);
+                    parts.push(Self {
+                        group: library.groups[atom.group].clone(),
+                        members: vec![],
+                    });
+                    known.len() - 1
                 });
-                known.len() - 1
-            });
-            let part = (which, atom.row != Row::Radial, atom.function, *share);
-            parts[at].members.push(part);
+                let part = (which, atom.row != Row::Radial, atom.function, *share);
+                parts[at].members.push(part);
+            }
         }
+        parts
     }
-    let all = shapes.len();
-    let radial_only = |p: &Taken| p.members.iter().all(|m| !m.1);
-    let way = if motion {
-        Use::Motion
-    } else if parts.iter().all(radial_only) {
-        Use::Radial
-    } else {
-        Use::Rows
-    };
-    let fill = move |block: &Block, out: &mut [f64]| {
+
+    /// The shapes themselves at a block, `all` of them: along the radius, then along the circle.
+    fn shapes(parts: &[Self], all: usize, block: &Block) -> Vec<f64> {
         let n = block.len();
-        // The shapes themselves: along the radius, then along the circle.
         let mut plain = vec![0.0; 2 * all * n];
         let mut scratch = vec![];
-        for Taken { group, members } in &parts {
+        for Self { group, members } in parts {
             scratch.clear();
             scratch.resize(group.way.values() * group.count * n, 0.0);
             group.write(block, &mut scratch);
@@ -126,6 +115,34 @@ fn modulated(
                 pairs.for_each(|(p, v)| *p += share * v);
             }
         }
+        plain
+    }
+
+    fn is_radial(parts: &[Self]) -> bool {
+        parts.iter().all(|p| p.members.iter().all(|m| !m.1))
+    }
+}
+
+/// Shapes times each of `count` functions.
+fn modulated(
+    shapes: &[Shape],
+    count: usize,
+    by: Modulation,
+    motion: bool,
+    library: &mut Library,
+) -> Vec<Shape> {
+    let parts = Taken::of(shapes, library);
+    let all = shapes.len();
+    let way = if motion {
+        Use::Motion
+    } else if Taken::is_radial(&parts) {
+        Use::Radial
+    } else {
+        Use::Rows
+    };
+    let fill = move |block: &Block, out: &mut [f64]| {
+        let n = block.len();
+        let plain = Taken::shapes(&parts, all, block);
         let rows = match way {
             Use::Radial => &plain[..all * n],
             Use::Motion => &plain[all * n..],
@@ -186,6 +203,21 @@ fn per_channel(
     };
     let place = library.add(total, Use::Pairs, Rc::new(fill));
     (0..total).map(|i| place.both(i)).collect()
+}
+
+/// Of what changes the amplitude of both channels, the same in each by itself.
+fn gains_apart(shapes: &[Shape], library: &mut Library) -> Vec<Shape> {
+    let parts = Taken::of(shapes, library);
+    let count = shapes.len();
+    if !Taken::is_radial(&parts) {
+        return vec![];
+    }
+    let by: Modulation = Rc::new(move |block, i, out| {
+        let n = block.len();
+        let all = Taken::shapes(&parts, count, block);
+        out.copy_from_slice(&all[i * n..(i + 1) * n]);
+    });
+    per_channel(&[Of::Gain], count, by, library)
 }
 
 /// A line whose amplitude and phase depend on the angle, along the radius and along the circle.
@@ -268,7 +300,9 @@ pub(crate) fn around(
         Domain::Revolution => {
             let per = context.periods_per_revolution.map_or(1.0, f64::from);
             let count = told(context, per, TIMES);
-            modulated(own, count, in_time(context, count), false, library)
+            let mut all = modulated(own, count, in_time(context, count), false, library);
+            all.extend(gains_apart(own, library));
+            all
         }
         Domain::Angle | Domain::Code => {
             let knots = told(context, 1.0, SLOW);

@@ -7,7 +7,7 @@ use nonius_recording::Recording;
 
 use crate::causes::{COGGING, COMMON_BANDWIDTH, VIBRATION};
 use crate::checks::timebase::GAP;
-use crate::context::Context;
+use crate::context::{Context, MANY};
 use crate::diagnose::Diagnosis;
 use crate::finding::Finding;
 use crate::motion::spline::Spline;
@@ -50,6 +50,27 @@ impl Motion {
             spline: self.spline.clone(),
             coefficients: pairs.map(|(all, added)| all - added).collect(),
         }
+    }
+}
+
+/// Where a few samples are wrong, the axis goes straight on from the one before to the one after.
+pub(crate) fn bridge(context: &Context, angle: &mut [f64]) {
+    let n = angle.len();
+    let mut from = 0;
+    for run in context.weight.chunk_by(|a, b| (*a == 0.0) == (*b == 0.0)) {
+        let to = from + run.len();
+        if run.first() == Some(&0.0) && run.len() < MANY && run.len() < n {
+            let before = from.checked_sub(1).map(|k| angle[k]);
+            let after = angle.get(to).copied();
+            // At an end there is one neighbour.
+            let (Some(first), Some(last)) = (before.or(after), after.or(before)) else {
+                return;
+            };
+            let step = (last - first) / (run.len() + 1) as f64;
+            let all = angle[from..to].iter_mut().enumerate();
+            all.for_each(|(k, a)| *a = first + step * (k + 1) as f64);
+        }
+        from = to;
     }
 }
 
