@@ -267,7 +267,7 @@ fn conclude(
     let named = extended.findings(system, &halves);
     let left = system.residual(&selection.fit);
     // Only what is noise can be noise of a kind.
-    let (mut noisy, mut strange) = if selection.unnamed.is_empty() && !selection.coded {
+    let (mut noisy, mut strange) = if selection.unnamed.is_empty() && selection.coded == 0.0 {
         noise::findings(system, &left)
     } else {
         (vec![], vec![])
@@ -292,8 +292,12 @@ fn conclude(
         .fold(0.0, f64::max);
     let flicker = flicker.filter(|f| !f.is_part_of(unknown));
     let silent = selection.unnamed.is_empty() && rest.is_empty() && noisy.is_empty();
-    if silent && !selection.coded && strange.is_empty() && flicker.is_none() {
-        strange = left::no_noise(context, &system.residual(&extended.fit).radial);
+    if silent && strange.is_empty() && flicker.is_none() {
+        strange = left::no_noise(
+            context,
+            &system.residual(&extended.fit).radial,
+            selection.coded,
+        );
     }
     let traces = |f: &Flicker| curves::instead_of_noise(system, selection, f.gain);
     match flicker
@@ -361,10 +365,10 @@ fn conclude(
         held_out_residual_rms: held_after,
         position_error_rms_rad: position_after,
     };
-    // The angle, less what everything that is no motion does to it.
-    let change = system
-        .samples
-        .sum(&extended.sensor_amounts(), Row::Tangential, 1);
+    // The angle, less what everything that is no motion does to it; what has no name any longer is off the signals, and comes back.
+    let mut amounts = extended.sensor_amounts();
+    amounts.extend(selection.taken_back(&extended));
+    let change = system.samples.sum(&amounts, Row::Tangential, 1);
     let pairs = context.measured.iter().zip(&change);
     let mut angle: Vec<f64> = pairs.map(|(measured, change)| measured - change).collect();
     motion::bridge(context, &mut angle);

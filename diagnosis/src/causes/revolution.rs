@@ -10,10 +10,16 @@ use crate::causes::cause::{Candidate, Domain, polar};
 use crate::context::Context;
 use crate::finding::{Chip, Parameter};
 use crate::shapes::block::Block;
+use crate::shapes::generic::{BOTH, Modulation, Of, per_channel};
 use crate::shapes::library::{Shape, Use};
 
 /// Orders of the revolution that a generic error has.
 const ORDERS: usize = 12;
+
+/// Orders of it that the channels' gains by themselves have, and their offsets: dirt over one channel, and a stray field that turns.
+const APART: [usize; 2] = [8, 2];
+/// Revolutions from which on those are told from what the period does.
+const ENOUGH: f64 = 2.0;
 
 /// cos and sin of orders 1 … `top` of the revolution, one after the other.
 fn waves(block: &Block, top: usize, out: &mut [f64]) {
@@ -53,6 +59,21 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
     catalogue.generic(Domain::Revolution, all.filter(|s| !s.0.is_empty()));
     if turns(phi) < 0.9 {
         return;
+    }
+    if turns(phi) >= ENOUGH {
+        // The gain of one channel: that of both is there.
+        let kinds: [(&[usize], &[Of]); 2] = [(&[0], &[Of::Gain]), (BOTH, &[Of::Offset])];
+        for (of, top) in kinds.into_iter().zip(APART) {
+            let one: Modulation = Rc::new(move |block, i, out| {
+                let order = (i / 2 + 1) as f64;
+                for (o, p) in out.iter_mut().zip(block.phi.unwrap_or_default()) {
+                    let (sin, cos) = (order * p).sin_cos();
+                    *o = if i % 2 == 0 { cos } else { sin };
+                }
+            });
+            let apart = per_channel(of, 2 * top, one, &mut catalogue.library);
+            catalogue.generic(Domain::Revolution, apart);
+        }
     }
     let list = &mut catalogue.candidates;
     for order in 1..=3u32 {

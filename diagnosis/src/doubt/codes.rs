@@ -175,7 +175,9 @@ pub(crate) fn beside(
     let before = found.unnamed.len() + found.left.len();
     found.unnamed.retain(|u| size(u.gain) > error.whole);
     found.left.retain(|u| size(u.gain) > error.whole);
-    found.coded = error.whole > IN_NOISE * system.noise();
+    if error.whole > IN_NOISE * system.noise() {
+        found.coded = error.whole;
+    }
     let dropped = before - found.unnamed.len() - found.left.len();
     (dropped + taken.len() > 0).then(|| {
         let rms = Quantity::rounded(error.whole, 2, Unit::Percent).brief();

@@ -5,7 +5,6 @@ use nonius_quantity::agree;
 
 use crate::causes::cause::{Candidate, Domain, Sign};
 use crate::causes::{self, ACCELERATION_GAIN, Catalogue, GAIN_DRIFT, OFFSET_DRIFT};
-use crate::context::Context;
 use crate::drifts::channels::Channels;
 use crate::drifts::courses;
 use crate::drifts::stairs;
@@ -16,6 +15,7 @@ use crate::numerics::statistics::price;
 use crate::select::ahead;
 use crate::select::beside::Beside;
 use crate::select::held::holds;
+use crate::select::locked;
 use crate::select::rivals;
 use crate::select::score::{ITSELF, RIVALS, Scored, score};
 use crate::select::selection::Accepted;
@@ -33,8 +33,6 @@ const OTHERS: usize = 3;
 const NEARLY: f64 = 0.8;
 /// Share from which on a drift explains as much as what may be one.
 const AS_WELL: f64 = 0.95;
-/// Highest order of the scale period at which a line may stand.
-const TOP: i32 = causes::ORDERS as i32;
 /// A drift of the offsets or of the gains: slow, as noise may be.
 pub(crate) fn is_drift(cause: &str) -> bool {
     [OFFSET_DRIFT, GAIN_DRIFT].contains(&cause)
@@ -70,7 +68,7 @@ pub(crate) fn contender(
     left: &Residual,
     mut scored: Vec<Scored>,
 ) -> Contender {
-    let harmonics = |s: &Scored| is_of_orders(system.context, &s.candidate);
+    let harmonics = |s: &Scored| locked::is_of_orders(system.context, &s.candidate);
     if !scored.iter().all(harmonics) {
         scored.retain(|s| !harmonics(s));
     }
@@ -151,15 +149,18 @@ pub(crate) fn contender(
             stepped = Some(i);
         }
         let listed = |name: &str| name != ACCELERATION_GAIN;
-        let locked = goes_with_angle(system.context, &own.candidate);
+        let locked = locked::why(system.context, &own);
         let crawling = causes::crawls(system.context, &own.candidate);
         let wandering = causes::is_one_of_many(system.context, left, &own.candidate);
         let nameable = listed(own.candidate.name)
             && rivals.iter().all(|r| listed(r))
-            && !(locked || crawling || wandering);
+            && !(locked.is_some() || crawling || wandering);
         if nameable && slow && !ahead.outdone && rivals.len() <= 1 && held.refusal.is_none() {
             if rivals.is_empty() {
                 rivals.extend(richer.or(wider));
+            } else if system.context.periods_per_revolution == Some(1) {
+                // One order is the other, and a harmonic of the scale is the likeliest.
+                rivals.extend(wider.filter(|name| !rivals.contains(name)));
             }
             system.retain(|i| i < mark);
             cause.confounded = rivals;
@@ -179,9 +180,8 @@ pub(crate) fn contender(
         }
         let why = if !listed(own.candidate.name) {
             "the catalogue has no such cause".to_owned()
-        } else if locked {
-            "at this constant speed an error that goes with the angle has that frequency, too"
-                .to_owned()
+        } else if let Some(why) = locked {
+            why.to_owned()
         } else if crawling {
             "it goes to and fro less than four times".to_owned()
         } else if wandering {
@@ -285,45 +285,6 @@ fn fewer_first(scored: &mut [Scored]) {
     if let Some(at) = others.min_by_key(|i| scored[*i].freedom) {
         scored[..=at].rotate_right(1);
     }
-}
-
-/// Whether, at a speed that hardly changes, a line stands where something that goes with the angle would: at half orders of
-/// the scale period, or at whole ones beside a fourth or half of the sample rate, where a multiplexer puts them.
-fn goes_with_angle(context: &Context, candidate: &Candidate) -> bool {
-    let halves = (1..2 * TOP).step_by(2).map(|m| (0.0, 0.5 * f64::from(m)));
-    let beside_rate = (-TOP..=TOP).flat_map(|m| [0.25, 0.5].map(|share| (share, f64::from(m))));
-    stands_at(context, candidate, halves.chain(beside_rate))
-}
-
-/// Whether, at a speed that hardly changes, a line with its harmonics stands where harmonics of the scale period do: together they look
-/// like that, and each of them is told by itself.
-fn is_of_orders(context: &Context, candidate: &Candidate) -> bool {
-    causes::has_harmonics(candidate)
-        && stands_at(context, candidate, (1..=TOP).map(|m| (0.0, f64::from(m))))
-}
-
-/// Whether a line stands, at a speed that hardly changes, at a share of the sample rate and an order of the scale period from there.
-fn stands_at(
-    context: &Context,
-    candidate: &Candidate,
-    mut places: impl Iterator<Item = (f64, f64)>,
-) -> bool {
-    /// Cycles per recording by which it may be off.
-    const NEAR: f64 = 0.7;
-    /// Fewest scale periods, so that hardly a line stands there by chance.
-    const FEWEST: f64 = 50.0;
-    // Vibration too: where it goes with the angle it may be an error of the sensor.
-    let line = candidate.domain == Domain::Line || candidate.name == causes::VIBRATION;
-    let many = context.periods_travelled() > FEWEST;
-    let told = line && many && !causes::speed_varies_much(context);
-    let Some(hertz) = candidate.inner().filter(|_| told) else {
-        return false;
-    };
-    let duration = context.samples() as f64 / context.rate;
-    let turning = context.periods_travelled() / duration;
-    places.any(|(share, order)| {
-        (hertz - share * context.rate - order * turning).abs() * duration < NEAR
-    })
 }
 
 /// Log-likelihood that a cause explains where noise of the channels is looked for, its numbers paid for: what it explains along

@@ -5,6 +5,7 @@ pub(crate) mod beside;
 pub(crate) mod choice;
 pub(crate) mod contender;
 pub(crate) mod held;
+mod locked;
 pub(crate) mod rivals;
 pub(crate) mod rounds;
 pub(crate) mod score;

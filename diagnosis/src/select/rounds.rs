@@ -4,11 +4,11 @@
 use crate::select::selection::Accepted;
 
 /// Most times that a recording is looked at anew.
-const MOST: usize = 12;
+const MOST: usize = 16;
 /// Most times for the same causes, unless each time less is left than before.
-const ALIKE: usize = 3;
+const ALIKE: usize = 6;
 /// Share of the power to which it has to fall for that.
-const LESS: f64 = 0.9;
+const LESS: f64 = 0.99;
 
 /// For what a look may end, and another one begin.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]

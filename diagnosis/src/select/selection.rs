@@ -101,8 +101,8 @@ pub(crate) struct Selection {
     pub(crate) left: Vec<Unnamed>,
     /// Where to look anew from, the likeliest first: something is too large for the tangents of this context.
     pub(crate) again: Vec<Start>,
-    /// The errors of the codes are seen in the noise.
-    pub(crate) coded: bool,
+    /// Rms error of the codes, in amplitudes, where it is seen in the noise.
+    pub(crate) coded: f64,
 }
 
 impl Selection {
@@ -197,7 +197,7 @@ impl Selection {
             unnamed: vec![],
             left: vec![],
             again: vec![],
-            coded: false,
+            coded: 0.0,
         }
     }
 
@@ -329,6 +329,20 @@ impl Selection {
             list.push(finding.naming_both());
         }
         list
+    }
+
+    /// What of the sensor is off the signals and is no part of the model that is `named`, as it comes back.
+    pub(crate) fn taken_back(&self, named: &Self) -> Vec<(usize, f64)> {
+        let shapes = |one: &Accepted| one.candidate.shapes.clone();
+        let known: Vec<Vec<Shape>> = named.accepted.iter().map(shapes).collect();
+        let dropped = |one: &&Accepted| {
+            !one.candidate.motion && one.is_taken_off() && !known.contains(&one.candidate.shapes)
+        };
+        let back = self.accepted.iter().filter(dropped).map(|one| {
+            let x: Vec<f64> = one.x.iter().map(|x| -x).collect();
+            amounts(&one.candidate.shapes, &x)
+        });
+        back.flatten().collect()
     }
 
     /// The five parameters and every accepted cause that is no motion, with what they are beyond what is known.

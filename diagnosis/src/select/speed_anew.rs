@@ -29,7 +29,7 @@ pub(crate) fn decided_anew(
     }
     let mut others = carried.to_vec();
     others.remove(at);
-    let start = Start::of(context, others);
+    let start = Start::of(context, others.clone());
     let without = followed(context, &start, recording, None);
     let mut beside_it = start.carried;
     let (mut system, catalogue) = look(&without, &mut beside_it, recording);
@@ -54,7 +54,15 @@ pub(crate) fn decided_anew(
     let fit = system.fit(both(&found.fit.shapes, &cause.candidate.shapes));
     let before = std::mem::replace(&mut found.fit, fit);
     found.accepted.push(*cause);
-    let choices = starts(&system, &before, &found, rivals);
+    let mut choices = starts(&system, &before, &found, rivals);
+    // Far from where the channel is late, tangents of what stands beside it say nothing: that is as it was.
+    for choice in &mut choices {
+        for (one, known) in choice.carried.iter_mut().zip(&others) {
+            if one.candidate.name == known.candidate.name && one.x.len() == known.x.len() {
+                one.x.clone_from(&known.x);
+            }
+        }
+    }
     drop(system);
     let new = best(&without, choices, recording)?;
     let (was, is) = (earlier[at].candidate.name, new.1.last()?.candidate.name);

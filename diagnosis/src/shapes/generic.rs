@@ -27,7 +27,7 @@ const SPEEDS: usize = 12;
 const SIZES: usize = 6;
 
 /// Functions of a block that amounts are multiplied by: which of them, its values.
-type Modulation = Rc<dyn Fn(&Block, usize, &mut [f64])>;
+pub(crate) type Modulation = Rc<dyn Fn(&Block, usize, &mut [f64])>;
 
 /// A piecewise linear function that is one at knot `i` of `count` on 0 … 1 and zero at the others.
 pub(crate) fn hat(count: usize, i: usize, x: f64) -> f64 {
@@ -165,20 +165,23 @@ fn modulated(
 
 /// Functions of each channel: its gain, its phase, its offset.
 #[derive(Clone, Copy)]
-enum Of {
+pub(crate) enum Of {
     Gain,
     Phase,
     Offset,
 }
 
-/// What each channel has of these, times each of `count` functions.
-fn per_channel(
-    of: &'static [Of],
+/// Both channels.
+pub(crate) const BOTH: &[usize] = &[0, 1];
+
+/// What each of these channels has of these, times each of `count` functions.
+pub(crate) fn per_channel(
+    (channels, of): (&'static [usize], &'static [Of]),
     count: usize,
     by: Modulation,
     library: &mut Library,
 ) -> Vec<Shape> {
-    let total = 2 * of.len() * count;
+    let total = channels.len() * of.len() * count;
     let fill = move |block: &Block, out: &mut [f64]| {
         let n = block.len();
         let (c, s) = out.split_at_mut(total * n);
@@ -186,7 +189,7 @@ fn per_channel(
         for i in 0..count {
             by(block, i, &mut factor);
             for (j, one) in of.iter().enumerate() {
-                for which in 0..2 {
+                for (at, &which) in channels.iter().enumerate() {
                     let of_angle = |k: usize| match one {
                         Of::Gain => block.u[which][k],
                         Of::Phase => block.slope[which][k],
@@ -195,7 +198,7 @@ fn per_channel(
                     for k in 0..n {
                         change[k] = factor[k] * of_angle(k);
                     }
-                    let at = ((j * 2 + which) * count + i) * n;
+                    let at = ((j * channels.len() + at) * count + i) * n;
                     block.channel(which, &change, &mut c[at..at + n], &mut s[at..at + n]);
                 }
             }
@@ -217,7 +220,7 @@ fn gains_apart(shapes: &[Shape], library: &mut Library) -> Vec<Shape> {
         let all = Taken::shapes(&parts, count, block);
         out.copy_from_slice(&all[i * n..(i + 1) * n]);
     });
-    per_channel(&[Of::Gain], count, by, library)
+    per_channel((BOTH, &[Of::Gain]), count, by, library)
 }
 
 /// A line whose amplitude and phase depend on the angle, along the radius and along the circle.
@@ -327,7 +330,7 @@ pub(crate) fn around(
             } else {
                 &[Of::Offset]
             };
-            per_channel(of, DRIFT, in_time(context, DRIFT), library)
+            per_channel((BOTH, of), DRIFT, in_time(context, DRIFT), library)
         }
         Domain::Speed if speed_varies(context) => {
             let top = context.top_speed();
@@ -335,7 +338,8 @@ pub(crate) fn around(
                 let pairs = out.iter_mut().zip(block.speed);
                 pairs.for_each(|(o, v)| *o = hat(SPEEDS, i, 0.5 + 0.5 * v / top));
             });
-            per_channel(&[Of::Gain, Of::Phase, Of::Offset], SPEEDS, knots, library)
+            let of = &[Of::Gain, Of::Phase, Of::Offset];
+            per_channel((BOTH, of), SPEEDS, knots, library)
         }
         Domain::Speed => vec![],
     }

@@ -20,6 +20,8 @@ const FAR: f64 = 6.0;
 /// Sectors of the period in each of which the noise has a size of its own, and fewest samples that tell it.
 const SECTORS: usize = 16;
 const IN_A_SECTOR: usize = 50;
+/// So many times the error of the codes, that and noise of its size do not leave.
+const MORE: f64 = 1.5;
 /// Fewest samples that stand out and are no chance.
 const FEWEST: usize = 3;
 
@@ -141,8 +143,9 @@ fn by_angle(context: &Context, radial: &[f64], sigma: f64) -> Vec<f64> {
     sizes.iter().map(louder).collect()
 }
 
-/// What of a radial residual, in amplitudes, is no white noise; nothing where the ADC is coarser than the noise.
-pub(crate) fn no_noise(context: &Context, radial: &[f64]) -> Vec<Unnamed> {
+/// What of a radial residual, in amplitudes, is no white noise; nothing where the ADC is coarser than the noise, or the codes err by
+/// `coded` rms and no more is left than that may make.
+pub(crate) fn no_noise(context: &Context, radial: &[f64], coded: f64) -> Vec<Unnamed> {
     let sizes: Vec<f64> = (radial.iter().zip(&context.weight))
         .filter(|(_, w)| **w > 0.0)
         .map(|(r, _)| r.abs())
@@ -152,6 +155,12 @@ pub(crate) fn no_noise(context: &Context, radial: &[f64]) -> Vec<Unnamed> {
     }
     let sigma = spread(&sizes);
     if sigma.is_nan() || sigma <= CODES * code(context) {
+        return vec![];
+    }
+    let square: f64 = radial.iter().map(|r| r * r).sum();
+    let rms = (square / radial.len().max(1) as f64).sqrt();
+    let made_by_codes = rms < MORE * coded;
+    if made_by_codes {
         return vec![];
     }
     let mut found = vec![];
@@ -185,8 +194,6 @@ pub(crate) fn no_noise(context: &Context, radial: &[f64]) -> Vec<Unnamed> {
         );
     }
     let bartlett = Bartlett::of(radial);
-    let square: f64 = radial.iter().map(|r| r * r).sum();
-    let rms = (square / radial.len().max(1) as f64).sqrt();
     tell(
         bartlett.p_value,
         format!(

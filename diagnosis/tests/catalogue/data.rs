@@ -1,7 +1,8 @@
 //! Causes in the data: samples that are off, lost or doubled, and noise with the signal.
 
 use crate::harness::{
-    Case, LSB, NOISE, PLAIN, Rows, damaged, finds, finds_nothing, names, near, shows, shows_in,
+    Case, LSB, NOISE, PLAIN, Rows, damaged, farthest, finds, finds_nothing, names, near, shows,
+    shows_in,
 };
 
 /// Four times as noisy.
@@ -347,4 +348,36 @@ fn noise_with_the_signal() {
         },
     );
     near(&found, "rms", 0.002);
+}
+
+/// Where the axis turns round a code comes again by chance. A wild sample before it is no motion, so none was put in; and the positions go
+/// straight on where samples are wild.
+#[test]
+fn a_wild_sample_beside_one_that_comes_again() {
+    let mut rows_then = vec![];
+    let found = damaged(&PLAIN, |rows| {
+        let turns = |k: &usize| {
+            let [before, now, after] = [k - 1, *k, k + 1].map(|k| rows[k][3]);
+            (now - before) * (after - now) <= 0.0
+        };
+        let turning: Vec<usize> = (100..rows.len() - 100).filter(turns).collect();
+        assert!(!turning.is_empty());
+        rows_then.clone_from(rows);
+        for k in turning {
+            let [_, c, s, _] = rows[k - 1];
+            (rows[k][1], rows[k][2]) = (c, s);
+            rows[k - 2][1] += 0.25;
+        }
+        for k in (500..rows.len() - 500).step_by(1000) {
+            rows[k][2] -= 0.3;
+        }
+    });
+    assert_eq!(
+        names(&found),
+        ["glitches"],
+        "{}",
+        found.unexplained.signature
+    );
+    let (most, rms) = farthest(&found, &rows_then);
+    assert!(most < 6.0 * NOISE && rms < 1.1 * NOISE, "{most} {rms}");
 }

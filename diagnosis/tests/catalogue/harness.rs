@@ -202,7 +202,7 @@ fn recording(case: &Case, rows: &Rows) -> Recording {
 /// A long recording, motion and parameters known.
 pub(crate) fn long(case: &Case) -> Diagnosis {
     let mut random = StdRng::seed_from_u64(13);
-    of_rows(case, &simulated(case, &Drive::known(), LONG, &mut random))
+    of_true_rows(case, &simulated(case, &Drive::known(), LONG, &mut random))
 }
 
 /// A recording of that many samples, motion and parameters known; the faster, the shorter it is.
@@ -230,19 +230,59 @@ pub(crate) fn arc(periods: f64, seed: u64) -> (Diagnosis, [f64; 2]) {
 
 /// A recording of so many periods, one way at a speed that does not change.
 pub(crate) fn evenly(case: &Case, periods: f64, seed: u64) -> Diagnosis {
+    evenly_followed(case, periods, seed).0
+}
+
+/// The same, and how far the positions are off, radians rms.
+pub(crate) fn evenly_followed(case: &Case, periods: f64, seed: u64) -> (Diagnosis, f64) {
     let mut random = StdRng::seed_from_u64(seed);
     let drive = Drive {
         swing: 0.0,
         run: periods * TAU / LENGTH,
         ..Drive::known()
     };
-    of_rows(case, &simulated(case, &drive, SAMPLES, &mut random))
+    let rows = simulated(case, &drive, SAMPLES, &mut random);
+    let found = of_true_rows(case, &rows);
+    let off = farthest(&found, &rows).1;
+    (found, off)
+}
+
+/// How far the positions are off what the axis did, but for where they count from: the most, and rms, radians.
+pub(crate) fn farthest(found: &Diagnosis, rows: &Rows) -> (f64, f64) {
+    let pairs = found.positions.iter().zip(rows);
+    let off: Vec<f64> = pairs.map(|(p, [.., r])| TAU * p - (1.0 - r)).collect();
+    let n = off.len() as f64;
+    let mean = off.iter().sum::<f64>() / n;
+    let most = off
+        .iter()
+        .fold(0.0, |most: f64, o| most.max((o - mean).abs()));
+    let square = off.iter().map(|o| (o - mean).powi(2)).sum::<f64>();
+    (most, (square / n).sqrt())
 }
 
 fn of_rows(case: &Case, rows: &Rows) -> Diagnosis {
     let found = diagnose(&recording(case, rows)).expect("signals that draw an ellipse");
     crate::words::well_said(&found);
     found
+}
+
+/// The same of rows whose reference is the simulated axis.
+fn of_true_rows(case: &Case, rows: &Rows) -> Diagnosis {
+    let found = of_rows(case, rows);
+    if let Some(claimed) = found.extended.position_error_rms_rad {
+        follows_as_claimed(&found, rows, claimed);
+    }
+    found
+}
+
+/// The positions are off the reference by what the model is said to leave there.
+fn follows_as_claimed(found: &Diagnosis, rows: &Rows, claimed: f64) {
+    let (_, off) = farthest(found, rows);
+    let what = names(found);
+    assert!(
+        off < 1.1 * claimed + 1e-5,
+        "{off}, claimed {claimed}: {what:?}"
+    );
 }
 
 pub(crate) fn names(found: &Diagnosis) -> Vec<&str> {
@@ -253,7 +293,7 @@ pub(crate) fn names(found: &Diagnosis) -> Vec<&str> {
 pub(crate) fn diagnosed(case: &Case, seed: u64) -> Diagnosis {
     let mut random = StdRng::seed_from_u64(seed);
     let drive = Drive::drawn(&mut random);
-    of_rows(case, &simulated(case, &drive, SAMPLES, &mut random))
+    of_true_rows(case, &simulated(case, &drive, SAMPLES, &mut random))
 }
 
 /// Nothing is named and nothing is left unexplained.
@@ -289,7 +329,7 @@ fn is_only(found: &Diagnosis, name: &str) {
 /// given another name. Nothing but the cause is named, nothing is left unexplained, and the residue is the noise.
 pub(crate) fn alone(name: &str, case: &Case) -> Diagnosis {
     let mut random = StdRng::seed_from_u64(11);
-    let found = of_rows(
+    let found = of_true_rows(
         case,
         &simulated(case, &Drive::known(), SAMPLES, &mut random),
     );
@@ -314,7 +354,7 @@ pub(crate) fn shows_in(case: &Case, name: &str, damage: impl Fn(&mut Rows)) {
 }
 
 /// What is found in a recording that is `damaged`; it keeps its length.
-pub(crate) fn damaged(case: &Case, damage: impl Fn(&mut Rows)) -> Diagnosis {
+pub(crate) fn damaged(case: &Case, damage: impl FnOnce(&mut Rows)) -> Diagnosis {
     let mut random = StdRng::seed_from_u64(3);
     let drive = Drive::drawn(&mut random);
     let mut rows = simulated(case, &drive, SAMPLES, &mut random);

@@ -3,7 +3,8 @@
 use std::f64::consts::TAU;
 
 use crate::harness::{
-    Case, PERIODS, REVOLVING, alone, diagnosed, finds, names, near, within_errors,
+    Case, NOISE, PERIODS, REVOLVING, alone, diagnosed, evenly, evenly_followed, finds, names, near,
+    of_cause, within_errors,
 };
 
 /// The amplitude of both channels changes once a revolution, by a depth of so many per mille.
@@ -78,4 +79,84 @@ fn large() {
     let off = (place.value - 1.0 + period / 2.0).rem_euclid(period) - period / 2.0;
     assert!(off.abs() < 5.0 * place.std_error, "{off}");
     within_errors(&found, "width", 0.1);
+}
+
+/// A graduation that is off once a revolution, run-out, and a second harmonic: the channels see the angle with the graduation's error, and
+/// run-out is a gain of the harmonic, too. Nothing of what one does to another has a name of its own, and the positions are those of the
+/// axis.
+#[test]
+fn what_repeats_with_the_revolution_stands_together() {
+    let magnet = Case {
+        seen: |a, _| {
+            let seen = a + 0.06 * (a / PERIODS).cos();
+            (seen, seen)
+        },
+        channels: |c, s, _, a, _| {
+            let seen = a + 0.06 * (a / PERIODS).cos();
+            let m = 1.0 + 0.04 * (a / PERIODS + 0.5).cos();
+            (
+                m * (c + 0.012 * (2.0 * seen + 0.4).cos()),
+                m * (s + 0.008 * (2.0 * seen + 1.3).cos()),
+            )
+        },
+        reference: true,
+        ..REVOLVING
+    };
+    let check = |found: &nonius_diagnosis::Diagnosis| {
+        let mut named = names(found);
+        named.sort_unstable();
+        let left = &found.unexplained.signature;
+        assert_eq!(
+            named,
+            ["graduation_error", "runout", "spatial_harmonic"],
+            "{left}"
+        );
+        assert!(!found.unexplained.significant, "{left}");
+        of_cause(found, "graduation_error", "amplitude", 0.06);
+        of_cause(found, "runout", "depth", 0.04);
+        of_cause(found, "spatial_harmonic", "amplitude_cos", 0.012);
+    };
+    check(&diagnosed(&magnet, 7));
+    let (found, off) = evenly_followed(&magnet, 130.0, 7);
+    check(&found);
+    assert!(off < 1.1 * NOISE, "{off}");
+}
+
+/// Dirt over one channel is none over both.
+#[test]
+fn dirt_over_one_channel() {
+    let dirty = Case {
+        channels: |c, s, _, a, _| {
+            let off = (a / PERIODS - 1.0 + TAU / 2.0).rem_euclid(TAU) - TAU / 2.0;
+            (c * (1.0 - 0.05 * (-0.5 * (off / 0.3).powi(2)).exp()), s)
+        },
+        ..REVOLVING
+    };
+    for found in [diagnosed(&dirty, 7), evenly(&dirty, 300.0, 7)] {
+        assert!(names(&found).is_empty(), "{:?}", names(&found));
+        let left = &found.unexplained.signature;
+        assert!(left.contains("repeats with the revolution"), "{left}");
+    }
+}
+
+/// At one speed an offset that goes with the revolution, and a harmonic that nobody looks for, have a fixed frequency as interference has.
+#[test]
+fn a_line_where_orders_are_has_no_name() {
+    let turning = Case {
+        channels: |c, s, _, a, _| {
+            let (sin, cos) = (a / PERIODS).sin_cos();
+            (c + 0.01 * cos, s + 0.01 * sin)
+        },
+        ..REVOLVING
+    };
+    let ninth = Case {
+        channels: |c, s, _, a, _| (c + 0.002 * (9.0 * a).cos(), s + 0.002 * (9.0 * a).sin()),
+        ..REVOLVING
+    };
+    for (case, with) in [(turning, "with the revolution"), (ninth, "with the angle")] {
+        let found = evenly(&case, 123.4, 7);
+        assert!(names(&found).is_empty(), "{:?}", names(&found));
+        let left = &found.unexplained.signature;
+        assert!(left.contains(with), "{left}");
+    }
 }

@@ -1,8 +1,10 @@
 //! Causes that grow with the speed or turn over with its sign.
 
+use std::f64::consts::TAU;
+
 use crate::harness::{
-    Case, LSB, NOISE, PLAIN, alone, diagnosed, finds, finds_beside, finds_nothing, names, near,
-    of_cause, shows, within_errors,
+    Case, LSB, NOISE, PLAIN, alone, diagnosed, diagnosed_of, finds, finds_beside, finds_nothing,
+    names, near, of_cause, shows, within_errors,
 };
 use crate::motion::rumble;
 
@@ -175,7 +177,7 @@ fn another_law_of_the_speed_has_no_name() {
 /// A capacitor before each channel, charged to the mean before the recording begins: a high pass of 4 Hz.
 #[test]
 fn a_capacitor_before_each_channel() {
-    const TAU: f64 = 0.04;
+    const SECONDS: f64 = 0.04;
     shows("ac_coupling", |rows| {
         let mut slow = [0.0; 2];
         for k in 0..rows.len() {
@@ -186,7 +188,7 @@ fn a_capacitor_before_each_channel() {
             };
             for (channel, slow) in slow.iter_mut().enumerate() {
                 let value = rows[k][1 + channel];
-                *slow += (value - *slow) * (1.0 - (-step / TAU).exp());
+                *slow += (value - *slow) * (1.0 - (-step / SECONDS).exp());
                 rows[k][1 + channel] = ((value - *slow) / LSB).round() * LSB;
             }
         }
@@ -232,4 +234,74 @@ fn a_channel_that_is_late_bends_late() {
     is_found::<200, 40, 40>();
     is_found::<-200, -60, 40>();
     is_found::<10, -60, -60>();
+}
+
+/// A channel has a third harmonic, and the sine is sampled so many microseconds later: up to a fifth of a radian, and of three in its
+/// harmonic.
+fn harmonic_and_late<const MICROSECONDS: i32>() -> Case {
+    Case {
+        seen: |a, v| (a, a + 1e-6 * f64::from(MICROSECONDS) * v),
+        channels: |c, s, _, a, v| {
+            let late = a + 1e-6 * f64::from(MICROSECONDS) * v;
+            (
+                c + 0.006 * (3.0 * a + 0.3).cos(),
+                s + 0.007 * (3.0 * late + 1.7).cos(),
+            )
+        },
+        ..PLAIN
+    }
+}
+
+/// Before the harmonic is known, what the delay does to it moves the delay from look to look, to and fro: it has to be found all the same.
+/// The same of a low pass.
+#[test]
+fn a_channel_that_is_late_has_late_harmonics() {
+    let low_pass = |tau: [f64; 2]| Case {
+        tau,
+        ..harmonic_and_late::<0>()
+    };
+    for (cause, parameter, value, case) in [
+        ("channel_skew", "delay_s", 6e-5, harmonic_and_late::<60>()),
+        ("channel_skew", "delay_s", -6e-5, harmonic_and_late::<-60>()),
+        ("channel_skew", "delay_s", 2e-5, harmonic_and_late::<20>()),
+        (
+            "bandwidth_mismatch",
+            "tau_cos_s",
+            6e-5,
+            low_pass([6e-5, 0.0]),
+        ),
+        (
+            "bandwidth_mismatch",
+            "tau_sin_s",
+            6e-5,
+            low_pass([0.0, 6e-5]),
+        ),
+    ] {
+        let found = diagnosed(&case, 7);
+        let mut named = names(&found);
+        named.sort_unstable();
+        let what = format!("{cause} {value}: {}", found.unexplained.signature);
+        assert_eq!(named, [cause, "spatial_harmonic"], "{what}");
+        assert!(!found.unexplained.significant, "{what}");
+        of_cause(&found, cause, parameter, value);
+        of_cause(&found, "spatial_harmonic", "amplitude_cos", 0.006);
+        of_cause(&found, "spatial_harmonic", "amplitude_sin", 0.007);
+    }
+}
+
+/// An amplitude that follows the motion to and fro may be one that changes with time, with the place or with the acceleration.
+#[test]
+fn a_line_that_the_motion_has_is_no_ripple() {
+    let swung = Case {
+        channels: |c, s, t, _, _| {
+            // The motion goes to and fro 2.2 times in 0.4 s.
+            let m = 1.0 + 0.004 * (2.0 * TAU * 5.5 * t).cos();
+            (c * m, s * m)
+        },
+        ..PLAIN
+    };
+    let found = diagnosed_of(&swung, 20_000).expect("an ellipse");
+    let named = names(&found);
+    assert!(!named.contains(&"amplitude_ripple"), "{named:?}");
+    assert!(found.unexplained.significant || !named.is_empty());
 }
