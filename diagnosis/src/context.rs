@@ -7,7 +7,9 @@ use nonius_calibration::Ellipse;
 use nonius_recording::{AdcPair, Recording};
 
 use crate::checks::first;
+use crate::model::known::Known;
 use crate::motion::spline::Spline;
+use crate::numerics::slopes::{around, fine_gradient, gradient};
 use crate::numerics::solve::dot;
 use crate::shapes::trig::Trig;
 
@@ -360,50 +362,6 @@ impl Context {
         self.fast = known.fast;
         self.set_pair(c, s, reference);
     }
-}
-
-/// What is known of a recording, one value per sample.
-pub(crate) struct Known {
-    /// Added along the radius, in amplitudes.
-    pub(crate) radial: Vec<f64>,
-    /// Added along the circle, in amplitudes.
-    pub(crate) tangential: Vec<f64>,
-    /// Gains of both channels, less one.
-    pub(crate) gain: Vec<f64>,
-    /// Errors of the angle, radians.
-    pub(crate) angle: Vec<f64>,
-    /// Fast real motion, radians.
-    pub(crate) fast: Vec<f64>,
-}
-
-/// Change per sample.
-fn gradient(values: &[f64]) -> Vec<f64> {
-    let last = values.len().saturating_sub(1);
-    (0..values.len())
-        .map(|k| {
-            let (a, b) = (k.saturating_sub(1), (k + 1).min(last));
-            (values[b] - values[a]) / (b - a).max(1) as f64
-        })
-        .collect()
-}
-
-/// Change per sample of what moves fast: right to the fourth order.
-fn fine_gradient(values: &[f64]) -> Vec<f64> {
-    let mut change = gradient(values);
-    for (k, w) in values.windows(5).enumerate() {
-        change[k + 2] = (8.0 * (w[3] - w[1]) - (w[4] - w[0])) / 12.0;
-    }
-    change
-}
-
-/// Second derivative per sample squared by the neighbours alone: the noise of a sample of the reference stands in the residual there, too,
-/// and would be found in what goes with the acceleration.
-fn around(values: &[f64]) -> Vec<f64> {
-    let mut bends = vec![0.0; values.len()];
-    for (k, w) in values.windows(5).enumerate() {
-        bends[k + 2] = (w[0] - w[1] - w[3] + w[4]) / 3.0;
-    }
-    bends
 }
 
 /// Centred, of unit spread; `None` if it does not change.

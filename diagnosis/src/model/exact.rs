@@ -8,14 +8,13 @@ use nonius_calibration::Ellipse;
 use nonius_recording::Recording;
 
 use crate::causes::Catalogue;
-use crate::context::{Context, Known, unwrapped};
-use crate::model::sweep::Samples;
-use crate::model::{Fit, System, above_motion, amounts, atoms_of};
+use crate::context::{Context, unwrapped};
+use crate::model::known::{effects, periodic};
+use crate::model::{Fit, System, above_motion, atoms_of};
 use crate::motion::spline::Spline;
 use crate::select::beside::Beside;
 use crate::select::selection::Accepted;
-use crate::shapes::library::{Library, Row, Shape};
-use crate::shapes::trig::Trig;
+use crate::shapes::library::{Row, Shape};
 
 /// Gain in log-likelihood from which on inner numbers can be fitted.
 pub(crate) const FITTED: f64 = 30.0;
@@ -296,80 +295,6 @@ pub(crate) fn look<'a>(
     let every = every(counts as usize);
     let system = System::new(context, motion, &mut catalogue, carried, every);
     (system, catalogue)
-}
-
-/// What the causes add to the channels in every period.
-fn periodic(context: &Context, carried: &[Accepted]) -> [Trig; 2] {
-    let beta = context.ellipse.beta;
-    let known = carried.iter().filter(|a| a.is_taken_off());
-    let all = known.filter_map(|a| Some(a.candidate.adds.as_ref()?(beta, &a.x)));
-    let nothing = [(); 2].map(|()| Trig::constant(0.0));
-    all.fold(nothing, |[c, s], [more_c, more_s]| {
-        [c.plus(&more_c), s.plus(&more_s)]
-    })
-}
-
-/// Whether a cause of the sensor stands in one row alone. Along the circle it is an error of the angle, as a graduation's is; along the
-/// radius a gain of both channels, of all that is in them.
-fn is_all(one: &Accepted, row: Row, library: &Library) -> bool {
-    let atoms = atoms_of(&one.candidate.shapes);
-    !one.candidate.motion && atoms.iter().all(|i| library.atoms[*i].row == row)
-}
-
-/// What the causes do at the angles of a context. A graduation's errors turn what the channels see, and theirs are those of that angle.
-fn effects(context: &Context, carried: &mut [Accepted], with_motion: bool) -> Known {
-    let known = effects_at(context, carried, with_motion);
-    if known.angle.iter().all(|error| *error == 0.0) {
-        return known;
-    }
-    let seen = context.turned_by(&known.angle);
-    let angle = known.angle;
-    Known {
-        angle,
-        ..effects_at(&seen, carried, with_motion)
-    }
-}
-
-/// The same, where the channels see the angle that the context has.
-fn effects_at(context: &Context, carried: &mut [Accepted], with_motion: bool) -> Known {
-    let mut catalogue = Catalogue::new(context, with_motion);
-    enter(carried, &mut catalogue);
-    let library = std::mem::take(&mut catalogue.library);
-    let samples = Samples::new(context, library, Default::default(), 1);
-    let of = |wanted: &dyn Fn(&Accepted, Row) -> bool, row: Row| {
-        let chosen = carried.iter().filter(|a| wanted(a, row));
-        let amounts: Vec<(usize, f64)> = chosen.flat_map(Accepted::amounts).collect();
-        samples.sum(&amounts, row, 1)
-    };
-    let turns = |a: &Accepted| is_all(a, Row::Tangential, &samples.library);
-    let gains =
-        |a: &Accepted| a.candidate.factor.is_none() && is_all(a, Row::Radial, &samples.library);
-    let added = |a: &Accepted, _: Row| !a.candidate.motion && !turns(a) && !gains(a);
-    let fast = if with_motion {
-        Row::Motion
-    } else {
-        Row::Tangential
-    };
-    let (mut radial, mut tangential) = (of(&added, Row::Radial), of(&added, Row::Tangential));
-    for one in carried.iter() {
-        let (Some(factor), [first, ..]) = (one.candidate.factor, &*one.candidate.shapes) else {
-            continue;
-        };
-        let first = amounts(std::slice::from_ref(first), &one.x);
-        let [r, t] = [Row::Radial, Row::Tangential].map(|row| samples.sum(&first, row, 1));
-        for (k, (r, t)) in r.iter().zip(&t).enumerate() {
-            let added = factor(*r, *t) - 1.0;
-            radial[k] += added.re - r;
-            tangential[k] += added.im - t;
-        }
-    }
-    Known {
-        radial,
-        tangential,
-        angle: of(&|a, _| turns(a), Row::Tangential),
-        gain: of(&|a, _| gains(a), Row::Radial),
-        fast: of(&|a, _| a.candidate.motion, fast),
-    }
 }
 
 /// Gives causes their shapes in another catalogue; the ones that it does not hold are left out by their lack of shapes.

@@ -3,6 +3,7 @@
 mod broad;
 pub(crate) mod exact;
 mod halves;
+pub(crate) mod known;
 mod part;
 mod residual;
 pub(crate) mod sweep;

@@ -5,5 +5,6 @@ pub(crate) mod lines;
 pub(crate) mod pair;
 pub(crate) mod polygon;
 pub(crate) mod polynomial;
+pub(crate) mod slopes;
 pub(crate) mod solve;
 pub(crate) mod statistics;

@@ -23,14 +23,14 @@ use crate::model::exact::{self, Start};
 use crate::model::{Fit, Halves, Residual, System, atoms_of};
 use crate::noise::flicker::{self, records::Records};
 use crate::noise::louder::{beyond_uneven_noise, widen_where_slow, widen_where_uneven};
-use crate::numerics::statistics::{by_chance, price};
+use crate::numerics::statistics::price;
 use crate::select::beside::Beside;
 use crate::select::contender::{Contender, contender, paid_where_noise_shows};
 use crate::select::rounds::Anew;
 use crate::select::score::{CLEAR, SHOWN, Scored, retain_likely, score, worth};
 use crate::select::selection::{Accepted, Selection};
 use crate::shapes::library::Shape;
-use crate::unnamed::unexplained::{Unnamed, What};
+use crate::unnamed::unexplained::leftover;
 
 /// Most causes of one recording.
 const MOST: usize = 8;
@@ -381,30 +381,4 @@ fn keep_used(system: &mut System, fixed: usize, found: &mut Selection) {
     for one in &mut found.accepted {
         one.candidate.shapes = found.fit.shapes[one.range()].to_vec();
     }
-}
-
-/// Domains in which something significant is left that no cause was found for.
-fn leftover(system: &System, catalogue: &Catalogue, fit: &Fit, closed: &[Domain]) -> Vec<Unnamed> {
-    let beside = Beside::new(&system.total, &system.sure(&fit.shapes));
-    let open = [
-        Domain::Angle,
-        Domain::Speed,
-        Domain::Time,
-        Domain::Revolution,
-    ];
-    let tell = |domain: Domain| {
-        let (gain, freedom) = beside.gain(&system.sure(catalogue.basis(domain)));
-        let log_p = by_chance(gain, 1.0, freedom, 40.0);
-        (log_p < SHOWN.ln()).then(|| Unnamed {
-            log_p,
-            gain,
-            what: What::Error(
-                domain,
-                None,
-                "no cause of the catalogue looks like it".into(),
-            ),
-        })
-    };
-    let left = open.into_iter().filter(|d| !closed.contains(d));
-    left.filter_map(tell).collect()
 }

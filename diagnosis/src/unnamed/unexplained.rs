@@ -3,8 +3,13 @@
 use nonius_quantity::{Quantity, Unit};
 use serde::Serialize;
 
+use crate::causes::Catalogue;
 use crate::causes::cause::Domain;
 use crate::finding::names::plain;
+use crate::model::{Fit, System};
+use crate::numerics::statistics::by_chance;
+use crate::select::beside::Beside;
+use crate::select::score::SHOWN;
 use crate::unnamed::whereabouts::Left;
 
 /// What no cause explains.
@@ -123,4 +128,35 @@ pub(crate) fn like(nearest: &str, but: &str) -> String {
 /// Why a name that explains this share of an error is none.
 pub(crate) fn explains_only(share: f64) -> String {
     format!("it explains only {:.0} % of it", share.max(0.0) * 100.0)
+}
+
+/// Domains in which something significant is left that no cause was found for.
+pub(crate) fn leftover(
+    system: &System,
+    catalogue: &Catalogue,
+    fit: &Fit,
+    closed: &[Domain],
+) -> Vec<Unnamed> {
+    let beside = Beside::new(&system.total, &system.sure(&fit.shapes));
+    let open = [
+        Domain::Angle,
+        Domain::Speed,
+        Domain::Time,
+        Domain::Revolution,
+    ];
+    let tell = |domain: Domain| {
+        let (gain, freedom) = beside.gain(&system.sure(catalogue.basis(domain)));
+        let log_p = by_chance(gain, 1.0, freedom, 40.0);
+        (log_p < SHOWN.ln()).then(|| Unnamed {
+            log_p,
+            gain,
+            what: What::Error(
+                domain,
+                None,
+                "no cause of the catalogue looks like it".into(),
+            ),
+        })
+    };
+    let left = open.into_iter().filter(|d| !closed.contains(d));
+    left.filter_map(tell).collect()
 }

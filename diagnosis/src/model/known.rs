@@ -1,0 +1,98 @@
+//! What causes that are known do to the channels, sample by sample: it is taken off the signals.
+
+use crate::causes::Catalogue;
+use crate::context::Context;
+use crate::model::exact::enter;
+use crate::model::sweep::Samples;
+use crate::model::{amounts, atoms_of};
+use crate::select::selection::Accepted;
+use crate::shapes::library::{Library, Row};
+use crate::shapes::trig::Trig;
+
+/// What is known of a recording, one value per sample.
+pub(crate) struct Known {
+    /// Added along the radius, in amplitudes.
+    pub(crate) radial: Vec<f64>,
+    /// Added along the circle, in amplitudes.
+    pub(crate) tangential: Vec<f64>,
+    /// Gains of both channels, less one.
+    pub(crate) gain: Vec<f64>,
+    /// Errors of the angle, radians.
+    pub(crate) angle: Vec<f64>,
+    /// Fast real motion, radians.
+    pub(crate) fast: Vec<f64>,
+}
+
+/// What the causes add to the channels in every period.
+pub(super) fn periodic(context: &Context, carried: &[Accepted]) -> [Trig; 2] {
+    let beta = context.ellipse.beta;
+    let known = carried.iter().filter(|a| a.is_taken_off());
+    let all = known.filter_map(|a| Some(a.candidate.adds.as_ref()?(beta, &a.x)));
+    let nothing = [(); 2].map(|()| Trig::constant(0.0));
+    all.fold(nothing, |[c, s], [more_c, more_s]| {
+        [c.plus(&more_c), s.plus(&more_s)]
+    })
+}
+
+/// Whether a cause of the sensor stands in one row alone. Along the circle it is an error of the angle, as a graduation's is; along the
+/// radius a gain of both channels, of all that is in them.
+fn is_all(one: &Accepted, row: Row, library: &Library) -> bool {
+    let atoms = atoms_of(&one.candidate.shapes);
+    !one.candidate.motion && atoms.iter().all(|i| library.atoms[*i].row == row)
+}
+
+/// What the causes do at the angles of a context. A graduation's errors turn what the channels see, and theirs are those of that angle.
+pub(super) fn effects(context: &Context, carried: &mut [Accepted], with_motion: bool) -> Known {
+    let known = effects_at(context, carried, with_motion);
+    if known.angle.iter().all(|error| *error == 0.0) {
+        return known;
+    }
+    let seen = context.turned_by(&known.angle);
+    let angle = known.angle;
+    Known {
+        angle,
+        ..effects_at(&seen, carried, with_motion)
+    }
+}
+
+/// The same, where the channels see the angle that the context has.
+fn effects_at(context: &Context, carried: &mut [Accepted], with_motion: bool) -> Known {
+    let mut catalogue = Catalogue::new(context, with_motion);
+    enter(carried, &mut catalogue);
+    let library = std::mem::take(&mut catalogue.library);
+    let samples = Samples::new(context, library, Default::default(), 1);
+    let of = |wanted: &dyn Fn(&Accepted, Row) -> bool, row: Row| {
+        let chosen = carried.iter().filter(|a| wanted(a, row));
+        let amounts: Vec<(usize, f64)> = chosen.flat_map(Accepted::amounts).collect();
+        samples.sum(&amounts, row, 1)
+    };
+    let turns = |a: &Accepted| is_all(a, Row::Tangential, &samples.library);
+    let gains =
+        |a: &Accepted| a.candidate.factor.is_none() && is_all(a, Row::Radial, &samples.library);
+    let added = |a: &Accepted, _: Row| !a.candidate.motion && !turns(a) && !gains(a);
+    let fast = if with_motion {
+        Row::Motion
+    } else {
+        Row::Tangential
+    };
+    let (mut radial, mut tangential) = (of(&added, Row::Radial), of(&added, Row::Tangential));
+    for one in carried.iter() {
+        let (Some(factor), [first, ..]) = (one.candidate.factor, &*one.candidate.shapes) else {
+            continue;
+        };
+        let first = amounts(std::slice::from_ref(first), &one.x);
+        let [r, t] = [Row::Radial, Row::Tangential].map(|row| samples.sum(&first, row, 1));
+        for (k, (r, t)) in r.iter().zip(&t).enumerate() {
+            let added = factor(*r, *t) - 1.0;
+            radial[k] += added.re - r;
+            tangential[k] += added.im - t;
+        }
+    }
+    Known {
+        radial,
+        tangential,
+        angle: of(&|a, _| turns(a), Row::Tangential),
+        gain: of(&|a, _| gains(a), Row::Radial),
+        fast: of(&|a, _| a.candidate.motion, fast),
+    }
+}
