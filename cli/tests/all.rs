@@ -15,6 +15,7 @@ mod replayed;
 mod report_in_chromium;
 mod simulate;
 mod support;
+mod tour;
 
 /// A file that is not named above would never run.
 #[test]
