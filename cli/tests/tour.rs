@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use crate::support::{done, nonius};
+use crate::support::nonius;
 
 /// A line without its numbers, whose last digits other machines may have otherwise.
 fn words(line: &str) -> String {
@@ -41,9 +41,11 @@ fn the_tour_shows_what_the_readme_says() {
     }
     let mut said = String::new();
     for command in &commands {
-        done(dir.path(), command);
+        let output = nonius(dir.path(), command);
+        let error = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{command:?}: {error}");
         if command[0] == "diagnose" {
-            said = String::from_utf8(nonius(dir.path(), command).stdout).expect("words");
+            said = String::from_utf8(output.stdout).expect("words");
         }
     }
     let said: Vec<String> = said.lines().map(words).collect();

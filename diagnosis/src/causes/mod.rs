@@ -95,6 +95,7 @@ impl Catalogue {
         high_pass::enter(context, &mut this);
         time::enter(context, &mut this);
         revolution::enter(context, &mut this);
+        revolution::enter_apart(context, &mut this);
         let mut so_far: BTreeMap<&str, usize> = BTreeMap::new();
         for candidate in &mut this.candidates {
             let count = so_far.entry(candidate.name).or_default();

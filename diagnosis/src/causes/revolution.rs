@@ -17,7 +17,7 @@ use crate::shapes::library::{Shape, Use};
 const ORDERS: usize = 12;
 
 /// Orders of it that the channels' gains by themselves have, and their offsets: dirt over one channel, and a stray field that turns.
-const APART: [usize; 2] = [8, 2];
+const APART: [usize; 2] = [8, 1];
 /// Revolutions from which on those are told from what the period does.
 const ENOUGH: f64 = 2.0;
 
@@ -59,21 +59,6 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
     catalogue.generic(Domain::Revolution, all.filter(|s| !s.0.is_empty()));
     if turns(phi) < 0.9 {
         return;
-    }
-    if turns(phi) >= ENOUGH {
-        // The gain of one channel: that of both is there.
-        let kinds: [(&[usize], &[Of]); 2] = [(&[0], &[Of::Gain]), (BOTH, &[Of::Offset])];
-        for (of, top) in kinds.into_iter().zip(APART) {
-            let one: Modulation = Rc::new(move |block, i, out| {
-                let order = (i / 2 + 1) as f64;
-                for (o, p) in out.iter_mut().zip(block.phi.unwrap_or_default()) {
-                    let (sin, cos) = (order * p).sin_cos();
-                    *o = if i % 2 == 0 { cos } else { sin };
-                }
-            });
-            let apart = per_channel(of, 2 * top, one, &mut catalogue.library);
-            catalogue.generic(Domain::Revolution, apart);
-        }
     }
     let list = &mut catalogue.candidates;
     for order in 1..=3u32 {
@@ -118,6 +103,27 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
                 ..Candidate::new(GRADUATION_ERROR, Domain::Revolution, shapes)
             });
         }
+    }
+}
+
+/// What the channels have of the revolution each by itself.
+pub(crate) fn enter_apart(context: &Context, catalogue: &mut Catalogue) {
+    let phi = context.phi.as_ref().filter(|phi| turns(phi) >= ENOUGH);
+    if phi.is_none() {
+        return;
+    }
+    // The gain of one channel: that of both is there.
+    let kinds: [(&[usize], &[Of]); 2] = [(&[0], &[Of::Gain]), (BOTH, &[Of::Offset])];
+    for (of, top) in kinds.into_iter().zip(APART) {
+        let one: Modulation = Rc::new(move |block, i, out| {
+            let order = (i / 2 + 1) as f64;
+            for (o, p) in out.iter_mut().zip(block.phi.unwrap_or_default()) {
+                let (sin, cos) = (order * p).sin_cos();
+                *o = if i % 2 == 0 { cos } else { sin };
+            }
+        });
+        let apart = per_channel(of, 2 * top, one, &mut catalogue.library);
+        catalogue.generic(Domain::Revolution, apart);
     }
 }
 

@@ -205,7 +205,7 @@ fn late_bandwidths(speed: &Speed, library: &mut Library) -> Vec<Candidate> {
                     time_constant(&p[0])
                 )
             }),
-            ..cause("common_bandwidth", shapes, &["tau_s"], "s")
+            ..cause(super::COMMON_BANDWIDTH, shapes, &["tau_s"], "s")
         }
     };
     speed.time_constants().map(one).collect()

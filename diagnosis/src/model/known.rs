@@ -1,6 +1,7 @@
 //! What causes that are known do to the channels, sample by sample: it is taken off the signals.
 
 use crate::causes::Catalogue;
+use crate::causes::cause::Domain;
 use crate::context::Context;
 use crate::model::exact::enter;
 use crate::model::sweep::Samples;
@@ -35,7 +36,7 @@ pub(super) fn periodic(context: &Context, carried: &[Accepted]) -> [Trig; 2] {
 }
 
 /// Whether a cause of the sensor stands in one row alone. Along the circle it is an error of the angle, as a graduation's is; along the
-/// radius a gain of both channels, of all that is in them.
+/// radius, if it does not go with the speed, a gain of both channels, of all that is in them.
 fn is_all(one: &Accepted, row: Row, library: &Library) -> bool {
     let atoms = atoms_of(&one.candidate.shapes);
     !one.candidate.motion && atoms.iter().all(|i| library.atoms[*i].row == row)
@@ -48,9 +49,10 @@ pub(super) fn effects(context: &Context, carried: &mut [Accepted], with_motion: 
         return known;
     }
     let seen = context.turned_by(&known.angle);
-    let angle = known.angle;
+    // The axis moves as it does.
     Known {
-        angle,
+        angle: known.angle,
+        fast: known.fast,
         ..effects_at(&seen, carried, with_motion)
     }
 }
@@ -67,8 +69,9 @@ fn effects_at(context: &Context, carried: &mut [Accepted], with_motion: bool) ->
         samples.sum(&amounts, row, 1)
     };
     let turns = |a: &Accepted| is_all(a, Row::Tangential, &samples.library);
-    let gains =
-        |a: &Accepted| a.candidate.factor.is_none() && is_all(a, Row::Radial, &samples.library);
+    let gains = |a: &Accepted| {
+        a.candidate.domain != Domain::Speed && is_all(a, Row::Radial, &samples.library)
+    };
     let added = |a: &Accepted, _: Row| !a.candidate.motion && !turns(a) && !gains(a);
     let fast = if with_motion {
         Row::Motion

@@ -17,8 +17,10 @@ const OF_REVOLUTION: i32 = 4;
 const OF_MOTION: u32 = 12;
 /// Fewest scale periods, so that hardly a line stands at their orders by chance.
 const FEWEST: f64 = 50.0;
-/// Fewest revolutions, and times that a motion comes again.
-const TURNS: f64 = 2.0;
+/// Fewest times that a motion comes again.
+const AGAIN: f64 = 2.0;
+/// So many times as far as a line may be off its place the next one is, so that hardly a line stands there by chance.
+const APART: f64 = 5.0;
 
 /// Cycles per recording by which a line may be off a place where lines are seldom.
 const NEAR: f64 = 0.7;
@@ -50,7 +52,7 @@ pub(super) fn why(context: &Context, own: &Scored) -> Option<&'static str> {
     }
     let per = context.periods_per_revolution.map(f64::from);
     let turns = per.map_or(0.0, |per| context.periods_travelled() / per);
-    if let Some(per) = per.filter(|per| *per > 1.0 && turns > TURNS) {
+    if let Some(per) = per.filter(|per| *per > 1.0 && turns > APART * near) {
         let beside = (0..=2).flat_map(|order| (1..=OF_REVOLUTION).map(move |m| (order, m)));
         let places = beside.flat_map(|(order, m)| {
             let (order, apart) = (f64::from(order), f64::from(m) / per);
@@ -63,9 +65,11 @@ pub(super) fn why(context: &Context, own: &Scored) -> Option<&'static str> {
     comes_again(context)
         .is_some_and(|motion| {
             let duration = context.samples() as f64 / context.rate;
-            (1..=OF_MOTION)
-                .map(f64::from)
-                .any(|order| (hertz - order * motion).abs() * duration < near + EACH * order)
+            (1..=OF_MOTION).map(f64::from).any(|order| {
+                let near = near + EACH * order;
+                let told = motion * duration > APART * near;
+                told && (hertz - order * motion).abs() * duration < near
+            })
         })
         .then_some(WITH_MOTION)
 }
@@ -76,11 +80,14 @@ fn comes_again(context: &Context) -> Option<f64> {
     const MOST: f64 = 0.8;
     let n = context.speed.len();
     let every = (n / 4096).max(1);
-    let speed: Vec<f64> = context.speed.iter().step_by(every).copied().collect();
+    let means = context.speed.chunks_exact(every);
+    let speed: Vec<f64> = means
+        .map(|c| c.iter().sum::<f64>() / c.len() as f64)
+        .collect();
     let (cycles, left) = strongest(&speed);
     let square = |v: &[f64]| v.iter().map(|v| v * v).sum::<f64>();
     let again =
-        cycles * speed.len() as f64 > TURNS && square(&left) < (1.0 - MOST) * square(&speed);
+        cycles * speed.len() as f64 > AGAIN && square(&left) < (1.0 - MOST) * square(&speed);
     again.then(|| cycles * context.rate / every as f64)
 }
 

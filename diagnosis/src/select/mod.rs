@@ -38,7 +38,7 @@ const MOST: usize = 8;
 const BEYOND_UNKNOWN: f64 = 0.5;
 /// What is there once: the direction turns over in one way only, of two high passes in a row the faster is nearly all, and two delays
 /// are one.
-const ONCE: [&str; 4] = [HYSTERESIS, AC_COUPLING, CHANNEL_SKEW, BANDWIDTH_MISMATCH];
+pub(crate) const ONCE: [&str; 4] = [HYSTERESIS, AC_COUPLING, CHANNEL_SKEW, BANDWIDTH_MISMATCH];
 
 /// Shapes of one list, then of the other.
 pub(crate) fn both(a: &[Shape], b: &[Shape]) -> Vec<Shape> {
@@ -142,7 +142,7 @@ pub(crate) fn select(
 ) -> Selection {
     let found = begin(system, catalogue, carried);
     let known = found.accepted.len();
-    let mut found = search(context, system, catalogue, found, may);
+    let mut found = search(context, system, catalogue, found, (known, may));
     if system.every() == 1 {
         return found;
     }
@@ -172,7 +172,7 @@ pub(crate) fn select(
         // Each was fitted beside others that were not yet.
         tune(system, catalogue, &mut found);
     }
-    search(context, system, catalogue, found, may)
+    search(context, system, catalogue, found, (known, may))
 }
 
 /// Beside flicker noise, what is slow in the channels is that noise: drift cannot be told from it, nor can these.
@@ -206,10 +206,9 @@ fn search(
     system: &mut System,
     catalogue: &Catalogue,
     mut found: Selection,
-    may: Anew,
+    (known, may): (usize, Anew),
 ) -> Selection {
     let fixed = catalogue.atoms;
-    let known = found.accepted.len();
     if may.with(false) {
         found.again.extend(anew(system, &found));
     }

@@ -83,7 +83,7 @@ impl Rounds {
             self.alike = 0;
         }
         self.alike += 1;
-        let is_least = power <= self.least;
+        let is_least = power * LESS <= self.least;
         self.least = self.least.min(power);
         self.alike <= ALIKE || is_least
     }

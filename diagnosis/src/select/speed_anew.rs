@@ -12,7 +12,7 @@ use crate::select::choice::best;
 use crate::select::contender::{Contender, contender};
 use crate::select::score::{Scored, score};
 use crate::select::selection::Accepted;
-use crate::select::{begin, both, starts};
+use crate::select::{ONCE, begin, both, starts};
 
 /// Where the last cause that is carried bends the channels, and one that goes with speed changes with that: what is known of the recording
 /// with another choice of the one that it changes most. `None` where it stays what it was.
@@ -35,9 +35,10 @@ pub(crate) fn decided_anew(
     let (mut system, catalogue) = look(&without, &mut beside_it, recording);
     let mut found = begin(&mut system, &catalogue, beside_it);
     let beside = Beside::all_that_moves(&system, &found.fit.shapes);
+    let is_there = |name: &str| others.iter().any(|one| one.candidate.name == name);
     let all = catalogue.candidates.iter();
     let mut scored: Vec<Scored> = all
-        .filter(|c| goes_with_speed(c))
+        .filter(|c| goes_with_speed(c) && !(ONCE.contains(&c.name) && is_there(c.name)))
         .filter_map(|c| score(&beside, c.clone()))
         .collect();
     scored.sort_by(|a, b| a.log_p.total_cmp(&b.log_p));
@@ -58,8 +59,11 @@ pub(crate) fn decided_anew(
     // Far from where the channel is late, tangents of what stands beside it say nothing: that is as it was.
     for choice in &mut choices {
         for (one, known) in choice.carried.iter_mut().zip(&others) {
-            if one.candidate.name == known.candidate.name && one.x.len() == known.x.len() {
+            let of = |a: &Accepted| (a.candidate.name, a.candidate.id);
+            if of(one) == of(known) {
                 one.x.clone_from(&known.x);
+                one.candidate.exact.clone_from(&known.candidate.exact);
+                one.inner_error.clone_from(&known.inner_error);
             }
         }
     }
