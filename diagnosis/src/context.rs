@@ -349,12 +349,15 @@ impl Context {
         let (mut c, mut s) = (Vec::with_capacity(n), Vec::with_capacity(n));
         for k in 0..n {
             let (x, y) = ellipse.corrected(self.raw[0][k], self.raw[1][k]);
-            // An error of the angle turns the pair, and the channels see the angle with it; a gain is one of all that is in them.
-            let gain = (1.0 + known.gain[k]).max(LEAST_GAIN);
-            let (x, y) = (x / gain, y / gain);
+            // An error of the angle turns the pair, and the channels see the angle with it; a gain is one of all that is in them but
+            // for what the electronics add.
             let (turn_s, turn_c) = known.angle[k].sin_cos();
             let (x, y) = (x * turn_c + y * turn_s, y * turn_c - x * turn_s);
             let (cos, sin) = (self.cos[k], self.sin[k]);
+            let [r, t] = [0, 1].map(|row: usize| known.behind[row][k]);
+            let (x, y) = (x - r * cos + t * sin, y - r * sin - t * cos);
+            let gain = (1.0 + known.gain[k]).max(LEAST_GAIN);
+            let (x, y) = (x / gain, y / gain);
             let (r, t) = (known.radial[k], known.tangential[k]);
             c.push(x - r * cos + t * sin);
             s.push(y - r * sin - t * cos);

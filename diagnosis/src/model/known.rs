@@ -1,7 +1,7 @@
 //! What causes that are known do to the channels, sample by sample: it is taken off the signals.
 
-use crate::causes::Catalogue;
 use crate::causes::cause::Domain;
+use crate::causes::{Catalogue, HYSTERESIS, INTERFERENCE, OFFSET_DRIFT};
 use crate::context::Context;
 use crate::model::exact::enter;
 use crate::model::sweep::Samples;
@@ -12,10 +12,12 @@ use crate::shapes::trig::Trig;
 
 /// What is known of a recording, one value per sample.
 pub(crate) struct Known {
-    /// Added along the radius, in amplitudes.
+    /// Added along the radius, in amplitudes; of what the gains are gains of.
     pub(crate) radial: Vec<f64>,
-    /// Added along the circle, in amplitudes.
+    /// Added along the circle, in amplitudes; of that, too.
     pub(crate) tangential: Vec<f64>,
+    /// Added by the electronics along the radius and along the circle, in amplitudes, whatever the gains are.
+    pub(crate) behind: [Vec<f64>; 2],
     /// Gains of both channels, less one.
     pub(crate) gain: Vec<f64>,
     /// Errors of the angle, radians.
@@ -72,7 +74,12 @@ fn effects_at(context: &Context, carried: &mut [Accepted], with_motion: bool) ->
     let gains = |a: &Accepted| {
         a.candidate.domain != Domain::Speed && is_all(a, Row::Radial, &samples.library)
     };
-    let added = |a: &Accepted, _: Row| !a.candidate.motion && !turns(a) && !gains(a);
+    let behind = |a: &Accepted, _: Row| {
+        let of_electronics = [HYSTERESIS, OFFSET_DRIFT, INTERFERENCE].contains(&a.candidate.name);
+        of_electronics && !gains(a)
+    };
+    let added =
+        |a: &Accepted, row: Row| !(a.candidate.motion || turns(a) || gains(a) || behind(a, row));
     let fast = if with_motion {
         Row::Motion
     } else {
@@ -95,6 +102,7 @@ fn effects_at(context: &Context, carried: &mut [Accepted], with_motion: bool) ->
         radial,
         tangential,
         angle: of(&|a, _| turns(a), Row::Tangential),
+        behind: [Row::Radial, Row::Tangential].map(|row| of(&behind, row)),
         gain: of(&|a, _| gains(a), Row::Radial),
         fast: of(&|a, _| a.candidate.motion, fast),
     }

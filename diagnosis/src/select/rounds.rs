@@ -10,6 +10,9 @@ const ALIKE: usize = 6;
 /// Share of the power to which it has to fall for that.
 const LESS: f64 = 0.99;
 
+/// Share by which two powers are the same.
+const SAME: f64 = 1e-3;
+
 /// For what a look may end, and another one begin.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Anew {
@@ -40,8 +43,9 @@ pub(crate) struct Rounds {
     /// Causes of the last look, and how many looks had the same.
     names: Vec<&'static str>,
     alike: usize,
-    /// Least power that was left with them.
+    /// Least power that was left with them, and that of the last two looks.
     least: f64,
+    last: [f64; 2],
 }
 
 impl Rounds {
@@ -77,12 +81,19 @@ impl Rounds {
         let names = names(known);
         if names != self.names {
             (self.names, self.alike, self.least) = (names, 1, power);
+            self.last = [power, 0.0];
             return true;
         }
         if power < LESS * self.least {
             self.alike = 0;
         }
         self.alike += 1;
+        let is = |other: f64| (power - other).abs() < SAME * power;
+        if is(self.last[1]) && !is(self.last[0]) {
+            // To and fro: no other look says more.
+            self.alike = ALIKE + 1;
+        }
+        self.last = [power, self.last[0]];
         let is_least = power * LESS <= self.least;
         self.least = self.least.min(power);
         self.alike <= ALIKE || is_least

@@ -2,6 +2,8 @@
 
 use std::f64::consts::TAU;
 
+use nonius_kept::every;
+
 use crate::harness::{
     Case, LSB, NOISE, PLAIN, alone, diagnosed, diagnosed_of, finds, finds_beside, finds_nothing,
     names, near, of_cause, shows, within_errors,
@@ -260,7 +262,7 @@ fn a_channel_that_is_late_has_late_harmonics() {
         tau,
         ..harmonic_and_late::<0>()
     };
-    for (cause, parameter, value, case) in [
+    let all = [
         ("channel_skew", "delay_s", 6e-5, harmonic_and_late::<60>()),
         ("channel_skew", "delay_s", -6e-5, harmonic_and_late::<-60>()),
         ("channel_skew", "delay_s", 2e-5, harmonic_and_late::<20>()),
@@ -276,7 +278,8 @@ fn a_channel_that_is_late_has_late_harmonics() {
             6e-5,
             low_pass([0.0, 6e-5]),
         ),
-    ] {
+    ];
+    for (cause, parameter, value, case) in every(3, all) {
         let found = diagnosed(&case, 7);
         let mut named = names(&found);
         named.sort_unstable();
