@@ -1,4 +1,4 @@
-//! The README and the page of all figures quote numbers that commands have measured and written to docs/: each stands there as it is
+//! The README and the page of more figures quote numbers that commands have measured and written to docs/: each stands there as it is
 //! quoted.
 
 use std::fs;
@@ -106,7 +106,7 @@ fn numbers_in_the_readme_stand_in_the_pages_behind_them() {
         for group in measured.split(';') {
             assert!(
                 quoted(group, &page),
-                "{group:?} does not stand together in {pages:?}: {line}",
+                "{group:?} does not stand together in {pages:?}: {line}"
             );
             compared += 1;
         }

@@ -108,8 +108,8 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
 
 /// What the channels have of the revolution each by itself.
 pub(crate) fn enter_apart(context: &Context, catalogue: &mut Catalogue) {
-    let phi = context.phi.as_ref().filter(|phi| turns(phi) >= ENOUGH);
-    if phi.is_none() {
+    let turning = context.phi.as_ref().is_some_and(|phi| turns(phi) >= ENOUGH);
+    if !turning {
         return;
     }
     // The gain of one channel: that of both is there.

@@ -37,11 +37,38 @@ pub(super) fn periodic(context: &Context, carried: &[Accepted]) -> [Trig; 2] {
     })
 }
 
-/// Whether a cause of the sensor stands in one row alone. Along the circle it is an error of the angle, as a graduation's is; along the
-/// radius, if it does not go with the speed, a gain of both channels, of all that is in them.
-fn is_all(one: &Accepted, row: Row, library: &Library) -> bool {
-    let atoms = atoms_of(&one.candidate.shapes);
-    !one.candidate.motion && atoms.iter().all(|i| library.atoms[*i].row == row)
+/// How a cause comes into the signals.
+#[derive(Clone, Copy, PartialEq)]
+enum Way {
+    /// It moves the axis.
+    Moves,
+    /// It stands along the circle alone, and is an error of the angle, as a graduation's is.
+    Turns,
+    /// It stands along the radius alone and does not go with the speed: a gain of both channels, of all that is in them.
+    Gains,
+    /// The electronics add it, whatever the gains are.
+    Behind,
+    /// It is added to the channels, and the gains are gains of it, too.
+    Added,
+}
+
+impl Way {
+    fn of(one: &Accepted, library: &Library) -> Self {
+        let candidate = &one.candidate;
+        let atoms = atoms_of(&candidate.shapes);
+        let all = |row: Row| atoms.iter().all(|i| library.atoms[*i].row == row);
+        if candidate.motion {
+            Self::Moves
+        } else if all(Row::Tangential) {
+            Self::Turns
+        } else if candidate.domain != Domain::Speed && all(Row::Radial) {
+            Self::Gains
+        } else if [HYSTERESIS, OFFSET_DRIFT, INTERFERENCE].contains(&candidate.name) {
+            Self::Behind
+        } else {
+            Self::Added
+        }
+    }
 }
 
 /// What the causes do at the angles of a context. A graduation's errors turn what the channels see, and theirs are those of that angle.
@@ -65,27 +92,18 @@ fn effects_at(context: &Context, carried: &mut [Accepted], with_motion: bool) ->
     enter(carried, &mut catalogue);
     let library = std::mem::take(&mut catalogue.library);
     let samples = Samples::new(context, library, Default::default(), 1);
-    let of = |wanted: &dyn Fn(&Accepted, Row) -> bool, row: Row| {
-        let chosen = carried.iter().filter(|a| wanted(a, row));
+    let of = |way: Way, row: Row| {
+        let chosen = (carried.iter()).filter(|a| Way::of(a, &samples.library) == way);
         let amounts: Vec<(usize, f64)> = chosen.flat_map(Accepted::amounts).collect();
         samples.sum(&amounts, row, 1)
     };
-    let turns = |a: &Accepted| is_all(a, Row::Tangential, &samples.library);
-    let gains = |a: &Accepted| {
-        a.candidate.domain != Domain::Speed && is_all(a, Row::Radial, &samples.library)
-    };
-    let behind = |a: &Accepted, _: Row| {
-        let of_electronics = [HYSTERESIS, OFFSET_DRIFT, INTERFERENCE].contains(&a.candidate.name);
-        of_electronics && !gains(a)
-    };
-    let added =
-        |a: &Accepted, row: Row| !(a.candidate.motion || turns(a) || gains(a) || behind(a, row));
     let fast = if with_motion {
         Row::Motion
     } else {
         Row::Tangential
     };
-    let (mut radial, mut tangential) = (of(&added, Row::Radial), of(&added, Row::Tangential));
+    let [mut radial, mut tangential] =
+        [Row::Radial, Row::Tangential].map(|row| of(Way::Added, row));
     for one in carried.iter() {
         let (Some(factor), [first, ..]) = (one.candidate.factor, &*one.candidate.shapes) else {
             continue;
@@ -101,9 +119,9 @@ fn effects_at(context: &Context, carried: &mut [Accepted], with_motion: bool) ->
     Known {
         radial,
         tangential,
-        angle: of(&|a, _| turns(a), Row::Tangential),
-        behind: [Row::Radial, Row::Tangential].map(|row| of(&behind, row)),
-        gain: of(&|a, _| gains(a), Row::Radial),
-        fast: of(&|a, _| a.candidate.motion, fast),
+        angle: of(Way::Turns, Row::Tangential),
+        behind: [Row::Radial, Row::Tangential].map(|row| of(Way::Behind, row)),
+        gain: of(Way::Gains, Row::Radial),
+        fast: of(Way::Moves, fast),
     }
 }

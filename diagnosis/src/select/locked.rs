@@ -46,8 +46,8 @@ pub(super) fn why(context: &Context, own: &Scored) -> Option<&'static str> {
         .inner()
         .filter(|_| candidate.domain == Domain::Line)?;
     let near = (KNOWN / (2.0 * own.gain).sqrt()).clamp(LEAST, NEAR);
-    let orders = || BEYOND.map(|m| (0.0, f64::from(m)));
-    if stands_at(context, candidate, near, orders()) {
+    let orders = BEYOND.map(|m| (0.0, f64::from(m)));
+    if stands_at(context, candidate, near, orders) {
         return Some(WITH_ANGLE);
     }
     let per = context.periods_per_revolution.map(f64::from);

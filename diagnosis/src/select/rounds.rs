@@ -9,7 +9,6 @@ const MOST: usize = 16;
 const ALIKE: usize = 6;
 /// Share of the power to which it has to fall for that.
 const LESS: f64 = 0.99;
-
 /// Share by which two powers are the same.
 const SAME: f64 = 1e-3;
 

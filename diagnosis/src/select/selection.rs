@@ -333,16 +333,14 @@ impl Selection {
 
     /// What of the sensor is off the signals and is no part of the model that is `named`, as it comes back.
     pub(crate) fn taken_back(&self, named: &Self) -> Vec<(usize, f64)> {
-        let shapes = |one: &Accepted| one.candidate.shapes.clone();
-        let known: Vec<Vec<Shape>> = named.accepted.iter().map(shapes).collect();
-        let dropped = |one: &&Accepted| {
-            !one.candidate.motion && one.is_taken_off() && !known.contains(&one.candidate.shapes)
+        let is_named = |one: &Accepted| {
+            let mut all = named.accepted.iter();
+            all.any(|known| known.candidate.shapes == one.candidate.shapes)
         };
-        let back = self.accepted.iter().filter(dropped).map(|one| {
-            let x: Vec<f64> = one.x.iter().map(|x| -x).collect();
-            amounts(&one.candidate.shapes, &x)
-        });
-        back.flatten().collect()
+        let dropped = |one: &&Accepted| !one.candidate.motion && !is_named(one);
+        let back = self.accepted.iter().filter(dropped);
+        let known = back.flat_map(Accepted::amounts);
+        known.map(|(atom, x)| (atom, -x)).collect()
     }
 
     /// The five parameters and every accepted cause that is no motion, with what they are beyond what is known.
