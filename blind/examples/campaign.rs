@@ -7,10 +7,10 @@
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail};
 use clap::Parser;
 use indicatif::{ProgressBar, ProgressStyle};
-use nonius_blind::{Case, Kind, Score, page, seal, verdict};
+use nonius_blind::{Case, Kind, Score, page, page_of_many, seal, verdict};
 use rayon::prelude::*;
 
 /// Hides causes in simulated recordings and scores what the diagnosis says.
@@ -25,8 +25,9 @@ struct Arguments {
     /// Samples of each.
     #[arg(long, default_value_t = 20_000)]
     samples: usize,
-    /// Only seeds that stand for this kind of case: nothing, one, wild, two or stranger.
-    #[arg(long, value_parser = kind, conflicts_with = "docs")]
+    /// Only seeds that stand for this kind of case: nothing, one, wild, two or stranger; or many, three to five causes each, for
+    /// which every seed stands.
+    #[arg(long, value_parser = kind)]
     kind: Option<Kind>,
     /// Only recordings of this drive: constant, sweeping, reversing or stopandgo; the others are drawn and left out.
     #[arg(long, value_parser = ["constant", "sweeping", "reversing", "stopandgo"])]
@@ -37,7 +38,7 @@ struct Arguments {
     /// Only recordings of which the first cause has a smaller SNR; the others are drawn and left out.
     #[arg(long, value_name = "SNR", conflicts_with = "docs")]
     below: Option<f64>,
-    /// Folder for blind.md, or blind-DRIVE.md of one drive.
+    /// Folder for blind.md, or blind-DRIVE.md of one drive, or blind-many.md.
     #[arg(long)]
     docs: Option<PathBuf>,
     /// Folder for the sealed truths; a temporary one if none is given.
@@ -76,12 +77,16 @@ fn run(arguments: &Arguments) -> Result<()> {
     for folder in std::iter::once(folder).chain(arguments.recordings.as_deref()) {
         std::fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
     }
+    let many = arguments.kind == Some(Kind::Many);
+    if arguments.docs.is_some() && arguments.kind.is_some() && !many {
+        bail!("--docs takes all kinds together, or many: leave --kind away");
+    }
     let seeds = arguments.seed..arguments.seed.saturating_add(arguments.cases);
     let wanted = |seed: &u64| {
         arguments
             .kind
-            .is_none_or(|kind| kind == Kind::of_seed(*seed))
-            && (arguments.cause.is_empty() || hides(*seed, &arguments.cause))
+            .is_none_or(|kind| many || kind == Kind::of_seed(*seed))
+            && (arguments.cause.is_empty() || hides(*seed, arguments))
     };
     let seeds: Vec<u64> = seeds.filter(wanted).collect();
     let bar = ProgressBar::new(seeds.len() as u64).with_style(ProgressStyle::with_template(
@@ -107,7 +112,11 @@ fn run(arguments: &Arguments) -> Result<()> {
         .map(|e| format!("{e:#}"))
         .collect();
     let scores: Vec<Score> = results.into_iter().flatten().collect();
-    let mut text = page(&scores);
+    let mut text = if many {
+        page_of_many(&scores)
+    } else {
+        page(&scores)
+    };
     if !refused.is_empty() {
         text += "\n## Not scored\n\n";
         for why in &refused {
@@ -121,14 +130,22 @@ fn run(arguments: &Arguments) -> Result<()> {
     Ok(())
 }
 
-/// Whether a seed hides one of these first.
-fn hides(seed: u64, causes: &[String]) -> bool {
-    Case::first_of_seed(seed).is_some_and(|first| causes.iter().any(|name| name == first))
+/// Whether a seed hides one of the wanted causes first.
+fn hides(seed: u64, arguments: &Arguments) -> bool {
+    let kind = match arguments.kind {
+        Some(Kind::Many) => Kind::Many,
+        _ => Kind::of_seed(seed),
+    };
+    let wanted = |first| arguments.cause.iter().any(|name| name == first);
+    Case::first_of_seed(seed, kind).is_some_and(wanted)
 }
 
 /// One case: sealed, judged, opened, scored; `None` if another drive is wanted.
 fn case(seed: u64, arguments: &Arguments, folder: &Path) -> Result<Option<Score>> {
-    let case = Case::draw(seed, arguments.samples)?;
+    let case = match arguments.kind {
+        Some(Kind::Many) => Case::draw_many(seed, arguments.samples)?,
+        _ => Case::draw(seed, arguments.samples)?,
+    };
     let wanted = arguments.drive.as_ref();
     let first = case.truth.hidden.first();
     let weak = |below: f64| first.is_some_and(|hidden| hidden.snr < below);
@@ -198,11 +215,15 @@ fn line(score: &Score) -> String {
 /// Writes the page beside its place, then moves it there.
 fn write(docs: &Path, arguments: &Arguments, text: &str) -> Result<()> {
     let last = arguments.seed + arguments.cases.saturating_sub(1);
-    let (mut option, mut only, mut name) = (String::new(), String::new(), "blind.md".to_owned());
+    let (mut option, mut only, mut name) = (String::new(), String::new(), "blind".to_owned());
+    if arguments.kind.is_some() {
+        option += " --kind many";
+        name += "-many";
+    }
     if let Some(drive) = &arguments.drive {
-        option = format!(" --drive {drive}");
+        option += &format!(" --drive {drive}");
         only = format!(", those of {drive} drives");
-        name = format!("blind-{drive}.md");
+        name += &format!("-{drive}");
     }
     let page = format!(
         "# Blind campaign\n\n<!-- Written by the command below; do not edit. -->\n\n    cargo run --release -p nonius-blind \
@@ -213,6 +234,6 @@ fn write(docs: &Path, arguments: &Arguments, text: &str) -> Result<()> {
     std::fs::create_dir_all(docs)?;
     let mut file = tempfile::NamedTempFile::new_in(docs)?;
     std::io::Write::write_all(&mut file, page.as_bytes())?;
-    file.persist(docs.join(name))?;
+    file.persist(docs.join(name + ".md"))?;
     Ok(())
 }

@@ -5,6 +5,7 @@ use rand::{Rng, SeedableRng, rngs::StdRng};
 use crate::effect::{Effect, Hidden};
 use crate::effects::{CATALOGUE, Draw, Entry};
 use crate::magnitude::scaled;
+use crate::many;
 use crate::motion::Drive;
 use crate::rows::Rows;
 use crate::simulate::{Finish, simulate};
@@ -68,10 +69,10 @@ impl Kind {
 }
 
 impl Case {
-    /// The cause that a seed hides first.
+    /// The cause that a seed hides first, where it stands for this kind.
     #[must_use]
-    pub fn first_of_seed(seed: u64) -> Option<&'static str> {
-        let (choices, _) = plan(seed, Kind::of_seed(seed), &mut source(seed));
+    pub fn first_of_seed(seed: u64, kind: Kind) -> Option<&'static str> {
+        let (choices, _) = plan(seed, kind, &mut source(seed));
         choices.first().map(Choice::name)
     }
 
@@ -80,8 +81,19 @@ impl Case {
     /// # Errors
     /// Where no experiment shows the cause as asked.
     pub fn draw(seed: u64, samples: usize) -> Result<Self, Unreachable> {
+        Self::of_kind(Kind::of_seed(seed), seed, samples)
+    }
+
+    /// The case of a seed that stands for [`Kind::Many`], as every seed can: no seed does by itself.
+    ///
+    /// # Errors
+    /// Where no experiment shows the causes as asked.
+    pub fn draw_many(seed: u64, samples: usize) -> Result<Self, Unreachable> {
+        Self::of_kind(Kind::Many, seed, samples)
+    }
+
+    fn of_kind(kind: Kind, seed: u64, samples: usize) -> Result<Self, Unreachable> {
         let mut random = source(seed);
-        let kind = Kind::of_seed(seed);
         let (choices, mut snrs) = plan(seed, kind, &mut random);
         for _ in 0..HALVINGS {
             for _ in 0..ATTEMPTS {
@@ -158,6 +170,10 @@ fn plan(seed: u64, kind: Kind, random: &mut StdRng) -> (Vec<Choice>, Vec<f64>) {
             let which = (turn % STRANGERS.len() as u64) as usize;
             (vec![Choice::Stranger(which)], vec![40.0])
         }
+        Kind::Many => many::plan(seed, random)
+            .into_iter()
+            .map(|(entry, wild, snr)| (Choice::Known(entry, wild), snr))
+            .unzip(),
     }
 }
 

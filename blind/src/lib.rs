@@ -11,6 +11,7 @@ mod case;
 mod effect;
 mod effects;
 mod magnitude;
+mod many;
 mod motion;
 mod rows;
 mod score;
@@ -29,6 +30,7 @@ mod visible;
 mod world;
 
 pub use case::{Case, Unreachable};
+pub use many::page_of_many;
 pub use motion::{Drive, Motion};
 pub use rows::Rows;
 pub use score::{Outcome, ParameterScore, Score};

@@ -2,7 +2,7 @@
 
 use crate::baseline::{five_parameters, of_positions};
 use crate::case::Case;
-use crate::truth::{HiddenCause, Truth};
+use crate::truth::{HiddenCause, Kind, Truth};
 use crate::verdict::{Named, Verdict};
 
 /// What became of a hidden cause.
@@ -84,7 +84,11 @@ impl Score {
         };
         let outcomes = truth.hidden.iter();
         let outcomes = outcomes.map(|h| outcome(h, &named, verdict.unexplained, &truth));
-        let electrical = !truth.hidden.is_empty() && truth.hidden.iter().all(|h| h.electrical);
+        // Of several causes one that can be removed is enough to ask what became of the positions.
+        let electrical = match truth.kind {
+            Kind::Many => truth.hidden.iter().any(|h| h.electrical),
+            _ => !truth.hidden.is_empty() && truth.hidden.iter().all(|h| h.electrical),
+        };
         let position = electrical
             .then(|| of_positions(&case.world, &case.rows, &verdict.positions))
             .flatten()

@@ -209,11 +209,14 @@ impl<'a> Summary<'a> {
     /// 95 % intervals that hold the truth.
     #[must_use]
     pub fn coverage(&self) -> Share {
-        let all = self.parameters();
-        Share {
-            hits: all.iter().filter(|p| p.stated.abs() < 1.96).count(),
-            of: all.len(),
-        }
+        held(&self.parameters())
+    }
+
+    /// The same, of every cause that has its name, however many there are.
+    #[must_use]
+    pub(crate) fn intervals(&self) -> Share {
+        let all = self.scores.iter().flat_map(|s| s.parameters.clone());
+        held(&all.collect::<Vec<_>>())
     }
 
     /// Median of the share of systematic position error that is removed, of electrical causes that can be seen; of how
@@ -291,8 +294,16 @@ impl<'a> Summary<'a> {
     }
 }
 
+/// 95 % intervals that hold the truth.
+fn held(all: &[ParameterScore]) -> Share {
+    Share {
+        hits: all.iter().filter(|p| p.stated.abs() < 1.96).count(),
+        of: all.len(),
+    }
+}
+
 /// Median; NaN of nothing.
-fn median(values: &mut [f64]) -> f64 {
+pub(crate) fn median(values: &mut [f64]) -> f64 {
     values.sort_by(f64::total_cmp);
     match values.len() {
         0 => f64::NAN,

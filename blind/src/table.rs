@@ -44,21 +44,11 @@ pub fn page(scores: &[Score]) -> String {
     }
     text += "\n## Sensor causes named that are not there\n\n| seed | hidden (SNR) | named |\n|---|---|---|\n";
     for score in scores.iter().filter(|s| !s.wrong.is_empty()) {
-        let hidden: Vec<String> = score
-            .truth
-            .hidden
-            .iter()
-            .map(|h| format!("{} ({:.0})", h.name, h.snr))
-            .collect();
-        let hidden = if hidden.is_empty() {
-            "nothing".into()
-        } else {
-            hidden.join(", ")
-        };
         let _ = writeln!(
             text,
-            "| {} | {hidden} | {} |",
+            "| {} | {} | {} |",
             score.truth.seed,
+            score.truth.listed(),
             score.wrong.join(", ")
         );
     }

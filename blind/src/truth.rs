@@ -16,6 +16,8 @@ pub enum Kind {
     Two,
     /// A cause that the catalogue does not hold, of SNR 40.
     Stranger,
+    /// Three to five causes; no seed stands for it unless it is asked for.
+    Many,
 }
 
 /// A parameter of a hidden cause, by the contract's words.
@@ -85,4 +87,16 @@ pub struct Truth {
     pub bits: u32,
     /// Samples per second.
     pub rate: f64,
+}
+
+impl Truth {
+    /// What is hidden with the SNR of each, in words.
+    pub(crate) fn listed(&self) -> String {
+        let each = self.hidden.iter();
+        let each = each.map(|h| format!("{} ({:.0})", h.name, h.snr));
+        match self.hidden.is_empty() {
+            true => "nothing".into(),
+            false => each.collect::<Vec<_>>().join(", "),
+        }
+    }
 }

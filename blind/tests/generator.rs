@@ -32,7 +32,7 @@ fn every_name_has_the_snr_asked_for() {
     {
         *kinds.entry(*kind).or_default() += 1;
         let first = hidden.first().map(|h| h.name.as_str());
-        assert_eq!(Case::first_of_seed(*seed), first);
+        assert_eq!(Case::first_of_seed(*seed, Kind::of_seed(*seed)), first);
         for hidden in hidden {
             seen.insert(hidden.name.clone());
             // A bit or a place can only be chosen, not scaled.
