@@ -1,13 +1,14 @@
 //! `nonius build`: the whole package of a design.
 
 use std::path::{Path, PathBuf};
-use std::time::Duration;
 
 use anyhow::{Result, bail};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use nonius_model::spec::{Calibration, Multipliers, Spec};
-use nonius_package::{DesignJson, Event, PackageError, PullIn, ROWS, package_followed, write};
+use nonius_package::{
+    DesignJson, Event, PackageError, PullIn, ROWS, may_write, package_followed, write,
+};
 use nonius_quantity::{counted, engineering, periods_per_second};
 use nonius_testvectors::stimulus;
 
@@ -40,6 +41,7 @@ pub(crate) struct Build {
 
 /// Whether the chip reaches the accuracy that was asked for and locks on every sensor that is promised.
 pub(crate) fn run(args: &Build) -> Result<bool> {
+    may_write(&args.output)?;
     let (design, text) = crate::design_file::read(&args.design)?;
     let spec = &design.spec;
     let mut stimuli = stimulus::named(&design, args.rows as usize);
@@ -84,9 +86,7 @@ struct Bar(ProgressBar);
 
 impl Bar {
     fn new() -> Self {
-        let line = ProgressBar::new_spinner();
-        line.enable_steady_tick(Duration::from_millis(100));
-        Self(line)
+        Self(crate::progress::line())
     }
 
     fn follow(&self, event: Event) {

@@ -10,6 +10,7 @@ use nonius_calibration::{
 use nonius_recording::{AdcSource, Recording};
 use serde::Serialize;
 
+use crate::progress::Busy;
 use crate::recording_args::RecordingArgs;
 
 /// What to calibrate.
@@ -156,7 +157,10 @@ pub(crate) fn run(args: &Calibrate) -> Result<()> {
         noise_ratio: args.noise_ratio,
     };
     let (cos, sin, method) = (&recording.cos, &recording.sin, args.method.method());
-    let found = match calibrate(cos, sin, method, &options) {
+    let busy = Busy::new(format!("calibrates {} samples", recording.samples()));
+    let found = calibrate(cos, sin, method, &options);
+    drop(busy);
+    let found = match found {
         Ok(found) => found,
         // The file is in order; what it does not tell is the answer.
         Err(why) if why.is_ignorance() => undetermined(method, cos, sin, &why),

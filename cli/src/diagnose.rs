@@ -1,16 +1,20 @@
 //! `nonius diagnose`: what a recording's simulation gets wrong, why, and what naming it gains.
 
 use std::fmt::Write as _;
+use std::fs::File;
+use std::io::{self, BufReader, Read};
 use std::path::{Path, PathBuf};
 
-use anyhow::Result;
+use anyhow::{Context, Result};
 use clap::Args;
 use nonius_diagnosis::{Diagnosis, Extended, Finding, Simulation, Unexplained, diagnose};
 use nonius_quantity::{Unit, before_after, digits};
 use nonius_recording::Recording;
 use serde::Serialize;
+use sha2::{Digest, Sha256};
 
 use crate::corrections::Outcome;
+use crate::progress::Busy;
 use crate::recording_args::RecordingArgs;
 
 /// What to diagnose.
@@ -46,7 +50,7 @@ struct Findings<'a> {
 
 #[derive(Serialize)]
 struct About {
-    /// Name, then the hash of the content.
+    /// `sha256:` and the hash of the content.
     file: String,
     samples: usize,
     sample_rate_hz: f64,
@@ -56,12 +60,13 @@ struct About {
 
 pub(crate) fn run(args: &Diagnose) -> Result<bool> {
     nonius_package::may_write(&args.output)?;
-    let recording = Recording::read(&args.recording, &args.recording_args.overrides())?;
-    let hash = hash(&args.recording)?;
+    let (recording, hash) = read(args)?;
     let given = args.design.as_deref();
     let design = given.map(crate::design_file::read).transpose()?;
+    let busy = Busy::new(format!("diagnoses {} samples", recording.samples()));
     let mut found = diagnose(&recording)
         .map_err(|error| anyhow::anyhow!("{}: {error}", args.recording.display()))?;
+    drop(busy);
     crate::notes(&found.notes);
     let design = match design {
         Some((_, text)) => Ok(text),
@@ -127,10 +132,37 @@ pub(crate) fn run(args: &Diagnose) -> Result<bool> {
     Ok(!(args.strict && found.unexplained.significant))
 }
 
-fn hash(path: &Path) -> Result<String> {
-    use sha2::Digest;
-    let digest = sha2::Sha256::digest(std::fs::read(path)?);
-    Ok(digest.iter().map(|byte| format!("{byte:02x}")).collect())
+/// The recording and the SHA-256 of its file, which is read once: a pipe has no second time.
+fn read(args: &Diagnose) -> Result<(Recording, String)> {
+    let name = args.recording.display().to_string();
+    let file = File::open(&args.recording).with_context(|| name.clone())?;
+    let mut hashed = Hashed {
+        source: file,
+        digest: Sha256::new(),
+    };
+    let recording = Recording::read_from(
+        BufReader::new(&mut hashed),
+        &name,
+        &args.recording_args.overrides(),
+    )?;
+    io::copy(&mut hashed, &mut io::sink()).with_context(|| name)?;
+    let bytes = hashed.digest.finalize();
+    let hash = bytes.iter().map(|byte| format!("{byte:02x}")).collect();
+    Ok((recording, hash))
+}
+
+/// Hashes what is read through it.
+struct Hashed<R> {
+    source: R,
+    digest: Sha256,
+}
+
+impl<R: Read> Read for Hashed<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let length = self.source.read(buffer)?;
+        self.digest.update(&buffer[..length]);
+        Ok(length)
+    }
 }
 
 fn positions(recording: &Recording, found: &Diagnosis) -> String {

@@ -25,6 +25,7 @@ mod interpolator;
 pub mod new;
 mod paper;
 pub mod play;
+mod progress;
 mod recording_args;
 mod samples;
 mod simulate;

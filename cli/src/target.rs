@@ -25,11 +25,9 @@ impl Target {
             .parent()
             .filter(|p| !p.as_os_str().is_empty())
             .unwrap_or(Path::new("."));
-        if !folder.is_dir() {
-            bail!("there is no folder {}; make it first", folder.display());
-        }
-        let file = NamedTempFile::new_in(folder)
-            .with_context(|| format!("cannot write into {}", folder.display()))?;
+        let cannot = || format!("cannot write into {}", folder.display());
+        std::fs::create_dir_all(folder).with_context(cannot)?;
+        let file = for_everybody().tempfile_in(folder).with_context(cannot)?;
         Ok(Self {
             file,
             path: path.to_owned(),
@@ -43,7 +41,6 @@ impl Target {
 
     /// Gives the file its name; what stood there before is replaced.
     pub(crate) fn keep(self) -> Result<()> {
-        self.everybodys();
         self.file
             .persist(&self.path)
             .with_context(|| format!("cannot write {}", self.path.display()))?;
@@ -52,22 +49,21 @@ impl Target {
 
     /// Gives the file its name, unless a file of that name is there.
     pub(crate) fn keep_new(self) -> Result<()> {
-        self.everybodys();
         self.file
             .persist_noclobber(&self.path)
             .with_context(|| format!("{} is left as it is", self.path.display()))?;
         Ok(())
     }
+}
 
-    fn everybodys(&self) {
-        #[cfg(unix)]
-        {
-            use std::os::unix::fs::PermissionsExt;
-            // A temporary file is the owner's alone; a result is for everybody.
-            let _ = self
-                .file
-                .as_file()
-                .set_permissions(std::fs::Permissions::from_mode(0o644));
-        }
+/// A temporary file would be the owner's alone; a result is for whom the umask lets.
+fn for_everybody() -> tempfile::Builder<'static, 'static> {
+    #[cfg_attr(not(unix), allow(unused_mut))]
+    let mut builder = tempfile::Builder::new();
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        builder.permissions(std::fs::Permissions::from_mode(0o666));
     }
+    builder
 }

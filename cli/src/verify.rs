@@ -2,7 +2,6 @@
 
 use std::path::PathBuf;
 use std::sync::Mutex;
-use std::time::Duration;
 
 use anyhow::Result;
 use clap::{Args, ValueEnum};
@@ -95,10 +94,8 @@ struct Shown {
 
 impl Shown {
     fn new() -> Self {
-        let line = ProgressBar::new_spinner();
-        line.enable_steady_tick(Duration::from_millis(100));
         Self {
-            line,
+            line: crate::progress::line(),
             doing: Mutex::default(),
         }
     }

@@ -43,6 +43,8 @@ proptest! {
         for arguments in [
             vec!["new", "n", "--from", "r.csv"],
             vec!["simulate", &design(), "r.csv", "-o", "o.csv"],
+            vec!["calibrate", "r.csv"],
+            vec!["diagnose", "r.csv", "-o", "found"],
         ] {
             let output = nonius(dir.path(), &arguments);
             let said = String::from_utf8_lossy(&output.stderr);

@@ -33,7 +33,6 @@ fn the_tour_shows_what_the_readme_says() {
         "{commands:?} {shown:?}"
     );
     let dir = tempfile::tempdir().expect("scratch");
-    fs::create_dir(dir.path().join("out")).expect("out");
     for folder in ["designs", "sensor"] {
         let to = dir.path().join(folder);
         std::os::unix::fs::symlink(root.join(folder).canonicalize().expect("a folder"), to)
