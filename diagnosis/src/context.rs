@@ -8,6 +8,8 @@ use nonius_recording::{AdcPair, Recording};
 
 use crate::checks::first;
 use crate::model::known::Known;
+use crate::motion::in_step::is_in_step;
+use crate::motion::knots::{self, Told};
 use crate::motion::spline::Spline;
 use crate::numerics::slopes::{around, fine_gradient, gradient};
 use crate::numerics::solve::dot;
@@ -214,10 +216,24 @@ impl Context {
         (self.c, self.s) = (c, s);
         if self.spline.is_none() {
             let per = self.periods_per_revolution;
-            // A reference tells motion from what repeats with the period, however little the scale moves.
-            let told = reference.is_some();
-            let spacing = crate::motion::knots::spacing(&self.measured, &self.weight, per, told);
-            let make = |spacing: f64| Spline::new(n, spacing, &self.weight);
+            let told = if reference.is_some() {
+                Told::ByReference
+            } else {
+                Told::WhereItTravels
+            };
+            let (angle, weight) = (&self.measured, &self.weight);
+            let make = |spacing: f64| Spline::new(n, spacing, weight);
+            let mut spacing = knots::spacing(angle, weight, per, told);
+            if told == Told::WhereItTravels {
+                // One that follows none of it.
+                let smooth = make(4.0 * spacing.motion);
+                let smooth = smooth.values(&smooth.fit(angle, weight));
+                let left: Vec<f64> = angle.iter().zip(smooth).map(|(a, s)| a - s).collect();
+                if is_in_step(angle, &left, &self.radial(), weight) {
+                    spacing = knots::spacing(angle, weight, per, Told::Not);
+                    spacing.motion = spacing.followed;
+                }
+            }
             self.spline = Some(make(spacing.motion));
             let finer = spacing.followed < spacing.motion;
             self.finer = finer.then(|| make(spacing.followed));

@@ -11,6 +11,7 @@ use crate::checks::{self, Checked, TimeBase};
 use crate::context::{Context, ContextError};
 use crate::doubt::codes;
 use crate::doubt::curves;
+use crate::doubt::steps;
 use crate::drifts::channels::Channels;
 use crate::finding::units;
 use crate::finding::{Finding, Gain};
@@ -84,21 +85,13 @@ impl Diagnosis {
 
     /// One more finding, which takes nothing off the signals.
     pub(crate) fn add(&mut self, mut finding: Finding) {
-        finding.gain = finding.gain.judged(self.unchanged());
+        let (left, position) = (
+            self.extended.held_out_residual_rms,
+            self.extended.position_error_rms_rad,
+        );
+        finding.gain = finding.gain.judged(Gain::nothing_taken_off(left, position));
         self.findings.push(finding);
         sort(&mut self.findings);
-    }
-
-    /// The gain of what takes nothing off the signals.
-    fn unchanged(&self) -> Gain {
-        let model = &self.extended;
-        Gain {
-            held_out_residual_rms_before: model.held_out_residual_rms,
-            held_out_residual_rms_after: model.held_out_residual_rms,
-            position_error_rms_before_rad: model.position_error_rms_rad,
-            position_error_rms_after_rad: model.position_error_rms_rad,
-            ..Gain::default()
-        }
     }
 }
 
@@ -206,11 +199,14 @@ fn search(
         let mut selection = select(&context, &mut system, &catalogue, carried.clone(), anew);
         if selection.again.is_empty() {
             let noise = system.flicker.clone();
-            let note = codes::beside(&system, &mut selection, &checked.findings);
+            let notes = [
+                codes::beside(&system, &mut selection, &checked.findings),
+                steps::beside(&system, &mut selection, recording),
+            ];
             let concluded = conclude(&mut system, &selection, checked, repaired);
             drop(system);
             let mut found = concluded(context);
-            found.notes.extend(note);
+            found.notes.extend(notes.into_iter().flatten());
             return (found, noise);
         }
         // Its samples are not needed any longer, and the next look has its own.
@@ -272,6 +268,10 @@ fn conclude(
     } else {
         (vec![], vec![])
     };
+    if selection.stepped {
+        noisy.retain(|finding: &Finding| finding.cause != noise::CLOCK_JITTER);
+        strange.clear();
+    }
     let mut rest = selection.left.as_slice();
     if noise::is_the_reason(&noisy, rest) {
         rest = &[];
@@ -290,9 +290,12 @@ fn conclude(
         .chain(rest)
         .map(|u| u.gain)
         .fold(0.0, f64::max);
-    let flicker = flicker.filter(|f| !f.is_part_of(unknown));
+    let samples: f64 = context.weight.iter().sum();
+    let size = |gain: f64| system.noise() * (2.0 * gain / samples).sqrt();
+    let flicker =
+        flicker.filter(|f| !f.is_part_of(unknown) && size(f.gain) > selection.coded_slowly);
     let silent = selection.unnamed.is_empty() && rest.is_empty() && noisy.is_empty();
-    if silent && strange.is_empty() && flicker.is_none() {
+    if silent && !selection.stepped && strange.is_empty() && flicker.is_none() {
         strange = left::no_noise(
             context,
             &system.residual(&extended.fit).radial,
@@ -305,8 +308,8 @@ fn conclude(
         .map(|f| traces(f).map_or_else(|| f.finding(), Err))
     {
         Some(Ok(finding)) => noisy.push(finding),
-        Some(Err(unnamed)) => strange.push(unnamed),
-        None => {}
+        Some(Err(unnamed)) if !selection.stepped => strange.push(unnamed),
+        _ => {}
     }
     let unnamed = || selection.unnamed.iter().chain(rest).chain(&strange);
     let own = selection.base.shapes.len();
@@ -319,17 +322,13 @@ fn conclude(
         halves.position_error(&extended.fit, own, 0),
     );
     for finding in &mut findings {
-        finding.gain.held_out_residual_rms_before = held_before;
-        finding.gain.held_out_residual_rms_after = held_before;
-        finding.gain.position_error_rms_before_rad = position_before;
-        finding.gain.position_error_rms_after_rad = position_before;
+        let nothing = Gain::nothing_taken_off(held_before, position_before);
+        finding.gain = finding.gain.judged(nothing);
     }
     findings.extend(named);
     for mut finding in noisy {
-        finding.gain.held_out_residual_rms_before = held_after;
-        finding.gain.held_out_residual_rms_after = held_after;
-        finding.gain.position_error_rms_before_rad = position_after;
-        finding.gain.position_error_rms_after_rad = position_after;
+        let nothing = Gain::nothing_taken_off(held_after, position_after);
+        finding.gain = finding.gain.judged(nothing);
         findings.push(finding);
     }
     sort(&mut findings);

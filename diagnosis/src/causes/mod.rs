@@ -1,6 +1,6 @@
 //! The catalogue: one file per kind of cause.
 
-mod angle;
+pub(crate) mod angle;
 pub(crate) mod cause;
 mod code;
 mod direction;

@@ -5,11 +5,12 @@ use nonius_recording::Recording;
 
 use crate::checks::edges::{Edges, edges};
 use crate::checks::timebase::GAP;
+use crate::checks::turning::Turning;
 use crate::checks::{Checked, magnitudes, ninth, repeats};
 use crate::finding::units;
 use crate::finding::{Finding, Parameter, Place};
 use crate::numerics::correlate::sums;
-use crate::numerics::solve::weights_of;
+use crate::numerics::solve::{weights_of, without};
 
 /// Samples on either side of the curve through the neighbours.
 const REACH: usize = 3;
@@ -98,43 +99,53 @@ fn out_of_either(
 
 /// Whether what stands out at a sample is that sample, and no step of the signal before or after it: a code that the ADC
 /// gets wrong, or a time base that jumps, which either channel shows. The next sample may ring.
-fn isolated(channels: &[Vec<f64>; 2], which: usize, k: usize) -> bool {
+fn isolated(off: &[Vec<f64>; 2], turning: Option<&Turning>, which: usize, k: usize) -> bool {
     /// What one sample does to the ones around it, and what a step does.
     const ONE: [f64; 7] = [-1.0, 6.0, -15.0, 20.0, -15.0, 6.0, -1.0];
     const STEP: [f64; 6] = [-1.0, 5.0, -10.0, 10.0, -5.0, 1.0];
     /// A step looks like one sample by 0.917; one whose next rings back by four tenths is as much like either.
     const AS_MUCH: f64 = 0.96;
-    let off = &channels[which];
-    if off[k].abs() < off[k - 1].abs().max(off[k + 1].abs()) {
+    let seen = |j: usize| {
+        let there = [off[0][j], off[1][j]];
+        match turning {
+            Some(turning) if turning.is_fast(k) => turning.seen_from(k, j, there),
+            _ => there,
+        }
+    };
+    let near: Vec<[f64; 2]> = (k - REACH..=k + REACH).map(seen).collect();
+    let size = |i: usize| near[i][which].abs();
+    if size(REACH) < size(REACH - 1).max(size(REACH + 1)) {
         return false;
     }
     // The share of the square that a pattern holds.
     let like = |pattern: &[f64], from: usize| {
-        let along = |off: &Vec<f64>| -> f64 {
-            let pairs = pattern.iter().zip(off.iter().skip(from));
-            pairs.map(|(p, o)| p * o).sum()
+        let along = |channel: usize| -> f64 {
+            let pairs = pattern.iter().zip(near.iter().skip(from));
+            pairs.map(|(p, o)| p * o[channel]).sum()
         };
-        let squares = channels.iter().map(|off| along(off).powi(2));
-        squares.sum::<f64>() / pattern.iter().map(|p| p * p).sum::<f64>()
+        let squares = along(0).powi(2) + along(1).powi(2);
+        squares / pattern.iter().map(|p| p * p).sum::<f64>()
     };
-    let one = like(&ONE, k - REACH);
-    let step = like(&STEP, k - REACH).max(like(&STEP, k + 1 - REACH));
+    let one = like(&ONE, 0);
+    let step = like(&STEP, 0).max(like(&STEP, 1));
     one > AS_MUCH * step
 }
 
 /// What a step of both channels before or after a sample, or a corner, leaves there, over what is left if the sample is off: of a
 /// jump of the time base, or a step of the speed, the samples farther away tell.
-fn step_over_one(recording: &Recording, k: usize) -> f64 {
+fn step_over_one(recording: &Recording, turning: Option<&Turning>, k: usize) -> f64 {
     /// Samples on either side.
     const SIDE: usize = 8;
     if k < SIDE || k + SIDE >= recording.samples() {
         return 1.0;
     }
+    let near = match turning {
+        Some(turning) if turning.is_fast(k) => turning.around(k, SIDE),
+        _ => [&recording.cos, &recording.sin].map(|v| v[k - SIDE..=k + SIDE].to_vec()),
+    };
     let left = |f: &dyn Fn(f64) -> f64| -> f64 {
         let shapes: Vec<Vec<f64>> = curve(SIDE).chain([column(SIDE, f)]).collect();
-        let channels = [&recording.cos, &recording.sin];
-        let rest =
-            channels.map(|v| crate::numerics::solve::without(&v[k - SIDE..=k + SIDE], &shapes));
+        let rest = near.each_ref().map(|v| without(v, &shapes));
         rest.iter().flatten().map(|r| r * r).sum()
     };
     let one = left(&|x| f64::from(x == 0.0));
@@ -144,6 +155,24 @@ fn step_over_one(recording: &Recording, k: usize) -> f64 {
     let corners = [-0.5, 0.0, 0.5].map(|at| left(&|x| (x - at * sample).max(0.0)));
     let corner = corners.into_iter().fold(f64::MAX, f64::min);
     step.min(corner) / one
+}
+
+/// How far each sample of either channel is off the curve through its neighbours; where the scale turns fast, as seen by somebody who
+/// turns with it.
+fn off_both(channels: &[Vec<f64>; 2], turning: Option<&Turning>) -> [Vec<f64>; 2] {
+    let n = channels[0].len();
+    let mut off = [0, 1].map(|which: usize| {
+        let off = (0..n).map(|k| off_the_curve(&channels[which], k));
+        off.collect::<Vec<f64>>()
+    });
+    let Some(turning) = turning else {
+        return off;
+    };
+    for k in (REACH..n.saturating_sub(REACH)).filter(|k| turning.is_fast(*k)) {
+        let near = turning.around(k, REACH);
+        [off[0][k], off[1][k]] = near.map(|near| off_the_curve(&near, REACH));
+    }
+    off
 }
 
 /// Lowest and highest value.
@@ -212,12 +241,10 @@ pub(crate) fn find(recording: &Recording, checked: &mut Checked) {
         channels,
         far: mut found,
     } = edges(recording);
-    let off = [0, 1].map(|which: usize| {
-        let values = &channels[which];
-        (0..n)
-            .map(|k| off_the_curve(values, k))
-            .collect::<Vec<f64>>()
-    });
+    let ellipse = checked.ellipse(recording);
+    let turning = ellipse.map(|e| Turning::new(&channels, e));
+    let turning = turning.as_ref();
+    let off = off_both(&channels, turning);
     let longer = [0, 1].map(|which: usize| off_the_longer_curve(&channels[which]));
     let middles = [0, 1].map(|which: usize| {
         // A glitch may be beyond all others.
@@ -235,7 +262,9 @@ pub(crate) fn find(recording: &Recording, checked: &mut Checked) {
             reach: REACH,
         };
         let mut own = short.far_off(values, recording, &checked.weight);
-        own.retain(|(k, _)| isolated(&off, which, *k) && step_over_one(recording, *k) >= CLEARLY);
+        own.retain(|(k, _)| {
+            isolated(&off, turning, which, *k) && step_over_one(recording, turning, *k) >= CLEARLY
+        });
         own.retain(|(k, _)| out_of_either(&off, REACH, angle, *k));
         if typical(&longer[which], MORE) < typical(&off[which], MORE) {
             let long = Curve {
@@ -247,7 +276,9 @@ pub(crate) fn find(recording: &Recording, checked: &mut Checked) {
             let size = |k: usize| longer[which][k].abs();
             let highest = |k: usize| size(k) >= size(k - 1).max(size(k + 1));
             let near = |k: usize| own.iter().any(|(known, _)| k.abs_diff(*known) <= MORE);
-            more.retain(|(k, _)| highest(*k) && !near(*k) && step_over_one(recording, *k) > SURELY);
+            more.retain(|(k, _)| {
+                highest(*k) && !near(*k) && step_over_one(recording, None, *k) > SURELY
+            });
             more.retain(|(k, _)| out_of_either(&longer, MORE, angle, *k));
             own.extend(more);
         }

@@ -15,12 +15,14 @@ mod sides;
 pub(crate) mod silent;
 pub(crate) mod slips;
 pub(crate) mod timebase;
+mod turning;
 
 use std::cell::OnceCell;
 
 use nonius_calibration::Ellipse;
-use nonius_recording::Recording;
+use nonius_recording::{AdcSource, Recording};
 
+use crate::finding::units;
 use crate::finding::{Finding, Parameter, Place};
 
 /// What the checks found, and which samples do not count.
@@ -41,8 +43,14 @@ pub(crate) struct Checked {
 impl Checked {
     /// The angle of the recording, continuous, radians, bridged where its samples do not count.
     pub(crate) fn angle(&self, recording: &Recording) -> Option<Vec<f64>> {
-        let ellipse = self.ellipse.get_or_init(|| first::of_all(recording));
-        Some(jumps::angle(recording, ellipse.as_ref()?, &self.weight))
+        let ellipse = self.ellipse(recording)?;
+        Some(jumps::angle(recording, ellipse, &self.weight))
+    }
+
+    /// The ellipse of all samples, where one can be fitted.
+    fn ellipse(&self, recording: &Recording) -> Option<&Ellipse> {
+        let made = self.ellipse.get_or_init(|| first::of_all(recording));
+        made.as_ref()
     }
 }
 
@@ -77,12 +85,14 @@ pub(crate) fn check(recording: &Recording, weight: Vec<f64>, time_base: TimeBase
     let codes: (Vec<i64>, Vec<i64>) = sound().map(|(codes, _)| codes).unzip();
     let mut digital = vec![];
     let adc = recording.metadata.adc;
-    let described = adc.cos.source == nonius_recording::AdcSource::Described;
+    let coded = adc.cos.source != AdcSource::Assumed;
+    // Decimals that volts were rounded to are no codes, and most of them are missing.
+    let whole = adc.cos.source == AdcSource::Described || units::are_counts(recording);
     for (name, codes, bits) in [
         (CHANNELS[0], &codes.0, adc.cos.bits),
         (CHANNELS[1], &codes.1, adc.sin.bits),
     ] {
-        if described {
+        if coded {
             let channel = usize::from(name == CHANNELS[1]);
             let of_channel = |f: Finding| {
                 let largest = f.parameters.first().map_or(0.0, |p| p.value);
@@ -98,7 +108,7 @@ pub(crate) fn check(recording: &Recording, weight: Vec<f64>, time_base: TimeBase
             };
             let found = bits_and_steps(name, codes, bits);
             // Where codes lie on a grid, those between are missing.
-            let missing = if found.is_empty() {
+            let missing = if whole && found.is_empty() {
                 missing::codes(codes)
             } else {
                 vec![]

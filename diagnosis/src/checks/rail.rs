@@ -35,10 +35,10 @@ struct Rail {
     clipped: Vec<usize>,
 }
 
-/// A rail of a channel, looked at with its sign turned where it is the lower one, and the samples there.
-fn rail(codes: &[i64], counts: &[usize], lower: bool) -> Option<(i64, Vec<usize>)> {
+/// A rail of a channel, looked at with its sign turned where it is the lower one, and the samples there; `other` is the other channel.
+fn rail(codes: &[i64], other: &[f64], sound: &[usize], lower: bool) -> Option<(i64, Vec<usize>)> {
     let up = |k: usize| if lower { -codes[k] } else { codes[k] };
-    let mut all: Vec<i64> = counts.iter().map(|k| up(*k)).collect();
+    let mut all: Vec<i64> = sound.iter().map(|k| up(*k)).collect();
     all.sort_unstable();
     all.dedup();
     let (bottom, top) = (*all.first()?, *all.last()?);
@@ -46,27 +46,35 @@ fn rail(codes: &[i64], counts: &[usize], lower: bool) -> Option<(i64, Vec<usize>
     let middle = bottom + (top - bottom) / 2;
     // Samples at the rail and beside it, pass by pass: between two passes the signal has been in the other half.
     let mut passes: Vec<[usize; 2]> = vec![];
+    // The samples at the rail, pass by pass.
+    let mut there: Vec<Vec<usize>> = vec![];
     let mut inside = false;
-    let mut clipped = vec![];
-    for k in counts {
+    for k in sound {
         let code = up(*k);
         if code < middle {
             inside = false;
         } else if code >= beside {
             if !inside {
                 passes.push([0, 0]);
+                there.push(vec![]);
                 inside = true;
             }
-            let Some(pass) = passes.last_mut() else {
+            let (Some(pass), Some(there)) = (passes.last_mut(), there.last_mut()) else {
                 continue;
             };
             if code == top {
-                clipped.push(*k);
+                there.push(*k);
             }
             pass[usize::from(code != top)] += 1;
         }
     }
-    // The longest pass may be a standstill just there.
+    // An axis that stands still just there is at no rail.
+    let stands = |there: &Vec<usize>| there.len() >= SAMPLES && !moves(other, sound, there);
+    let standing: Vec<bool> = there.iter().map(stands).collect();
+    let mut moving = standing.iter().map(|stands| !stands);
+    passes.retain(|_| moving.next().unwrap_or(true));
+    let clipped = there.concat();
+    // Neither may one be that moves a little.
     let longest = passes.iter().enumerate().max_by_key(|(_, p)| p[0])?.0;
     passes.remove(longest);
     let [at, beside] = passes.iter().fold([0, 0], |[a, b], p| [a + p[0], b + p[1]]);
@@ -77,14 +85,14 @@ fn rail(codes: &[i64], counts: &[usize], lower: bool) -> Option<(i64, Vec<usize>
 }
 
 /// Whether the other channel moves while one is clipped.
-fn moves(other: &[f64], counts: &[usize], clipped: &[usize]) -> bool {
+fn moves(other: &[f64], sound: &[usize], clipped: &[usize]) -> bool {
     let span = |places: &[usize]| {
         let ends = places.iter().fold((f64::MAX, f64::MIN), |(a, b), k| {
             (a.min(other[*k]), b.max(other[*k]))
         });
         ends.1 - ends.0
     };
-    span(clipped) > MOVES * span(counts)
+    span(clipped) > MOVES * span(sound)
 }
 
 /// Leaves out what is clipped, by the other channel, so that noise has no say in it: the samples there, and those beside them.
@@ -98,12 +106,12 @@ fn leave_out(recording: &Recording, rail: &Rail, weight: &mut [f64]) {
     };
     let wider = WIDER * (high - low);
     let range = low - wider..=high + wider;
-    let counts: Vec<usize> = (0..weight.len()).filter(|k| weight[*k] > 0.0).collect();
-    let ends = counts.iter().fold((f64::MAX, f64::MIN), |(a, b), k| {
+    let sound: Vec<usize> = (0..weight.len()).filter(|k| weight[*k] > 0.0).collect();
+    let ends = sound.iter().fold((f64::MAX, f64::MIN), |(a, b), k| {
         (a.min(own[*k]), b.max(own[*k]))
     });
     let middle = (ends.0 + ends.1) / 2.0;
-    for k in counts {
+    for k in sound {
         if range.contains(&other[k]) && (own[k] < middle) == rail.lower {
             weight[k] = 0.0;
         }
@@ -156,14 +164,14 @@ fn finding(rail: &Rail, adc: &Adc, offset: f64, amplitude: f64, left_out: usize)
 
 /// The rails of a recording, and what is clipped left out; nothing where too little would be left.
 pub(crate) fn rails(recording: &Recording, weight: &mut Vec<f64>) -> Vec<Finding> {
-    let counts: Vec<usize> = (0..weight.len()).filter(|k| weight[*k] > 0.0).collect();
+    let sound: Vec<usize> = (0..weight.len()).filter(|k| weight[*k] > 0.0).collect();
     let codes: (Vec<i64>, Vec<i64>) = recording.codes().unzip();
     let others = [&recording.sin, &recording.cos];
     let mut found = vec![];
     for (channel, codes) in [&codes.0, &codes.1].into_iter().enumerate() {
         for lower in [false, true] {
-            let rail = rail(codes, &counts, lower);
-            if let Some((code, clipped)) = rail.filter(|r| moves(others[channel], &counts, &r.1)) {
+            let rail = rail(codes, others[channel], &sound, lower);
+            if let Some((code, clipped)) = rail.filter(|r| moves(others[channel], &sound, &r.1)) {
                 found.push(Rail {
                     channel,
                     lower,
@@ -180,8 +188,8 @@ pub(crate) fn rails(recording: &Recording, weight: &mut Vec<f64>) -> Vec<Finding
         leave_out(recording, rail, &mut without);
         left_out.push((before - without.iter().sum::<f64>()) as usize);
     }
-    let sound = without.iter().filter(|w| **w > 0.0).count();
-    if found.is_empty() || (sound as f64) < (1.0 - MOST) * counts.len() as f64 {
+    let left = without.iter().filter(|w| **w > 0.0).count();
+    if found.is_empty() || (left as f64) < (1.0 - MOST) * sound.len() as f64 {
         return vec![];
     }
     let Ok(e) = first::ellipse(recording, &without) else {

@@ -10,7 +10,7 @@ use nonius_recording::AdcSource;
 use crate::causes::cause::Domain;
 use crate::causes::speed_varies;
 use crate::context::Context;
-use crate::doubt::{gain_of, home};
+use crate::doubt::{SLOW, gain_of, home};
 use crate::finding::Finding;
 use crate::model::System;
 use crate::select::selection::Selection;
@@ -113,6 +113,17 @@ fn is_an_order(context: &Context, hertz: f64, step: f64) -> bool {
     })
 }
 
+/// Whether the axis stands so long that the error of one code after the other goes on for many samples: then it is slow.
+fn rests(context: &Context, step: f64) -> bool {
+    /// Samples on one code.
+    const MANY: f64 = 20.0;
+    /// Share of the recording.
+    const SHARE: f64 = 0.05;
+    let stands = |speed: &&f64| speed.abs() / context.rate * MANY < step;
+    let standing = context.speed.iter().filter(stands).count();
+    standing as f64 > SHARE * context.samples() as f64
+}
+
 /// What a cause explains; motion is not seen in the radius, which is all that is sure where the axis vibrates.
 fn gain(system: &System, found: &Selection, i: usize) -> f64 {
     let own = &found.accepted[i];
@@ -134,9 +145,9 @@ pub(crate) fn beside(
     let context = system.context;
     let known = known(system, digital);
     let quiet = quiet(code(context), system.noise());
-    // A step that was only estimated from the values is none to judge by.
-    let described = context.adc.cos.source == AdcSource::Described;
-    let error = if described && quiet.whole > IN_NOISE * system.noise() {
+    // Values that show no steps are none.
+    let stepped = context.adc.cos.source != AdcSource::Assumed;
+    let error = if stepped && quiet.whole > IN_NOISE * system.noise() {
         quiet.or(known)
     } else {
         known
@@ -144,6 +155,11 @@ pub(crate) fn beside(
     if error.whole == 0.0 {
         return None;
     }
+    let slow = if rests(context, error.step) {
+        error.whole
+    } else {
+        error.low
+    };
     let samples: f64 = context.weight.iter().sum();
     let size = |gain: f64| system.noise() * (2.0 * gain.max(0.0) / samples).sqrt();
     let all = 0..found.accepted.len();
@@ -162,6 +178,8 @@ pub(crate) fn beside(
         };
         if ordered {
             error.whole
+        } else if SLOW.contains(&candidate.domain) || candidate.domain == Domain::Line {
+            slow
         } else if many && repeats(i) {
             known.whole.max(error.low)
         } else {
@@ -176,7 +194,7 @@ pub(crate) fn beside(
     found.unnamed.retain(|u| size(u.gain) > error.whole);
     found.left.retain(|u| size(u.gain) > error.whole);
     if error.whole > IN_NOISE * system.noise() {
-        found.coded = error.whole;
+        (found.coded, found.coded_slowly) = (error.whole, slow);
     }
     let dropped = before - found.unnamed.len() - found.left.len();
     (dropped + taken.len() > 0).then(|| {

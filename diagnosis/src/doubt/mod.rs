@@ -5,6 +5,7 @@
 pub(crate) mod codes;
 pub(crate) mod curves;
 pub(crate) mod simpler;
+pub(crate) mod steps;
 
 use crate::causes::Catalogue;
 use crate::causes::cause::Domain;

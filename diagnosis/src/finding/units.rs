@@ -32,11 +32,16 @@ pub(crate) fn of_what(shown: &str, name: &str, unit: &str) -> String {
     }
 }
 
+/// Whether the values are the codes of an ADC, whole numbers.
+pub(crate) fn are_counts(recording: &nonius_recording::Recording) -> bool {
+    let whole = |values: &[f64]| values.iter().all(|v| v.fract() == 0.0);
+    whole(&recording.cos) && whole(&recording.sin)
+}
+
 /// The unit of a recording's columns, as far as it is known: codes are counts, and volts would be a guess.
 pub(crate) fn of_columns(recording: &nonius_recording::Recording) -> &'static str {
     let adc = recording.metadata.adc;
-    let whole = |values: &[f64]| values.iter().all(|v| v.fract() == 0.0);
-    if adc.cos.lsb == 1.0 && whole(&recording.cos) && whole(&recording.sin) {
+    if adc.cos.lsb == 1.0 && are_counts(recording) {
         "counts"
     } else {
         "unit of the columns"

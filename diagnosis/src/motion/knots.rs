@@ -34,6 +34,8 @@ const FARTHER: f64 = 1.5;
 
 /// Scale periods of travel from which on what repeats with the period can be told from motion.
 const REPEATS: f64 = 4.0;
+/// And periods from one end to the other: within one, the angle itself is a function of its place in the period.
+const APART: f64 = 2.0;
 
 /// Knot spacings, in samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,18 +46,32 @@ pub(crate) struct Spacing {
     pub(crate) motion: f64,
 }
 
+/// Whether what repeats with the period is told from motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Told {
+    /// A reference shows the motion, however little the scale moves.
+    ByReference,
+    /// The scale moves over some periods, or it is not.
+    WhereItTravels,
+    /// It is motion itself.
+    Not,
+}
+
 /// The knot spacing whose spline explains an angle (radians) best for its number of coefficients, with what repeats with
 /// the period taken off first, and the strongest line in time and in the revolution: real vibration and cogging are no
-/// reason for more knots. And the spacing where the spectrum of what is left falls no more. What repeats with the period is `told` from
-/// motion by a reference, or where the scale moves over some periods.
+/// reason for more knots. And the spacing where the spectrum of what is left falls no more.
 pub(crate) fn spacing(
     angle: &[f64],
     weight: &[f64],
     periods_per_revolution: Option<u32>,
-    told: bool,
+    told: Told,
 ) -> Spacing {
     let n = angle.len();
-    let told = told || travelled(angle) >= REPEATS;
+    let told = match told {
+        Told::ByReference => true,
+        Told::WhereItTravels => travelled(angle) >= REPEATS && span(angle) >= APART,
+        Told::Not => false,
+    };
     let stretches: Vec<Stretch> = stretches(n)
         .into_iter()
         .map(|range| {
@@ -70,6 +86,7 @@ pub(crate) fn spacing(
     let counting: f64 = stretches.iter().map(|s| s.weight.iter().sum::<f64>()).sum();
     let longest = stretches.iter().map(|s| s.angle.len()).max().unwrap_or(1);
     let mut spacing = (longest as f64 / 2.0).max(FINEST);
+    // Its score, and the mean square that its spline leaves.
     let score = |spacing: f64| {
         let (mut power, mut count) = (0.0, 0.0);
         for stretch in &stretches {
@@ -77,15 +94,19 @@ pub(crate) fn spacing(
             power += stretch.left(&spline);
             count += spline.count() as f64;
         }
-        counting * (power / counting).max(1e-300).ln() + count * counting.ln()
+        let square = power / counting;
+        let score = counting * square.max(1e-300).ln() + count * counting.ln();
+        (score, square)
     };
-    let mut best = (f64::MAX, spacing);
+    let (mut best, mut left) = ((f64::MAX, spacing), f64::MAX);
     let mut worse = 0;
-    while spacing >= FINEST && worse <= PATIENCE {
-        let now = score(spacing);
+    // What trembles about one place leaves all coarse splines with nothing.
+    let trembles = span(angle) < APART;
+    while spacing >= FINEST && (worse <= PATIENCE || trembles && left > SMALL * SMALL) {
+        let (now, square) = score(spacing);
         worse += 1;
         if now < best.0 {
-            best = (now, spacing);
+            (best, left) = ((now, spacing), square);
             worse = 0;
         }
         spacing /= 2.0;
@@ -93,7 +114,7 @@ pub(crate) fn spacing(
     let coarse = best.1;
     for share in [1.0 / 2f64.sqrt(), 2f64.sqrt()] {
         let spacing = (coarse * share).max(FINEST);
-        let now = score(spacing);
+        let (now, _) = score(spacing);
         if now < best.0 {
             best = (now, spacing);
         }
@@ -179,6 +200,14 @@ fn order_alone(stretches: &[Stretch], finest: f64) -> Option<f64> {
 fn closer(n: f64, spacing: f64) -> f64 {
     const MARGIN: f64 = 1.25;
     (MARGIN * (n * n.ln() / 8.0 / spacing).powf(0.125)).max(CLOSER)
+}
+
+/// Scale periods from one end of an angle's way to the other.
+fn span(angle: &[f64]) -> f64 {
+    let ends = angle.iter().fold([f64::MAX, f64::MIN], |[low, high], a| {
+        [low.min(*a), high.max(*a)]
+    });
+    (ends[1] - ends[0]) / TAU
 }
 
 /// Scale periods of an angle's way there and back, but for what moves it by less than an eighth of one.

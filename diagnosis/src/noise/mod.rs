@@ -35,7 +35,7 @@ const MUCH: f64 = 0.2;
 /// Log-likelihood by which a line of the axis has to stand higher to be the reason for one of the clock.
 const CLEARLY: f64 = 3.0;
 /// Names of the contract.
-const CLOCK_JITTER: &str = "clock_jitter";
+pub(crate) const CLOCK_JITTER: &str = "clock_jitter";
 const AMPLITUDE_NOISE: &str = "amplitude_noise";
 /// Standard errors by which an amount that a part of the samples gives is below nothing for sure.
 const SURELY: f64 = 3.0;
@@ -193,6 +193,10 @@ pub(crate) fn findings(system: &System, residual: &Residual) -> (Vec<Finding>, V
             continue;
         }
         let held_out = own.held_out(&with.x, &both) / inflation;
+        // What data that was not fitted speaks against has no name.
+        if held_out <= 0.0 {
+            continue;
+        }
         let why = refusal(
             &depends,
             own,

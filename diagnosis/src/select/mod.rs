@@ -12,6 +12,7 @@ pub(crate) mod score;
 pub(crate) mod selection;
 pub(crate) mod speed_anew;
 
+use crate::causes::angle::is_a_circle;
 use crate::causes::cause::{Candidate, Domain};
 use crate::causes::{self, AC_COUPLING, BANDWIDTH_MISMATCH, CHANNEL_SKEW, Catalogue, HYSTERESIS};
 use crate::context::Context;
@@ -217,6 +218,7 @@ fn search(
     }
     let mut closed: Vec<Domain> = vec![];
     let mut refused: Vec<&'static str> = vec![];
+    let mut circled = false;
     if system.flicker.is_some() {
         closed.push(Domain::Time);
         refused.extend(SLOW);
@@ -228,7 +230,8 @@ fn search(
         let names: Vec<&str> = found.accepted.iter().map(|a| a.candidate.name).collect();
         let open = |c: &Candidate| {
             let again = ONCE.contains(&c.name) && names.contains(&c.name);
-            !closed.contains(&c.domain) && !refused.contains(&c.name) && !again
+            let circle = circled && c.order == Some(2);
+            !closed.contains(&c.domain) && !refused.contains(&c.name) && !again && !circle
         };
         let beside = Beside::all_that_moves(system, &found.fit.shapes);
         let known = catalogue.candidates.iter().filter(|c| open(c));
@@ -289,6 +292,11 @@ fn search(
                 let shapes = both(&found.fit.shapes, &cause.candidate.shapes);
                 let halves = system.halves(&shapes);
                 let fit = system.fit(shapes);
+                let amounts = &fit.solution.x[cause.first..];
+                if context.against_reference.is_none() && is_a_circle(&cause.candidate, amounts) {
+                    circled = true;
+                    continue;
+                }
                 if cause.candidate.domain == Domain::Time {
                     let gain = fit.solution.gain() - found.fit.solution.gain();
                     let numbers = cause.candidate.shapes.len() as f64;

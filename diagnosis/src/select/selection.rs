@@ -103,6 +103,10 @@ pub(crate) struct Selection {
     pub(crate) again: Vec<Start>,
     /// Rms error of the codes, in amplitudes, where it is seen in the noise.
     pub(crate) coded: f64,
+    /// The part of it that looks slow.
+    pub(crate) coded_slowly: f64,
+    /// The reference moves in steps of which noise hides nothing: its rounding comes and goes as the axis moves.
+    pub(crate) stepped: bool,
 }
 
 impl Selection {
@@ -198,6 +202,8 @@ impl Selection {
             left: vec![],
             again: vec![],
             coded: 0.0,
+            coded_slowly: 0.0,
+            stepped: false,
         }
     }
 

@@ -74,10 +74,14 @@ pub fn unseen(context: &Context) -> Vec<String> {
             }
         }
     }
-    if context.adc.cos.source != AdcSource::Described {
-        tell(
-            "without adc_bits and full_scale, stuck_bit and coarse_quantisation are not looked for; describe the ADC",
-        );
+    match context.adc.cos.source {
+        AdcSource::Described => {}
+        AdcSource::Estimated => tell(
+            "without adc_bits and full_scale, a coarse step or a stuck last bit is taken for the ADC's own code; describe the ADC",
+        ),
+        AdcSource::Assumed => tell(
+            "the values show no codes: stuck_bit and coarse_quantisation are not looked for; record the codes of the ADC",
+        ),
     }
     list
 }

@@ -25,6 +25,8 @@ const SHORT: f64 = 0.7;
 /// How large an error is where that can be told, rms in amplitudes over both rows as residuals are, and where it is.
 pub(crate) struct Place {
     pub(crate) rms: Option<f64>,
+    /// Share of its power along the circle.
+    pub(crate) along: Option<f64>,
     /// Each part with a comma before it; empty where nothing stands out.
     pub(crate) text: String,
 }
@@ -40,6 +42,11 @@ pub(crate) struct Left<'a> {
 type Power = [f64; 2];
 
 impl Left<'_> {
+    /// Whether most of an error of this domain is along the circle.
+    pub(crate) fn is_along(&self, domain: Domain) -> bool {
+        self.place(domain).along.is_some_and(|share| share > MOST)
+    }
+
     /// An error of this domain.
     pub(crate) fn place(&self, domain: Domain) -> Place {
         match domain {
@@ -50,10 +57,7 @@ impl Left<'_> {
                 let phi = self.context.phi.as_deref().unwrap_or_default();
                 self.order(phi, TOP[1], false)
             }
-            Domain::Code | Domain::Line | Domain::Motion => Place {
-                rms: None,
-                text: String::new(),
-            },
+            Domain::Code | Domain::Line | Domain::Motion => Place::nowhere(),
         }
     }
 
@@ -61,6 +65,7 @@ impl Left<'_> {
     fn order(&self, angle: &[f64], top: usize, in_channels: bool) -> Place {
         let places = (8 * top).next_power_of_two();
         let mut sums = vec![Complex::new(0.0, 0.0); places];
+        let mut unturned = sums.clone();
         let mut counts = vec![0.0; places];
         let mut noise = 0.0;
         for (k, angle) in angle.iter().enumerate() {
@@ -72,7 +77,9 @@ impl Left<'_> {
             } else {
                 Complex::new(1.0, 0.0)
             };
-            let value = weight * turn * Complex::new(self.radial[k], self.tangential[k]);
+            let value = weight * Complex::new(self.radial[k], self.tangential[k]);
+            unturned[place] += value;
+            let value = turn * value;
             sums[place] += value;
             counts[place] += weight;
             noise += value.norm_sqr();
@@ -94,8 +101,13 @@ impl Left<'_> {
             Some(order) => format!(", mostly {} per revolution", times(order)),
             None => String::new(),
         };
+        let rows = unturned.iter().zip(&counts).filter(|(_, n)| **n > 0.0);
+        let rows = rows.fold([0.0, 0.0], |[r, t], (sum, n)| {
+            [r + sum.re * sum.re / n, t + sum.im * sum.im / n]
+        });
         Place {
             rms: (square > 0.0).then(|| (square / 2.0).sqrt()),
+            along: Some(rows[1] / (rows[0] + rows[1]).max(f64::MIN_POSITIVE)),
             text,
         }
     }
@@ -174,14 +186,19 @@ fn sum(power: &[Power]) -> f64 {
 }
 
 impl Place {
+    fn nowhere() -> Self {
+        Self {
+            rms: None,
+            along: None,
+            text: String::new(),
+        }
+    }
+
     /// With which of the two rows holds it; nothing where there is nothing.
     fn of(power: &[Power], text: String) -> Self {
         let all = sum(power);
         if all == 0.0 {
-            return Self {
-                rms: None,
-                text: String::new(),
-            };
+            return Self::nowhere();
         }
         let share = power.iter().map(|p| p[0]).sum::<f64>() / all;
         let along = if share > MOST {
@@ -193,6 +210,7 @@ impl Place {
         };
         Self {
             rms: Some((all / 2.0).sqrt()),
+            along: Some(1.0 - share),
             text: format!("{text}, {along}"),
         }
     }

@@ -6,6 +6,7 @@
 mod codes;
 mod data;
 mod harness;
+mod instruments;
 mod lengths;
 mod long;
 mod motion;

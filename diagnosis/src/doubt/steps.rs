@@ -1,0 +1,58 @@
+//! A reference that moves in steps, as a counter does. Its rounding stands along the circle and goes with the angle, the revolution, the
+//! speed and the time as the axis does: an error that is smaller may be its doing.
+
+use nonius_quantity::{Quantity, Unit};
+use nonius_recording::{Recording, code_step};
+
+use crate::causes::cause::Domain;
+use crate::doubt::home;
+use crate::model::System;
+use crate::select::selection::Selection;
+use crate::unnamed::unexplained::Unnamed;
+use crate::unnamed::whereabouts::Left;
+
+/// Shares of the noise from which on the rounding is seen, and from which on it is seen in how the noise varies.
+const SEEN: [f64; 2] = [0.1, 0.3];
+
+/// Takes back what has no name, stands along the circle and is smaller than the rounding of the reference. A sentence that says so,
+/// where anything was or may be.
+pub(crate) fn beside(
+    system: &System,
+    found: &mut Selection,
+    recording: &Recording,
+) -> Option<String> {
+    let step = code_step(recording.reference_rad.as_deref()?)?;
+    let rounding = step / 12f64.sqrt();
+    if rounding < SEEN[0] * system.noise() {
+        return None;
+    }
+    found.stepped = rounding > SEEN[1] * system.noise();
+    let context = system.context;
+    // Without the shapes that stand in for what has no name.
+    let left = system.residual(&found.named(system).fit);
+    let left = Left {
+        context,
+        radial: &left.radial,
+        tangential: &left.tangential,
+    };
+    let samples: f64 = context.weight.iter().sum();
+    let domains = [
+        Domain::Angle,
+        Domain::Revolution,
+        Domain::Speed,
+        Domain::Time,
+    ];
+    let along = domains.map(|domain| (domain, left.is_along(domain)));
+    let stays = |one: &Unnamed| {
+        let size = system.noise() * (2.0 * one.gain.max(0.0) / samples).sqrt();
+        let its_own = |d: &Domain| along.contains(&(home(*d), true));
+        size > rounding || !one.domain().as_ref().is_some_and(its_own)
+    };
+    let before = found.unnamed.len() + found.left.len();
+    found.unnamed.retain(stays);
+    found.left.retain(stays);
+    let step = Quantity::rounded(step, 2, Unit::Prefixed("rad")).brief();
+    (found.stepped || found.unnamed.len() + found.left.len() < before).then(|| {
+        format!("the reference moves in steps of {step}, and what is smaller along the circle and may be their doing has no name")
+    })
+}

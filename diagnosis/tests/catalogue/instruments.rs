@@ -1,0 +1,230 @@
+//! Recordings as instruments and axes of other kinds make them: an oscilloscope that does not say how many bits it has, a counter as
+//! reference, few samples a period, a mirror that stays within a period, an axis that stands on one code.
+
+use std::f64::consts::TAU;
+
+use nonius_diagnosis::{Diagnosis, diagnose};
+use nonius_recording::{Overrides, Recording};
+use rand::{SeedableRng, rngs::StdRng};
+use rand_distr::{Distribution, StandardNormal};
+
+use crate::harness::names;
+
+const SAMPLES: usize = 16_000;
+const RATE: f64 = 20e3;
+const LENGTH: f64 = SAMPLES as f64 / RATE;
+
+/// How a recording is made.
+struct Instrument {
+    /// Radians after a time in seconds.
+    axis: fn(t: f64) -> f64,
+    /// The two channels, in amplitudes, less what they have without an error.
+    error: fn(alpha: f64) -> [f64; 2],
+    /// Of the amplitude.
+    noise: f64,
+    /// Of the whole range of the ADC, which is a fourth more than the signals have.
+    bits: i32,
+    /// What becomes of the codes of cos and sin.
+    damage: fn(k: usize, codes: [i64; 2]) -> [i64; 2],
+    /// What stands before the columns.
+    header: &'static str,
+    /// What one code is.
+    unit: f64,
+    /// Steps of the reference in a period, where there is one.
+    counts: Option<f64>,
+}
+
+const PLAIN: Instrument = Instrument {
+    axis: swept,
+    error: |_| [0.0; 2],
+    noise: 1e-3,
+    bits: 14,
+    damage: |_, codes| codes,
+    header: "",
+    unit: 1.0,
+    counts: None,
+};
+
+/// Over 60 periods and back.
+fn swept(t: f64) -> f64 {
+    60.0 * TAU * (TAU * 1.3 * t / LENGTH).sin() + 11.0 * TAU * t / LENGTH
+}
+
+/// Moves from place to place, with rests between.
+fn served(t: f64) -> f64 {
+    const PLACES: [f64; 6] = [0.0, 4.3, 7.0, 1.6, 5.2, 11.7];
+    let x = t / LENGTH * PLACES.len() as f64;
+    let (k, x) = ((x as usize).min(PLACES.len() - 1), x.fract());
+    let from = PLACES[k.saturating_sub(1)];
+    let x = (x / 0.4).min(1.0);
+    TAU * (from + (PLACES[k] - from) * x * x * x * (10.0 - 15.0 * x + 6.0 * x * x))
+}
+
+impl Instrument {
+    fn diagnosed(&self, seed: u64) -> Diagnosis {
+        let mut random = StdRng::seed_from_u64(seed);
+        let mut noise =
+            || -> f64 { self.noise * Distribution::<f64>::sample(&StandardNormal, &mut random) };
+        let half = 2f64.powi(self.bits - 1);
+        let mut text = format!("{}time_s,cos,sin", self.header);
+        text += if self.counts.is_some() {
+            ",reference_rad\n"
+        } else {
+            "\n"
+        };
+        for k in 0..SAMPLES {
+            let t = k as f64 / RATE;
+            let alpha = (self.axis)(t);
+            let [c, s] = (self.error)(alpha);
+            let cos = 0.02 + 0.8 * (alpha.cos() + c + noise());
+            let sin = -0.03 + 0.78 * ((alpha - 0.03).sin() + s + noise());
+            let codes = [cos, sin].map(|v| (v * half).round() as i64);
+            let [c, s] = (self.damage)(k, codes).map(|code| code as f64 * self.unit);
+            text += &format!("{t:.7},{c},{s}");
+            if let Some(counts) = self.counts {
+                let step = TAU / counts;
+                text += &format!(",{:.8}", ((alpha + 0.4) / step).floor() * step);
+            }
+            text += "\n";
+        }
+        let recording = Recording::read_from(text.as_bytes(), "test", &Overrides::default());
+        let found = diagnose(&recording.expect("a recording")).expect("an ellipse");
+        crate::words::well_said(&found);
+        found
+    }
+
+    fn shows(&self, expected: &[&str]) {
+        for seed in 0..3 {
+            let found = self.diagnosed(seed);
+            let left = &found.unexplained;
+            assert_eq!(names(&found), expected, "{seed}: {}", left.signature);
+            assert!(!left.significant, "{seed}: {}", left.signature);
+        }
+    }
+}
+
+/// Eight bits of which noise moves a tenth, in volts, with nothing said about them: what their codes err is no error of the sensor.
+#[test]
+fn an_oscilloscope_of_eight_bits() {
+    for axis in [swept, |t: f64| 40.0 * TAU * t / LENGTH] {
+        let scope = Instrument {
+            axis,
+            noise: 0.0012,
+            bits: 8,
+            unit: 0.04,
+            ..PLAIN
+        };
+        scope.shows(&[]);
+    }
+}
+
+/// A bit that never changes is one in codes of which nothing is said, too.
+#[test]
+fn a_stuck_bit_of_an_adc_that_is_not_described() {
+    let stuck = Instrument {
+        damage: |_, [c, s]| [c & !(1 << 6), s],
+        ..PLAIN
+    };
+    stuck.shows(&["stuck_bit"]);
+}
+
+/// What a counter rounds is no error of the sensor.
+#[test]
+fn a_counter_as_reference() {
+    for counts in [256.0, 1024.0, 4096.0] {
+        for axis in [swept, served] {
+            let counted = Instrument {
+                axis,
+                counts: Some(counts),
+                header: "# adc_bits: 14\n# full_scale: 8192\n",
+                ..PLAIN
+            };
+            counted.shows(&[]);
+        }
+    }
+}
+
+/// Samples that are off are found at five samples a period, each of them.
+#[test]
+fn glitches_of_a_fast_axis() {
+    const OFF: [usize; 6] = [700, 3001, 6500, 8123, 11_900, 15_000];
+    let axes: [fn(f64) -> f64; 3] = [
+        |t| TAU * (RATE / 5.3) * t,
+        |t| TAU * (RATE / 11.0) * t * t / (2.0 * LENGTH),
+        |t| 0.3 * RATE / 5.0 * LENGTH * (TAU * t / LENGTH).sin(),
+    ];
+    for axis in axes {
+        let fast = Instrument {
+            axis,
+            damage: |k, [c, s]| [c + if OFF.contains(&k) { 260 } else { 0 }, s],
+            ..PLAIN
+        };
+        fast.shows(&["glitches"]);
+        let found = fast.diagnosed(1);
+        let share = found.findings[0].parameters[0].value;
+        assert!((share * SAMPLES as f64 - OFF.len() as f64).abs() < 1e-9);
+    }
+}
+
+/// A mirror that trembles within a third of a period: within one, the angle is a function of its place in the period, and is motion all
+/// the same.
+#[test]
+fn a_mirror_within_a_period() {
+    let mirror = Instrument {
+        axis: |t| {
+            let waves = [(0.5, 310.0, 0.0), (0.3, 457.0, 1.0), (0.25, 633.0, 2.0)];
+            waves
+                .iter()
+                .map(|(a, f, p)| a * (TAU * f * t + p).sin())
+                .sum()
+        },
+        ..PLAIN
+    };
+    for seed in 0..3 {
+        let found = mirror.diagnosed(seed);
+        let residual = found.extended.residual_rms;
+        assert!(residual < 1.1 * mirror.noise, "{residual}");
+        let sensor = |f: &&nonius_diagnosis::Finding| f.cause != "vibration";
+        assert_eq!(
+            found.findings.iter().filter(sensor).count(),
+            0,
+            "{:?}",
+            names(&found)
+        );
+    }
+}
+
+/// A step motor that moves on once a period, over twelve of them: beside offsets, that is a second harmonic that draws a circle, which
+/// none of a sensor does. The bend of the channels is what its radius shows.
+#[test]
+fn a_step_motor_bends_no_sensor() {
+    let bend = 0.004;
+    let stepping = Instrument {
+        axis: |t| {
+            let x = 12.0 * TAU * (t / LENGTH) * (0.6 + 0.4 * t / LENGTH);
+            x - 0.35 * x.sin()
+        },
+        error: |alpha| [0.0, 0.004 * alpha.sin().powi(2)],
+        noise: 1.5e-3,
+        ..PLAIN
+    };
+    for seed in 0..3 {
+        let found = stepping.diagnosed(seed);
+        let left = &found.unexplained.signature;
+        assert_eq!(names(&found), ["even_nonlinearity"], "{seed}: {left}");
+        crate::harness::near(&found, "k_sin", bend);
+    }
+}
+
+/// An axis that rests on one code after the other: their error goes on for long, and is no slow noise.
+#[test]
+fn an_axis_that_rests_on_a_code() {
+    let resting = Instrument {
+        axis: served,
+        noise: 2e-4,
+        bits: 10,
+        header: "# adc_bits: 10\n# full_scale: 512\n",
+        ..PLAIN
+    };
+    resting.shows(&[]);
+}
