@@ -23,7 +23,7 @@ pub struct Options {
     pub verilator: bool,
     /// End a simulation with the first stimulus that fails.
     pub stop_at_first: bool,
-    /// Time that each simulation may take; by default a minute and what a slow machine needs
+    /// Time that each simulation may take; by default five minutes and what a slow machine needs
     /// for the rows.
     pub time_limit: Option<Duration>,
 }

@@ -4,7 +4,7 @@ use crate::chip_support::loss::sensor_for;
 use crate::chip_support::{Bench, larger, rms, sensor_of};
 use crate::on_line_speeds::{for_long, travel};
 use crate::support::shipped::variants::{Variant, searches_of};
-use nonius_kept::{every, figure_of_short};
+use nonius_kept::{every, figure_of_short, long};
 use nonius_model::kernel::waits::applied;
 use nonius_model::spec::{CalibrationMethod, Spec};
 use rayon::prelude::*;
@@ -106,9 +106,9 @@ fn keep(speed: &str, groups: [[f64; 3]; 4]) {
     );
 }
 
-/// At exactly 4, 8 and 64 samples a period every search of every set finds its parameters from new, and keeps them; at 5, 6 and 7 those of the
-/// ellipse, which is all that these sensors have, and so at four, where bends rest. Every fifth of the signs, each at another place of the
-/// period; in the long form all of both.
+/// At exactly 8 and 64 samples a period every search of every set finds its parameters from new, and keeps them; at 4 to 7 those of the
+/// ellipse, which is all that these sensors have, as bends rest there. Every fifth of the signs, each at another place of the period; in the
+/// long form all of both, and 6 and 7 samples too.
 #[test]
 fn every_search_at_commensurate_speeds() {
     let places = [0.013, 0.1, 0.125, 0.0];
@@ -118,7 +118,8 @@ fn every_search_at_commensurate_speeds() {
         (0..4).map(move |i| (signs, places[(from + i) % 4]))
     });
     let cases: Vec<(u32, f64)> = every(20, all).collect();
-    for per_period in [4, 5, 6, 7, 8, 64] {
+    let between: &[u32] = if long() { &[6, 7] } else { &[] };
+    for &per_period in [4, 5, 8, 64].iter().chain(between) {
         let groups = by_every_search(per_period, &cases);
         // From four to seven bends rest with the noise that they came with.
         all_below(if per_period < 8 { 0.45 } else { 0.3 }, &groups);

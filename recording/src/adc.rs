@@ -55,7 +55,8 @@ impl Adc {
         self.lsb * -(self.codes().0 as f64)
     }
 
-    /// True where the value lies beyond the first or last code's step.
+    /// True where the value lies clearly beyond the first or last code's step, by more than the rounding of its text: that step is half a
+    /// code wide on either side.
     #[must_use]
     pub fn clips(&self, value: f64) -> bool {
         let (min, max) = self.codes();

@@ -63,11 +63,13 @@ fn round_trip_beside(cause: &str, reference: bool) {
             let known = found.findings[0].parameter(key).is_some();
             assert_eq!(known, expected.contains_key(key), "{name}: {key}");
         }
-        for p in &found.findings[0].parameters {
-            let truth = expected
-                .get(&p.name)
-                .and_then(|v| v.as_float().or_else(|| v.as_integer().map(|i| i as f64)));
+        for (key, truth) in &expected {
+            let truth = truth.as_float().or(truth.as_integer().map(|i| i as f64));
             let Some(truth) = truth else { continue };
+            let told = found.findings[0].parameters.iter();
+            let Some(p) = told.clone().find(|p| p.name == *key) else {
+                panic!("{name}: {key} is not told, but {told:?}");
+            };
             let mut off = p.value - truth;
             if p.unit == "rad" && p.name.starts_with("phase") {
                 off -= std::f64::consts::TAU * (off / std::f64::consts::TAU).round();
