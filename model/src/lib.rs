@@ -5,6 +5,7 @@
 //! paper in plain `f64`, independent of all of it.
 
 pub mod bits;
+mod bundle;
 pub mod chip;
 pub mod design;
 pub mod format;
@@ -12,7 +13,6 @@ pub mod graph;
 pub mod kernel;
 pub mod physical;
 mod real;
-mod record;
 pub mod reference;
 pub mod rom;
 pub mod signal;

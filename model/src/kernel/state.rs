@@ -1,6 +1,6 @@
 //! What the chip remembers, what it is given, and what it shows.
 
-use crate::record::bundle;
+use crate::bundle::bundle;
 
 bundle! {
     /// The registers, as they stand before a sample. All are zero after reset.
