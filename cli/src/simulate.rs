@@ -110,17 +110,21 @@ pub(crate) fn run(args: &Simulate) -> Result<()> {
     Ok(())
 }
 
+/// Where a path leads to. A file or a folder that is not there yet is known by the folder that it will be in.
+fn real(path: &Path) -> PathBuf {
+    path.canonicalize().unwrap_or_else(|_| {
+        let folder = path.parent().filter(|p| !p.as_os_str().is_empty());
+        let folder = match folder {
+            Some(folder) => real(folder),
+            None if path.is_absolute() => return path.to_owned(),
+            None => Path::new(".").canonicalize().unwrap_or_default(),
+        };
+        folder.join(path.file_name().unwrap_or_default())
+    })
+}
+
 /// What is read is not written over, and no file is written twice.
 fn apart(args: &Simulate) -> Result<()> {
-    // A file that is not there yet is known by its folder.
-    let real = |path: &Path| {
-        path.canonicalize().unwrap_or_else(|_| {
-            let folder = path.parent().filter(|p| !p.as_os_str().is_empty());
-            let folder = folder.unwrap_or(Path::new(".")).canonicalize();
-            let name = path.file_name().unwrap_or_default();
-            folder.map_or_else(|_| path.to_owned(), |folder| folder.join(name))
-        })
-    };
     let sensor = args.sensor.as_deref().map(play::sensor).transpose()?;
     let motion = sensor.and_then(|(_, motion)| motion);
     let read = [

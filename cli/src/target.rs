@@ -27,7 +27,7 @@ impl Target {
             .unwrap_or(Path::new("."));
         let cannot = || format!("cannot write into {}", folder.display());
         std::fs::create_dir_all(folder).with_context(cannot)?;
-        let file = for_everybody().tempfile_in(folder).with_context(cannot)?;
+        let file = by_umask().tempfile_in(folder).with_context(cannot)?;
         Ok(Self {
             file,
             path: path.to_owned(),
@@ -57,7 +57,7 @@ impl Target {
 }
 
 /// A temporary file would be the owner's alone; a result is for whom the umask lets.
-fn for_everybody() -> tempfile::Builder<'static, 'static> {
+fn by_umask() -> tempfile::Builder<'static, 'static> {
     #[cfg_attr(not(unix), allow(unused_mut))]
     let mut builder = tempfile::Builder::new();
     #[cfg(unix)]

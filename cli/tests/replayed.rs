@@ -169,6 +169,10 @@ fn a_motion_that_cannot_be_followed_is_refused() {
     refused(&to("out.csv", "found/sensor.toml"), &["found/sensor.toml"]);
     refused(&to("out.csv", "out.csv"), &["out.csv", "name another file"]);
     refused(
+        &to("nowhere/out.csv", "./nowhere/out.csv"),
+        &["nowhere/out.csv", "name another file"],
+    );
+    refused(
         &to("out.csv", "found/moved.csv/s.csv"),
         &["cannot write into found/moved.csv"],
     );

@@ -137,7 +137,10 @@ fn simulate_refuses_what_cannot_be() {
     );
     refused(&run(&["none.csv", "-o", "o.csv"]), &["none.csv"]);
     refused(&run(&["bad.csv", "-o", "o.csv"]), &["bad.csv:2"]);
-    refused(&run(&["r.csv", "-o", "no/o.csv"]), &["no"]);
+    refused(
+        &run(&["r.csv", "-o", "r.csv/o.csv"]),
+        &["cannot write into r.csv"],
+    );
     refused(
         &run(&["r.csv", "-o", "o.csv", "--repeat", "0"]),
         &["--repeat"],

@@ -225,7 +225,7 @@ impl Context {
             let make = |spacing: f64| Spline::new(n, spacing, weight);
             let mut spacing = knots::spacing(angle, weight, per, told);
             if told == Told::WhereItTravels {
-                // One that follows none of it.
+                // A spline that follows nothing in step with the period.
                 let smooth = make(4.0 * spacing.motion);
                 let smooth = smooth.values(&smooth.fit(angle, weight));
                 let left: Vec<f64> = angle.iter().zip(smooth).map(|(a, s)| a - s).collect();

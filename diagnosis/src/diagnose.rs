@@ -264,14 +264,10 @@ fn conclude(
     let left = system.residual(&selection.fit);
     // Only what is noise can be noise of a kind.
     let (mut noisy, mut strange) = if selection.unnamed.is_empty() && selection.coded == 0.0 {
-        noise::findings(system, &left)
+        noise::findings(system, &left, selection.stepped)
     } else {
         (vec![], vec![])
     };
-    if selection.stepped {
-        noisy.retain(|finding: &Finding| finding.cause != noise::CLOCK_JITTER);
-        strange.clear();
-    }
     let mut rest = selection.left.as_slice();
     if noise::is_the_reason(&noisy, rest) {
         rest = &[];
@@ -290,10 +286,8 @@ fn conclude(
         .chain(rest)
         .map(|u| u.gain)
         .fold(0.0, f64::max);
-    let samples: f64 = context.weight.iter().sum();
-    let size = |gain: f64| system.noise() * (2.0 * gain / samples).sqrt();
     let flicker =
-        flicker.filter(|f| !f.is_part_of(unknown) && size(f.gain) > selection.coded_slowly);
+        flicker.filter(|f| !f.is_part_of(unknown) && system.size(f.gain) > selection.coded_slowly);
     let silent = selection.unnamed.is_empty() && rest.is_empty() && noisy.is_empty();
     if silent && !selection.stepped && strange.is_empty() && flicker.is_none() {
         strange = left::no_noise(

@@ -40,6 +40,9 @@ const CATALOGUE: [&str; 29] = [
     "cogging",
 ];
 
+/// What no finding tells: which of two codes stays, and the share of samples that are lost or doubled, of which it tells the number.
+const UNTOLD: [&str; 3] = ["level", "remainder_lsb", "share"];
+
 /// The cause alone is found, its numbers are those that were written, and so it is when what was found is simulated.
 fn round_trip(cause: &str) {
     round_trip_beside(cause, false);
@@ -65,7 +68,9 @@ fn round_trip_beside(cause: &str, reference: bool) {
         }
         for (key, truth) in &expected {
             let truth = truth.as_float().or(truth.as_integer().map(|i| i as f64));
-            let Some(truth) = truth else { continue };
+            let Some(truth) = truth.filter(|_| !UNTOLD.contains(&key.as_str())) else {
+                continue;
+            };
             let told = found.findings[0].parameters.iter();
             let Some(p) = told.clone().find(|p| p.name == *key) else {
                 panic!("{name}: {key} is not told, but {told:?}");

@@ -69,7 +69,8 @@ fn rail(codes: &[i64], other: &[f64], sound: &[usize], lower: bool) -> Option<(i
         }
     }
     // An axis that stands still just there is at no rail.
-    let stands = |there: &Vec<usize>| there.len() >= SAMPLES && !moves(other, sound, there);
+    let whole = span(other, sound);
+    let stands = |there: &Vec<usize>| there.len() >= SAMPLES && !moves(other, whole, there);
     let standing: Vec<bool> = there.iter().map(stands).collect();
     let mut moving = standing.iter().map(|stands| !stands);
     passes.retain(|_| moving.next().unwrap_or(true));
@@ -85,14 +86,16 @@ fn rail(codes: &[i64], other: &[f64], sound: &[usize], lower: bool) -> Option<(i
 }
 
 /// Whether the other channel moves while one is clipped.
-fn moves(other: &[f64], sound: &[usize], clipped: &[usize]) -> bool {
-    let span = |places: &[usize]| {
-        let ends = places.iter().fold((f64::MAX, f64::MIN), |(a, b), k| {
-            (a.min(other[*k]), b.max(other[*k]))
-        });
-        ends.1 - ends.0
-    };
-    span(clipped) > MOVES * span(sound)
+fn moves(other: &[f64], whole: f64, clipped: &[usize]) -> bool {
+    span(other, clipped) > MOVES * whole
+}
+
+/// From the lowest to the highest of some samples.
+fn span(values: &[f64], places: &[usize]) -> f64 {
+    let ends = places.iter().fold((f64::MAX, f64::MIN), |(a, b), k| {
+        (a.min(values[*k]), b.max(values[*k]))
+    });
+    ends.1 - ends.0
 }
 
 /// Leaves out what is clipped, by the other channel, so that noise has no say in it: the samples there, and those beside them.
@@ -169,9 +172,10 @@ pub(crate) fn rails(recording: &Recording, weight: &mut Vec<f64>) -> Vec<Finding
     let others = [&recording.sin, &recording.cos];
     let mut found = vec![];
     for (channel, codes) in [&codes.0, &codes.1].into_iter().enumerate() {
+        let whole = span(others[channel], &sound);
         for lower in [false, true] {
             let rail = rail(codes, others[channel], &sound, lower);
-            if let Some((code, clipped)) = rail.filter(|r| moves(others[channel], &sound, &r.1)) {
+            if let Some((code, clipped)) = rail.filter(|r| moves(others[channel], whole, &r.1)) {
                 found.push(Rail {
                     channel,
                     lower,

@@ -160,8 +160,7 @@ pub(crate) fn beside(
     } else {
         error.low
     };
-    let samples: f64 = context.weight.iter().sum();
-    let size = |gain: f64| system.noise() * (2.0 * gain.max(0.0) / samples).sqrt();
+    let size = |gain: f64| system.size(gain);
     let all = 0..found.accepted.len();
     let sizes: Vec<f64> = all.map(|i| size(gain(system, found, i))).collect();
     let repeats = |i: usize| home(found.accepted[i].candidate.domain) == Domain::Angle;

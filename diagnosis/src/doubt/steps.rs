@@ -35,7 +35,6 @@ pub(crate) fn beside(
         radial: &left.radial,
         tangential: &left.tangential,
     };
-    let samples: f64 = context.weight.iter().sum();
     let domains = [
         Domain::Angle,
         Domain::Revolution,
@@ -44,9 +43,8 @@ pub(crate) fn beside(
     ];
     let along = domains.map(|domain| (domain, left.is_along(domain)));
     let stays = |one: &Unnamed| {
-        let size = system.noise() * (2.0 * one.gain.max(0.0) / samples).sqrt();
         let its_own = |d: &Domain| along.contains(&(home(*d), true));
-        size > rounding || !one.domain().as_ref().is_some_and(its_own)
+        system.size(one.gain) > rounding || !one.domain().as_ref().is_some_and(its_own)
     };
     let before = found.unnamed.len() + found.left.len();
     found.unnamed.retain(stays);

@@ -296,6 +296,12 @@ impl<'a> System<'a> {
         shows.then_some(own.sigma)
     }
 
+    /// Rms of an error of a sample, in amplitudes, that explains so much log-likelihood in all.
+    pub(crate) fn size(&self, gain: f64) -> f64 {
+        let samples: f64 = self.context.weight.iter().sum();
+        self.noise() * (2.0 * gain.max(0.0) / samples.max(1.0)).sqrt()
+    }
+
     /// Rms of the unpredictable part of the radial residual.
     pub(crate) fn noise(&self) -> f64 {
         self.samples.whiteners[0].sigma

@@ -51,7 +51,7 @@ pub(crate) struct Spacing {
 pub(crate) enum Told {
     /// A reference shows the motion, however little the scale moves.
     ByReference,
-    /// The scale moves over some periods, or it is not.
+    /// It is where the scale moves over some periods.
     WhereItTravels,
     /// It is motion itself.
     Not,
@@ -100,7 +100,7 @@ pub(crate) fn spacing(
     };
     let (mut best, mut left) = ((f64::MAX, spacing), f64::MAX);
     let mut worse = 0;
-    // What trembles about one place leaves all coarse splines with nothing.
+    // Of what trembles about one place coarse splines explain nothing.
     let trembles = span(angle) < APART;
     while spacing >= FINEST && (worse <= PATIENCE || trembles && left > SMALL * SMALL) {
         let (now, square) = score(spacing);

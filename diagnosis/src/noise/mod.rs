@@ -35,7 +35,7 @@ const MUCH: f64 = 0.2;
 /// Log-likelihood by which a line of the axis has to stand higher to be the reason for one of the clock.
 const CLEARLY: f64 = 3.0;
 /// Names of the contract.
-pub(crate) const CLOCK_JITTER: &str = "clock_jitter";
+const CLOCK_JITTER: &str = "clock_jitter";
 const AMPLITUDE_NOISE: &str = "amplitude_noise";
 /// Standard errors by which an amount that a part of the samples gives is below nothing for sure.
 const SURELY: f64 = 3.0;
@@ -113,8 +113,12 @@ impl Dependence<'_> {
 /// Numbers of [`Dependence::anything`].
 const ANYTHING: usize = 2 * (KNOTS[0] + KNOTS[1]) + 3 * 2 * ORDERS.len();
 
-/// Kinds of noise in a residual, and what depends on something and is none of them.
-pub(crate) fn findings(system: &System, residual: &Residual) -> (Vec<Finding>, Vec<Unnamed>) {
+/// Kinds of noise in a residual, and what depends on something and is none of them; `stepped`: the reference moves in steps that show.
+pub(crate) fn findings(
+    system: &System,
+    residual: &Residual,
+    stepped: bool,
+) -> (Vec<Finding>, Vec<Unnamed>) {
     let context = system.context;
     let whiteners = &system.samples.whiteners;
     let left = [&residual.radial, &residual.tangential];
@@ -149,6 +153,10 @@ pub(crate) fn findings(system: &System, residual: &Residual) -> (Vec<Finding>, V
         (Kind::Amplitude, Kind::Jitter),
         (Kind::Jitter, Kind::Amplitude),
     ] {
+        // Along the circle the rounding of a reference that moves in steps is louder wherever the axis is slow.
+        if stepped && kind == Kind::Jitter {
+            continue;
+        }
         // In units in which the shape of the kind has a mean near one in the row that shows it.
         let scale = unit[usize::from(kind == Kind::Jitter)];
         let whitened = |of: Products| Products([0, 1, 2].map(|i| of.0[i] * unit[i] / scale));

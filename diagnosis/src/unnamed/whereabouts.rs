@@ -1,5 +1,6 @@
 //! Where an error without a name shows most: at which order of the scale period, speed, time or order of the revolution, and
-//! whether along the radius or along the circle. It describes what is left; nothing is decided by it.
+//! whether along the radius or along the circle. It describes what is left; only whether the steps of a reference may have made it is
+//! decided by it.
 
 use std::f64::consts::TAU;
 
@@ -101,10 +102,16 @@ impl Left<'_> {
             Some(order) => format!(", mostly {} per revolution", times(order)),
             None => String::new(),
         };
-        let rows = unturned.iter().zip(&counts).filter(|(_, n)| **n > 0.0);
-        let rows = rows.fold([0.0, 0.0], |[r, t], (sum, n)| {
-            [r + sum.re * sum.re / n, t + sum.im * sum.im / n]
-        });
+        let filled = || unturned.iter().zip(&counts).filter(|(_, n)| **n > 0.0);
+        let share = filled().count() as f64 / total;
+        // What noise alone makes of means, taken off.
+        let row = |part: fn(&Complex<f64>) -> f64, values: &[f64]| -> f64 {
+            let square = filled().map(|(sum, n)| part(sum).powi(2) / n).sum::<f64>();
+            let noise = values.iter().zip(&self.context.weight);
+            let noise = noise.map(|(v, w)| w * v * v).sum::<f64>();
+            (square - share * noise).max(0.0)
+        };
+        let rows = [row(|s| s.re, self.radial), row(|s| s.im, self.tangential)];
         Place {
             rms: (square > 0.0).then(|| (square / 2.0).sqrt()),
             along: Some(rows[1] / (rows[0] + rows[1]).max(f64::MIN_POSITIVE)),
