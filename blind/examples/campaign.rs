@@ -49,6 +49,16 @@ struct Arguments {
     recordings: Option<PathBuf>,
 }
 
+impl Arguments {
+    /// What kind of case a seed stands for.
+    fn kind_of(&self, seed: u64) -> Kind {
+        match self.kind {
+            Some(Kind::Many) => Kind::Many,
+            _ => Kind::of_seed(seed),
+        }
+    }
+}
+
 fn kind(word: &str) -> Result<Kind, serde_json::Error> {
     serde_json::from_value(word.into())
 }
@@ -85,7 +95,7 @@ fn run(arguments: &Arguments) -> Result<()> {
     let wanted = |seed: &u64| {
         arguments
             .kind
-            .is_none_or(|kind| many || kind == Kind::of_seed(*seed))
+            .is_none_or(|kind| kind == arguments.kind_of(*seed))
             && (arguments.cause.is_empty() || hides(*seed, arguments))
     };
     let seeds: Vec<u64> = seeds.filter(wanted).collect();
@@ -132,20 +142,13 @@ fn run(arguments: &Arguments) -> Result<()> {
 
 /// Whether a seed hides one of the wanted causes first.
 fn hides(seed: u64, arguments: &Arguments) -> bool {
-    let kind = match arguments.kind {
-        Some(Kind::Many) => Kind::Many,
-        _ => Kind::of_seed(seed),
-    };
     let wanted = |first| arguments.cause.iter().any(|name| name == first);
-    Case::first_of_seed(seed, kind).is_some_and(wanted)
+    Case::first_of_seed(seed, arguments.kind_of(seed)).is_some_and(wanted)
 }
 
 /// One case: sealed, judged, opened, scored; `None` if another drive is wanted.
 fn case(seed: u64, arguments: &Arguments, folder: &Path) -> Result<Option<Score>> {
-    let case = match arguments.kind {
-        Some(Kind::Many) => Case::draw_many(seed, arguments.samples)?,
-        _ => Case::draw(seed, arguments.samples)?,
-    };
+    let case = Case::of_kind(arguments.kind_of(seed), seed, arguments.samples)?;
     let wanted = arguments.drive.as_ref();
     let first = case.truth.hidden.first();
     let weak = |below: f64| first.is_some_and(|hidden| hidden.snr < below);

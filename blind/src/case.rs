@@ -84,15 +84,11 @@ impl Case {
         Self::of_kind(Kind::of_seed(seed), seed, samples)
     }
 
-    /// The case of a seed that stands for [`Kind::Many`], as every seed can: no seed does by itself.
+    /// The same where the seed stands for this kind: for [`Kind::Many`] any can, and none does by itself.
     ///
     /// # Errors
     /// Where no experiment shows the causes as asked.
-    pub fn draw_many(seed: u64, samples: usize) -> Result<Self, Unreachable> {
-        Self::of_kind(Kind::Many, seed, samples)
-    }
-
-    fn of_kind(kind: Kind, seed: u64, samples: usize) -> Result<Self, Unreachable> {
+    pub fn of_kind(kind: Kind, seed: u64, samples: usize) -> Result<Self, Unreachable> {
         let mut random = source(seed);
         let (choices, mut snrs) = plan(seed, kind, &mut random);
         for _ in 0..HALVINGS {

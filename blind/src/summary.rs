@@ -23,9 +23,9 @@ pub struct Share {
 
 impl Share {
     /// Counts.
-    pub fn count<'a>(scores: impl Iterator<Item = &'a Score>, so: impl Fn(&Score) -> bool) -> Self {
-        scores.fold(Self::default(), |share, score| Self {
-            hits: share.hits + usize::from(so(score)),
+    pub fn count<T>(all: impl IntoIterator<Item = T>, so: impl Fn(T) -> bool) -> Self {
+        all.into_iter().fold(Self::default(), |share, one| Self {
+            hits: share.hits + usize::from(so(one)),
             of: share.of + 1,
         })
     }
@@ -296,10 +296,7 @@ impl<'a> Summary<'a> {
 
 /// 95 % intervals that hold the truth.
 fn held(all: &[ParameterScore]) -> Share {
-    Share {
-        hits: all.iter().filter(|p| p.stated.abs() < 1.96).count(),
-        of: all.len(),
-    }
+    Share::count(all, |p| p.stated.abs() < 1.96)
 }
 
 /// Median; NaN of nothing.

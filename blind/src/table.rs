@@ -42,7 +42,14 @@ pub fn page(scores: &[Score]) -> String {
         let list: Vec<String> = named.iter().map(|(n, k)| format!("{n} {k}")).collect();
         let _ = writeln!(text, "| {hidden} | {} |", list.join(", "));
     }
-    text += "\n## Sensor causes named that are not there\n\n| seed | hidden (SNR) | named |\n|---|---|---|\n";
+    text + &wrong_names(scores)
+}
+
+/// Every wrong name with its seed.
+pub(crate) fn wrong_names(scores: &[Score]) -> String {
+    let mut text = String::from(
+        "\n## Sensor causes named that are not there\n\n| seed | hidden (SNR) | named |\n|---|---|---|\n",
+    );
     for score in scores.iter().filter(|s| !s.wrong.is_empty()) {
         let _ = writeln!(
             text,

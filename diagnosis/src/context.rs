@@ -8,7 +8,7 @@ use nonius_recording::{AdcPair, Recording};
 
 use crate::checks::first;
 use crate::model::known::Known;
-use crate::motion::in_step::is_in_step;
+use crate::motion::in_step;
 use crate::motion::knots::{self, Told};
 use crate::motion::spline::Spline;
 use crate::numerics::slopes::{around, fine_gradient, gradient};
@@ -216,24 +216,12 @@ impl Context {
         (self.c, self.s) = (c, s);
         if self.spline.is_none() {
             let per = self.periods_per_revolution;
-            let told = if reference.is_some() {
-                Told::ByReference
-            } else {
-                Told::WhereItTravels
-            };
             let (angle, weight) = (&self.measured, &self.weight);
+            let spacing = match reference {
+                Some(_) => knots::spacing(angle, weight, per, Told::ByReference),
+                None => in_step::spacing(angle, &self.radial(), weight, per),
+            };
             let make = |spacing: f64| Spline::new(n, spacing, weight);
-            let mut spacing = knots::spacing(angle, weight, per, told);
-            if told == Told::WhereItTravels {
-                // A spline that follows nothing in step with the period.
-                let smooth = make(4.0 * spacing.motion);
-                let smooth = smooth.values(&smooth.fit(angle, weight));
-                let left: Vec<f64> = angle.iter().zip(smooth).map(|(a, s)| a - s).collect();
-                if is_in_step(angle, &left, &self.radial(), weight) {
-                    spacing = knots::spacing(angle, weight, per, Told::Not);
-                    spacing.motion = spacing.followed;
-                }
-            }
             self.spline = Some(make(spacing.motion));
             let finer = spacing.followed < spacing.motion;
             self.finer = finer.then(|| make(spacing.followed));

@@ -13,8 +13,8 @@ use crate::doubt::codes;
 use crate::doubt::curves;
 use crate::doubt::steps;
 use crate::drifts::channels::Channels;
+use crate::finding::Finding;
 use crate::finding::units;
-use crate::finding::{Finding, Gain};
 use crate::model::System;
 use crate::model::exact;
 use crate::motion::calm;
@@ -85,11 +85,9 @@ impl Diagnosis {
 
     /// One more finding, which takes nothing off the signals.
     pub(crate) fn add(&mut self, mut finding: Finding) {
-        let (left, position) = (
-            self.extended.held_out_residual_rms,
-            self.extended.position_error_rms_rad,
-        );
-        finding.gain = finding.gain.judged(Gain::nothing_taken_off(left, position));
+        let model = &self.extended;
+        finding.gain =
+            (finding.gain).beside(model.held_out_residual_rms, model.position_error_rms_rad);
         self.findings.push(finding);
         sort(&mut self.findings);
     }
@@ -316,13 +314,11 @@ fn conclude(
         halves.position_error(&extended.fit, own, 0),
     );
     for finding in &mut findings {
-        let nothing = Gain::nothing_taken_off(held_before, position_before);
-        finding.gain = finding.gain.judged(nothing);
+        finding.gain = finding.gain.beside(held_before, position_before);
     }
     findings.extend(named);
     for mut finding in noisy {
-        let nothing = Gain::nothing_taken_off(held_after, position_after);
-        finding.gain = finding.gain.judged(nothing);
+        finding.gain = finding.gain.beside(held_after, position_after);
         findings.push(finding);
     }
     sort(&mut findings);

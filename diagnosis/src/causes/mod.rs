@@ -11,7 +11,7 @@ mod line;
 mod mains;
 mod mirror;
 mod place;
-mod revolution;
+pub(crate) mod revolution;
 mod settling;
 mod speed;
 mod steady;

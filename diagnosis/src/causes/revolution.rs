@@ -9,6 +9,7 @@ use super::{Catalogue, GRADUATION_ERROR};
 use crate::causes::cause::{Candidate, Domain, polar};
 use crate::context::Context;
 use crate::finding::{Chip, Parameter};
+use crate::numerics::ends::span;
 use crate::shapes::block::Block;
 use crate::shapes::generic::{BOTH, Modulation, Of, per_channel};
 use crate::shapes::library::{Shape, Use};
@@ -39,11 +40,8 @@ fn waves(block: &Block, top: usize, out: &mut [f64]) {
 }
 
 /// Revolutions between the ends of the motion.
-pub(super) fn turns(phi: &[f64]) -> f64 {
-    let ends = phi
-        .iter()
-        .fold((f64::MAX, f64::MIN), |(a, b), p| (a.min(*p), b.max(*p)));
-    (ends.1 - ends.0) / TAU
+pub(crate) fn turns(phi: &[f64]) -> f64 {
+    span(phi.iter().copied()) / TAU
 }
 
 pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {

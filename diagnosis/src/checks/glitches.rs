@@ -4,12 +4,14 @@ use nonius_quantity::{agree, counted};
 use nonius_recording::Recording;
 
 use crate::checks::edges::{Edges, edges};
+use crate::checks::sides::{column, powers};
 use crate::checks::timebase::GAP;
 use crate::checks::turning::Turning;
 use crate::checks::{Checked, magnitudes, ninth, repeats};
 use crate::finding::units;
 use crate::finding::{Finding, Parameter, Place};
 use crate::numerics::correlate::sums;
+use crate::numerics::ends::ends;
 use crate::numerics::solve::{weights_of, without};
 
 /// Samples on either side of the curve through the neighbours.
@@ -35,15 +37,14 @@ fn off_the_curve(values: &[f64], k: usize) -> f64 {
     values[k] - (15.0 * both(1) - 6.0 * both(2) + both(3)) / 20.0
 }
 
-/// A function of the place among a sample and `side` neighbours on either side, which are the places from −1 to 1.
-fn column(side: usize, f: impl Fn(f64) -> f64) -> Vec<f64> {
-    let place = |i: usize| (i as f64 - side as f64) / side as f64;
-    (0..=2 * side).map(|i| f(place(i))).collect()
+/// A function of the place among a sample and `side` neighbours on either side.
+fn around(side: usize, f: impl Fn(f64) -> f64) -> Vec<f64> {
+    column(2 * side + 1, f)
 }
 
 /// The functions of a fifth-order curve through them.
-fn curve(side: usize) -> impl Iterator<Item = Vec<f64>> {
-    (0..=5).map(move |order| column(side, |x| x.powi(order)))
+fn curve(side: usize) -> Vec<Vec<f64>> {
+    powers(2 * side + 1, 5)
 }
 
 /// What belongs to the samples that have so many neighbours on either side.
@@ -56,8 +57,7 @@ fn with_neighbours(values: &[f64], reach: usize) -> &[f64] {
 /// How far each sample of a channel is off a fifth-order curve through more of its neighbours: on axes that are slow beside the
 /// noise that leaves less, for the curve through three on either side has more noise itself than the sample.
 fn off_the_longer_curve(values: &[f64]) -> Vec<f64> {
-    let curve: Vec<Vec<f64>> = curve(MORE).collect();
-    let weights = weights_of(&column(MORE, |x| f64::from(x == 0.0)), &curve);
+    let weights = weights_of(&around(MORE, |x| f64::from(x == 0.0)), &curve(MORE));
     let mut long = vec![0.0; MORE.min(values.len())];
     long.extend(sums(values, &weights));
     long.resize(values.len(), 0.0);
@@ -105,12 +105,10 @@ fn isolated(off: &[Vec<f64>; 2], turning: Option<&Turning>, which: usize, k: usi
     const STEP: [f64; 6] = [-1.0, 5.0, -10.0, 10.0, -5.0, 1.0];
     /// A step looks like one sample by 0.917; one whose next rings back by four tenths is as much like either.
     const AS_MUCH: f64 = 0.96;
+    let turning = turning.filter(|turning| turning.is_fast(k));
     let seen = |j: usize| {
         let there = [off[0][j], off[1][j]];
-        match turning {
-            Some(turning) if turning.is_fast(k) => turning.seen_from(k, j, there),
-            _ => there,
-        }
+        turning.map_or(there, |turning| turning.seen_from(k, j, there))
     };
     let near: Vec<[f64; 2]> = (k - REACH..=k + REACH).map(seen).collect();
     let size = |i: usize| near[i][which].abs();
@@ -139,12 +137,12 @@ fn step_over_one(recording: &Recording, turning: Option<&Turning>, k: usize) -> 
     if k < SIDE || k + SIDE >= recording.samples() {
         return 1.0;
     }
-    let near = match turning {
-        Some(turning) if turning.is_fast(k) => turning.around(k, SIDE),
-        _ => [&recording.cos, &recording.sin].map(|v| v[k - SIDE..=k + SIDE].to_vec()),
+    let near = match turning.filter(|turning| turning.is_fast(k)) {
+        Some(turning) => turning.around(k, SIDE),
+        None => [&recording.cos, &recording.sin].map(|v| v[k - SIDE..=k + SIDE].to_vec()),
     };
     let left = |f: &dyn Fn(f64) -> f64| -> f64 {
-        let shapes: Vec<Vec<f64>> = curve(SIDE).chain([column(SIDE, f)]).collect();
+        let shapes = [curve(SIDE), vec![around(SIDE, f)]].concat();
         let rest = near.each_ref().map(|v| without(v, &shapes));
         rest.iter().flatten().map(|r| r * r).sum()
     };
@@ -175,13 +173,6 @@ fn off_both(channels: &[Vec<f64>; 2], turning: Option<&Turning>) -> [Vec<f64>; 2
     off
 }
 
-/// Lowest and highest value.
-fn ends(values: &[f64]) -> (f64, f64) {
-    let start = (f64::MAX, f64::MIN);
-    let fold = |(a, b): (f64, f64), v: &f64| (a.min(*v), b.max(*v));
-    values.iter().fold(start, fold)
-}
-
 /// How far samples are off curves through so many neighbours on either side.
 struct Curve<'a> {
     off: &'a [f64],
@@ -197,7 +188,7 @@ impl Curve<'_> {
         let typical = typical(self.off, reach);
         // A glitch beyond the others would be alone in its range, and typical there.
         let expected = expected(values, self.off);
-        let (low, high) = ends(&expected);
+        let [low, high] = ends(expected.iter().copied());
         let range = |v: f64| (((v - low) / (high - low) * RANGES as f64) as usize).min(RANGES - 1);
         let mut alike: Vec<Vec<f64>> = vec![vec![]; RANGES];
         for (v, size) in expected.iter().zip(&sizes) {
@@ -248,7 +239,7 @@ pub(crate) fn find(recording: &Recording, checked: &mut Checked) {
     let longer = [0, 1].map(|which: usize| off_the_longer_curve(&channels[which]));
     let middles = [0, 1].map(|which: usize| {
         // A glitch may be beyond all others.
-        let (low, high) = ends(&expected(&channels[which], &off[which]));
+        let [low, high] = ends(expected(&channels[which], &off[which]));
         [0.5 * (low + high), 0.5 * (high - low)]
     });
     let angle = |k: usize| {

@@ -7,6 +7,7 @@ use nonius_recording::{Adc, Recording};
 
 use crate::checks::first;
 use crate::finding::{Finding, Parameter, Place};
+use crate::numerics::ends::{ends, span};
 
 /// So many times as often as each of the codes beside it, a rail's code comes: the top of a sine at most 3.2 times.
 const PLATEAU: f64 = 8.0;
@@ -35,8 +36,23 @@ struct Rail {
     clipped: Vec<usize>,
 }
 
-/// A rail of a channel, looked at with its sign turned where it is the lower one, and the samples there; `other` is the other channel.
-fn rail(codes: &[i64], other: &[f64], sound: &[usize], lower: bool) -> Option<(i64, Vec<usize>)> {
+/// The signal at the top of a channel, from one time in the other half to the next.
+#[derive(Default)]
+struct Pass {
+    /// Samples of the highest code.
+    at: Vec<usize>,
+    /// Number of samples of the codes beside it.
+    beside: usize,
+}
+
+/// A rail of a channel, looked at with its sign turned where it is the lower one, and the samples there; `moves` says whether the other
+/// channel does at some samples.
+fn rail(
+    codes: &[i64],
+    sound: &[usize],
+    lower: bool,
+    moves: &dyn Fn(&[usize]) -> bool,
+) -> Option<(i64, Vec<usize>)> {
     let up = |k: usize| if lower { -codes[k] } else { codes[k] };
     let mut all: Vec<i64> = sound.iter().map(|k| up(*k)).collect();
     all.sort_unstable();
@@ -45,9 +61,7 @@ fn rail(codes: &[i64], other: &[f64], sound: &[usize], lower: bool) -> Option<(i
     let beside = *all.get(all.len().checked_sub(1 + BESIDE)?)?;
     let middle = bottom + (top - bottom) / 2;
     // Samples at the rail and beside it, pass by pass: between two passes the signal has been in the other half.
-    let mut passes: Vec<[usize; 2]> = vec![];
-    // The samples at the rail, pass by pass.
-    let mut there: Vec<Vec<usize>> = vec![];
+    let mut passes: Vec<Pass> = vec![];
     let mut inside = false;
     for k in sound {
         let code = up(*k);
@@ -55,47 +69,32 @@ fn rail(codes: &[i64], other: &[f64], sound: &[usize], lower: bool) -> Option<(i
             inside = false;
         } else if code >= beside {
             if !inside {
-                passes.push([0, 0]);
-                there.push(vec![]);
+                passes.push(Pass::default());
                 inside = true;
             }
-            let (Some(pass), Some(there)) = (passes.last_mut(), there.last_mut()) else {
+            let Some(pass) = passes.last_mut() else {
                 continue;
             };
             if code == top {
-                there.push(*k);
+                pass.at.push(*k);
+            } else {
+                pass.beside += 1;
             }
-            pass[usize::from(code != top)] += 1;
         }
     }
+    let clipped: Vec<usize> = passes.iter().flat_map(|p| &p.at).copied().collect();
     // An axis that stands still just there is at no rail.
-    let whole = span(other, sound);
-    let stands = |there: &Vec<usize>| there.len() >= SAMPLES && !moves(other, whole, there);
-    let standing: Vec<bool> = there.iter().map(stands).collect();
-    let mut moving = standing.iter().map(|stands| !stands);
-    passes.retain(|_| moving.next().unwrap_or(true));
-    let clipped = there.concat();
+    passes.retain(|p| p.at.len() < SAMPLES || moves(&p.at));
     // Neither may one be that moves a little.
-    let longest = passes.iter().enumerate().max_by_key(|(_, p)| p[0])?.0;
+    let longest = passes.iter().enumerate().max_by_key(|(_, p)| p.at.len())?.0;
     passes.remove(longest);
-    let [at, beside] = passes.iter().fold([0, 0], |[a, b], p| [a + p[0], b + p[1]]);
-    let passing = passes.iter().filter(|p| p[0] > 0).count();
+    let [at, beside] = passes
+        .iter()
+        .fold([0, 0], |[a, b], p| [a + p.at.len(), b + p.beside]);
+    let passing = passes.iter().filter(|p| !p.at.is_empty()).count();
     let plateau = at as f64 > PLATEAU * beside as f64 / BESIDE as f64;
     (plateau && passing >= PASSES && at >= SAMPLES)
         .then_some((if lower { -top } else { top }, clipped))
-}
-
-/// Whether the other channel moves while one is clipped.
-fn moves(other: &[f64], whole: f64, clipped: &[usize]) -> bool {
-    span(other, clipped) > MOVES * whole
-}
-
-/// From the lowest to the highest of some samples.
-fn span(values: &[f64], places: &[usize]) -> f64 {
-    let ends = places.iter().fold((f64::MAX, f64::MIN), |(a, b), k| {
-        (a.min(values[*k]), b.max(values[*k]))
-    });
-    ends.1 - ends.0
 }
 
 /// Leaves out what is clipped, by the other channel, so that noise has no say in it: the samples there, and those beside them.
@@ -110,10 +109,8 @@ fn leave_out(recording: &Recording, rail: &Rail, weight: &mut [f64]) {
     let wider = WIDER * (high - low);
     let range = low - wider..=high + wider;
     let sound: Vec<usize> = (0..weight.len()).filter(|k| weight[*k] > 0.0).collect();
-    let ends = sound.iter().fold((f64::MAX, f64::MIN), |(a, b), k| {
-        (a.min(own[*k]), b.max(own[*k]))
-    });
-    let middle = (ends.0 + ends.1) / 2.0;
+    let [low, high] = ends(sound.iter().map(|k| own[*k]));
+    let middle = (low + high) / 2.0;
     for k in sound {
         if range.contains(&other[k]) && (own[k] < middle) == rail.lower {
             weight[k] = 0.0;
@@ -172,10 +169,12 @@ pub(crate) fn rails(recording: &Recording, weight: &mut Vec<f64>) -> Vec<Finding
     let others = [&recording.sin, &recording.cos];
     let mut found = vec![];
     for (channel, codes) in [&codes.0, &codes.1].into_iter().enumerate() {
-        let whole = span(others[channel], &sound);
+        let of = |places: &[usize]| span(places.iter().map(|k| others[channel][*k]));
+        let whole = of(&sound);
+        let moves = |clipped: &[usize]| of(clipped) > MOVES * whole;
         for lower in [false, true] {
-            let rail = rail(codes, others[channel], &sound, lower);
-            if let Some((code, clipped)) = rail.filter(|r| moves(others[channel], whole, &r.1)) {
+            let rail = rail(codes, &sound, lower, &moves);
+            if let Some((code, clipped)) = rail.filter(|(_, clipped)| moves(clipped)) {
                 found.push(Rail {
                     channel,
                     lower,

@@ -8,6 +8,7 @@ use nonius_recording::Recording;
 use crate::checks::first;
 use crate::checks::jumps;
 use crate::context::{against, unwrapped};
+use crate::numerics::ends::span;
 
 /// Share of samples that may be farther than a quarter period from where the reference says.
 const ASTRAY: f64 = 0.05;
@@ -44,12 +45,6 @@ impl Line {
     }
 }
 
-/// From the lowest to the highest.
-fn span(values: &[f64]) -> f64 {
-    let high = values.iter().copied().fold(f64::MIN, f64::max);
-    high - values.iter().copied().fold(f64::MAX, f64::min)
-}
-
 /// Whether the sensor's angle and its reference go together but for what an error can be: latency and graduation are far less.
 fn follows(angle: &[f64], reference: &[f64]) -> bool {
     let apart = against(angle, reference);
@@ -64,7 +59,7 @@ fn follows(angle: &[f64], reference: &[f64]) -> bool {
     }
     // A scale that is off by little is within that where the recording is short.
     let line = Line::through(angle, &apart);
-    let runs_away = line.slope.abs() * span(angle) > FRAC_PI_4;
+    let runs_away = line.slope.abs() * span(angle.iter().copied()) > FRAC_PI_4;
     !(runs_away && line.explains > STRAIGHT)
 }
 
@@ -75,7 +70,8 @@ fn reason(angle: &[f64], reference: &[f64], per: Option<u32>) -> String {
         unwrapped(scaled)
     };
     let is = |value: f64, near: f64| (value / near - 1.0).abs() < NEAR;
-    if span(reference) < 1e-6 * span(angle) {
+    let [shown, moved] = [reference, angle].map(|values| span(values.iter().copied()));
+    if shown < 1e-6 * moved {
         return "it does not change while the sensor moves".into();
     }
     for (unit, name) in [(PI / 180.0, "degrees"), (TAU, "periods")] {

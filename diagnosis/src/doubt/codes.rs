@@ -160,9 +160,8 @@ pub(crate) fn beside(
     } else {
         error.low
     };
-    let size = |gain: f64| system.size(gain);
     let all = 0..found.accepted.len();
-    let sizes: Vec<f64> = all.map(|i| size(gain(system, found, i))).collect();
+    let sizes: Vec<f64> = all.map(|i| system.size(gain(system, found, i))).collect();
     let repeats = |i: usize| home(found.accepted[i].candidate.domain) == Domain::Angle;
     // Many at once are the pattern that lost codes make. A quiet ADC loses none, and a sensor may have many harmonics.
     let small = (0..sizes.len()).filter(|i| repeats(*i) && sizes[*i] < known.whole);
@@ -190,8 +189,8 @@ pub(crate) fn beside(
         found.accepted[*i].doubted = true;
     }
     let before = found.unnamed.len() + found.left.len();
-    found.unnamed.retain(|u| size(u.gain) > error.whole);
-    found.left.retain(|u| size(u.gain) > error.whole);
+    found.unnamed.retain(|u| system.size(u.gain) > error.whole);
+    found.left.retain(|u| system.size(u.gain) > error.whole);
     if error.whole > IN_NOISE * system.noise() {
         (found.coded, found.coded_slowly) = (error.whole, slow);
     }

@@ -4,7 +4,6 @@
 use nonius_quantity::{Quantity, Unit};
 use nonius_recording::{Recording, code_step};
 
-use crate::causes::cause::Domain;
 use crate::doubt::home;
 use crate::model::System;
 use crate::select::selection::Selection;
@@ -35,16 +34,9 @@ pub(crate) fn beside(
         radial: &left.radial,
         tangential: &left.tangential,
     };
-    let domains = [
-        Domain::Angle,
-        Domain::Revolution,
-        Domain::Speed,
-        Domain::Time,
-    ];
-    let along = domains.map(|domain| (domain, left.is_along(domain)));
     let stays = |one: &Unnamed| {
-        let its_own = |d: &Domain| along.contains(&(home(*d), true));
-        system.size(one.gain) > rounding || !one.domain().as_ref().is_some_and(its_own)
+        let along = one.domain().is_some_and(|d| left.is_along(home(d)));
+        system.size(one.gain) > rounding || !along
     };
     let before = found.unnamed.len() + found.left.len();
     found.unnamed.retain(stays);

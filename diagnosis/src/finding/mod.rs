@@ -89,27 +89,14 @@ impl Gain {
         }
     }
 
-    /// Of what takes nothing off the signals, beside a model that leaves these on data that was not fitted.
-    pub(crate) fn nothing_taken_off(
-        residual_rms: f64,
-        position_error_rms_rad: Option<f64>,
-    ) -> Self {
+    /// The same of what takes nothing off the signals, beside a model that leaves these on data that was not fitted.
+    pub(crate) fn beside(self, residual_rms: f64, position_error_rms_rad: Option<f64>) -> Self {
         Self {
             held_out_residual_rms_before: residual_rms,
             held_out_residual_rms_after: residual_rms,
             position_error_rms_before_rad: position_error_rms_rad,
             position_error_rms_after_rad: position_error_rms_rad,
-            ..Self::default()
-        }
-    }
-
-    /// The same with residuals and position errors of another.
-    pub(crate) fn judged(self, by: Self) -> Self {
-        Self {
-            detection_snr: self.detection_snr,
-            held_out_log_likelihood_gain: self.held_out_log_likelihood_gain,
-            repaired_samples: self.repaired_samples,
-            ..by
+            ..self
         }
     }
 }

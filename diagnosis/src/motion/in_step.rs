@@ -1,7 +1,9 @@
 //! Motion in step with the scale, as a step motor's: it repeats with the period and is no error of the sensor, for the radius repeats
 //! nothing like it.
 
-use std::f64::consts::TAU;
+use crate::motion::knots::{self, Spacing, Told};
+use crate::motion::spline::Spline;
+use crate::numerics::repeated::repeated;
 
 /// Parts of the period.
 const PARTS: usize = 32;
@@ -9,26 +11,29 @@ const PARTS: usize = 32;
 const LARGE: f64 = 0.1;
 /// So many times what repeats in the radius.
 const TIMES: f64 = 10.0;
-
-/// Rms of what values repeat with the period of an angle.
-fn repeated(angle: &[f64], values: impl Iterator<Item = f64>, weight: &[f64]) -> f64 {
-    let mut parts = [[0.0; 2]; PARTS];
-    for ((angle, value), weight) in angle.iter().zip(values).zip(weight) {
-        let part = (angle / TAU).rem_euclid(1.0) * PARTS as f64;
-        let [sum, count] = &mut parts[(part as usize).min(PARTS - 1)];
-        *sum += weight * value;
-        *count += weight;
-    }
-    let [square, all] = parts
-        .iter()
-        .fold([0.0, 0.0], |[square, all], [sum, count]| {
-            [square + sum * sum / count.max(1.0), all + count]
-        });
-    (square / all.max(1.0)).sqrt()
-}
+/// So many times farther apart, knots follow nothing in step with the period.
+const FARTHER: f64 = 4.0;
 
 /// Whether what a spline leaves of an angle, radians, is such motion, by the radius less 1.
-pub(crate) fn is_in_step(angle: &[f64], left: &[f64], radius: &[f64], weight: &[f64]) -> bool {
-    let along = repeated(angle, left.iter().copied(), weight);
-    along > LARGE && along > TIMES * repeated(angle, radius.iter().copied(), weight)
+fn is_in_step(angle: &[f64], left: &[f64], radius: &[f64], weight: &[f64]) -> bool {
+    let all: f64 = weight.iter().sum();
+    let rms = |values: &[f64]| (repeated(angle, values, weight, PARTS) / all.max(1.0)).sqrt();
+    let along = rms(left);
+    along > LARGE && along > TIMES * rms(radius)
+}
+
+/// The knot spacing for an angle (radians) that no reference shows; that of all its motion, where that is in step with the scale.
+pub(crate) fn spacing(angle: &[f64], radius: &[f64], weight: &[f64], per: Option<u32>) -> Spacing {
+    let told = knots::spacing(angle, weight, per, Told::WhereItTravels);
+    let smooth = Spline::new(angle.len(), FARTHER * told.motion, weight);
+    let smooth = smooth.values(&smooth.fit(angle, weight));
+    let left: Vec<f64> = angle.iter().zip(smooth).map(|(a, s)| a - s).collect();
+    if !is_in_step(angle, &left, radius, weight) {
+        return told;
+    }
+    let followed = knots::spacing(angle, weight, per, Told::Not).followed;
+    Spacing {
+        followed,
+        motion: followed,
+    }
 }

@@ -8,6 +8,7 @@ use std::f64::consts::TAU;
 use std::ops::Range;
 
 use crate::motion::spline::Spline;
+use crate::numerics::ends::span;
 use crate::numerics::lines::{median, spectrum, strongest, window};
 
 /// Finest knot spacing, in samples.
@@ -34,7 +35,7 @@ const FARTHER: f64 = 1.5;
 
 /// Scale periods of travel from which on what repeats with the period can be told from motion.
 const REPEATS: f64 = 4.0;
-/// And periods from one end to the other: within one, the angle itself is a function of its place in the period.
+/// And periods from one end of its way to the other: within one, the angle itself is a function of its place in the period.
 const APART: f64 = 2.0;
 
 /// Knot spacings, in samples.
@@ -67,9 +68,10 @@ pub(crate) fn spacing(
     told: Told,
 ) -> Spacing {
     let n = angle.len();
+    let trembles = span(angle.iter().copied()) < APART * TAU;
     let told = match told {
         Told::ByReference => true,
-        Told::WhereItTravels => travelled(angle) >= REPEATS && span(angle) >= APART,
+        Told::WhereItTravels => travelled(angle) >= REPEATS && !trembles,
         Told::Not => false,
     };
     let stretches: Vec<Stretch> = stretches(n)
@@ -101,7 +103,6 @@ pub(crate) fn spacing(
     let (mut best, mut left) = ((f64::MAX, spacing), f64::MAX);
     let mut worse = 0;
     // Of what trembles about one place coarse splines explain nothing.
-    let trembles = span(angle) < APART;
     while spacing >= FINEST && (worse <= PATIENCE || trembles && left > SMALL * SMALL) {
         let (now, square) = score(spacing);
         worse += 1;
@@ -200,14 +201,6 @@ fn order_alone(stretches: &[Stretch], finest: f64) -> Option<f64> {
 fn closer(n: f64, spacing: f64) -> f64 {
     const MARGIN: f64 = 1.25;
     (MARGIN * (n * n.ln() / 8.0 / spacing).powf(0.125)).max(CLOSER)
-}
-
-/// Scale periods from one end of an angle's way to the other.
-fn span(angle: &[f64]) -> f64 {
-    let ends = angle.iter().fold([f64::MAX, f64::MIN], |[low, high], a| {
-        [low.min(*a), high.max(*a)]
-    });
-    (ends[1] - ends[0]) / TAU
 }
 
 /// Scale periods of an angle's way there and back, but for what moves it by less than an eighth of one.

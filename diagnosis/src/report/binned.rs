@@ -168,11 +168,7 @@ impl Seen<'_> {
     pub(super) fn plot(&self, title: &str, against: Against, along: Along) -> Option<Plot> {
         let context = self.context;
         let (values, ends) = against.values(context)?;
-        let ends = ends.unwrap_or_else(|| {
-            let start = [f64::MAX, f64::MIN];
-            let fold = |[a, b]: [f64; 2], v: &f64| [a.min(*v), b.max(*v)];
-            values.iter().fold(start, fold)
-        });
+        let ends = ends.unwrap_or_else(|| crate::numerics::ends::ends(values.iter().copied()));
         let count = match against {
             // A code is not divided.
             Against::Code(..) => BINS.min(ends[1] as usize).max(1),

@@ -7,6 +7,7 @@ use nonius_plot::{Axis, Look, Mark, Plot, Series};
 use nonius_quantity::{Unit, prefixed};
 
 use crate::context::Context;
+use crate::numerics::ends::span;
 
 /// Points of a spectrum; of several lines at a point, the highest is shown.
 const POINTS: usize = 700;
@@ -105,9 +106,7 @@ impl Signal<'_> {
     ) -> Option<Plot> {
         let context = self.context;
         let alpha = &context.alpha;
-        let start = [f64::MAX, f64::MIN];
-        let [low, high] = alpha.iter().fold(start, |[a, b], v| [a.min(*v), b.max(*v)]);
-        let travelled = ((high - low) / TAU).floor() as usize;
+        let travelled = (span(alpha.iter().copied()) / TAU).floor() as usize;
         // A revolution closes upon itself; else as far as the scale was moved.
         let revolution = context.periods_per_revolution.map(|n| n as usize);
         let periods = revolution

@@ -6,6 +6,7 @@ use nonius_fourier::Complex;
 use nonius_quantity::{Quantity, Unit};
 
 use crate::context::Context;
+use crate::numerics::ends::span;
 use crate::numerics::lines::median;
 use crate::numerics::statistics::after_trials;
 use crate::select::score::SHOWN;
@@ -101,14 +102,9 @@ fn kolmogorov(x: f64) -> f64 {
 
 /// A code of the ADC, in amplitudes: that of the coarser channel.
 fn code(context: &Context) -> f64 {
-    let span = |values: &mut dyn Iterator<Item = f64>| {
-        let start = (f64::MAX, f64::MIN);
-        let (low, high) = values.fold(start, |(a, b), v| (a.min(v), b.max(v)));
-        high - low
-    };
     let of = |(raw, codes): (&Vec<f64>, &Vec<i64>)| {
-        let codes = span(&mut codes.iter().map(|c| *c as f64));
-        span(&mut raw.iter().copied()) / codes.max(1.0)
+        let codes = span(codes.iter().map(|c| *c as f64));
+        span(raw.iter().copied()) / codes.max(1.0)
     };
     let channels = context.raw.iter().zip(&context.codes).map(of);
     channels.fold(0.0, f64::max) / context.ellipse.amplitude()

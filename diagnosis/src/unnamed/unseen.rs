@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use nonius_quantity::digits;
 use nonius_recording::AdcSource;
 
+use crate::causes::revolution::turns;
 use crate::causes::speed_varies;
 use crate::context::Context;
 
@@ -65,9 +66,7 @@ pub fn unseen(context: &Context) -> Vec<String> {
             "without periods_per_revolution, runout, contamination and cogging are not looked for; give it if the axis turns",
         ),
         Some(phi) => {
-            let start = [f64::MAX, f64::MIN];
-            let [low, high] = phi.iter().fold(start, |[a, b], p| [a.min(*p), b.max(*p)]);
-            if (high - low) / TAU < REPEATS {
+            if turns(phi) < REPEATS {
                 tell(
                     "within less than two revolutions, what repeats with the revolution and what changes with time are the same; turn further",
                 );

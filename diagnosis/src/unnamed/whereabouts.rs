@@ -9,6 +9,7 @@ use nonius_quantity::{Unit, before_after, digits, periods_per_second, times};
 
 use crate::causes::cause::Domain;
 use crate::context::Context;
+use crate::numerics::repeated::repeated;
 
 /// Waves of the angle that an error may have in a bin of time or speed: the mean, and two orders.
 const WAVES: usize = 5;
@@ -66,7 +67,6 @@ impl Left<'_> {
     fn order(&self, angle: &[f64], top: usize, in_channels: bool) -> Place {
         let places = (8 * top).next_power_of_two();
         let mut sums = vec![Complex::new(0.0, 0.0); places];
-        let mut unturned = sums.clone();
         let mut counts = vec![0.0; places];
         let mut noise = 0.0;
         for (k, angle) in angle.iter().enumerate() {
@@ -78,9 +78,7 @@ impl Left<'_> {
             } else {
                 Complex::new(1.0, 0.0)
             };
-            let value = weight * Complex::new(self.radial[k], self.tangential[k]);
-            unturned[place] += value;
-            let value = turn * value;
+            let value = weight * turn * Complex::new(self.radial[k], self.tangential[k]);
             sums[place] += value;
             counts[place] += weight;
             noise += value.norm_sqr();
@@ -102,16 +100,13 @@ impl Left<'_> {
             Some(order) => format!(", mostly {} per revolution", times(order)),
             None => String::new(),
         };
-        let filled = || unturned.iter().zip(&counts).filter(|(_, n)| **n > 0.0);
-        let share = filled().count() as f64 / total;
+        let weight = &self.context.weight;
+        let share = counts.iter().filter(|n| **n > 0.0).count() as f64 / total;
         // What noise alone makes of means, taken off.
-        let row = |part: fn(&Complex<f64>) -> f64, values: &[f64]| -> f64 {
-            let square = filled().map(|(sum, n)| part(sum).powi(2) / n).sum::<f64>();
-            let noise = values.iter().zip(&self.context.weight);
-            let noise = noise.map(|(v, w)| w * v * v).sum::<f64>();
-            (square - share * noise).max(0.0)
-        };
-        let rows = [row(|s| s.re, self.radial), row(|s| s.im, self.tangential)];
+        let rows = [self.radial, self.tangential].map(|values| {
+            let noise = values.iter().zip(weight).map(|(v, w)| w * v * v);
+            (repeated(angle, values, weight, places) - share * noise.sum::<f64>()).max(0.0)
+        });
         Place {
             rms: (square > 0.0).then(|| (square / 2.0).sqrt()),
             along: Some(rows[1] / (rows[0] + rows[1]).max(f64::MIN_POSITIVE)),

@@ -23,7 +23,7 @@ struct Instrument {
     error: fn(alpha: f64) -> [f64; 2],
     /// Of the amplitude.
     noise: f64,
-    /// Of the whole range of the ADC, which is a fourth more than the signals have.
+    /// Of the ADC, whose range is about a fourth more than the signals have.
     bits: i32,
     /// What becomes of the codes of cos and sin.
     damage: fn(k: usize, codes: [i64; 2]) -> [i64; 2],
@@ -217,13 +217,13 @@ fn a_mirror_within_a_period() {
 /// none of a sensor does. The bend of the channels is what its radius shows.
 #[test]
 fn a_step_motor_bends_no_sensor() {
-    let bend = 0.004;
+    const BEND: f64 = 0.004;
     let stepping = Instrument {
         axis: |t| {
             let x = 12.0 * TAU * (t / LENGTH) * (0.6 + 0.4 * t / LENGTH);
             x - 0.35 * x.sin()
         },
-        error: |alpha| [0.0, 0.004 * alpha.sin().powi(2)],
+        error: |alpha| [0.0, BEND * alpha.sin().powi(2)],
         noise: 1.5e-3,
         ..PLAIN
     };
@@ -232,7 +232,7 @@ fn a_step_motor_bends_no_sensor() {
         let left = &found.unexplained.signature;
         assert_eq!(names(&found), ["even_nonlinearity"], "{seed}: {left}");
         assert!(!found.unexplained.significant, "{seed}: {left}");
-        crate::harness::near(&found, "k_sin", bend);
+        crate::harness::near(&found, "k_sin", BEND);
     }
 }
 
