@@ -9,6 +9,7 @@ mod harmonics;
 mod keywords;
 mod lengths;
 mod limits;
+mod naming;
 mod poles;
 mod promised;
 mod ranges;
@@ -134,7 +135,7 @@ impl Design {
         let skew = skew::settle(spec, &budget, &mut structure, &constants);
         let harmonics = harmonics::settle(spec, &mut budget, &mut structure, &constants);
         let graph = record(&structure, &constants, chip_kernel)?;
-        check::apart(&spec.name, &graph)?;
+        naming::apart(&spec.name, &graph)?;
         check::used(spec.chip.multipliers, &graph)?;
         Ok(Self {
             spec: spec.clone(),
