@@ -53,8 +53,8 @@ pub fn verdict(csv: &str) -> Result<Verdict, String> {
             .findings
             .into_iter()
             .map(|f| Named {
-                cause: f.cause,
-                confounded_with: f.confounded_with,
+                cause: f.cause.to_string(),
+                confounded_with: f.confounded_with.iter().map(|c| c.to_string()).collect(),
                 parameters: f
                     .parameters
                     .into_iter()

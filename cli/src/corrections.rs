@@ -6,7 +6,7 @@ mod outcome;
 use std::f64::consts::TAU;
 
 use anyhow::{Context, Result};
-use nonius_diagnosis::{Chip, Diagnosis};
+use nonius_diagnosis::{Cause, Chip, Diagnosis};
 use nonius_model::design::{Design, DesignError};
 use nonius_model::spec::Spec;
 use nonius_quantity::{Quantity, Unit, agree};
@@ -82,15 +82,15 @@ pub(crate) fn without_design(found: &Diagnosis, why: &anyhow::Error) -> Outcome 
 }
 
 /// The findings of these causes.
-fn of(found: &Diagnosis, causes: &[&str]) -> Vec<usize> {
+fn of(found: &Diagnosis, causes: &[Cause]) -> Vec<usize> {
     let all = found.findings.iter().enumerate();
-    let named = all.filter(|(_, f)| causes.contains(&f.cause.as_str()));
+    let named = all.filter(|(_, f)| causes.contains(&f.cause));
     named.map(|(k, _)| k).collect()
 }
 
 /// A drift is followed by the calibration on line, where there is one.
 fn followed(text: &str, found: &Diagnosis) -> Result<Vec<Outcome>> {
-    let drifts = of(found, &["offset_drift", "gain_drift"]);
+    let drifts = of(found, &[Cause::OffsetDrift, Cause::GainDrift]);
     let calibration = Spec::from_toml(text, "design.toml")?.calibration;
     if drifts.is_empty() || calibration.is_on() {
         return Ok(vec![]);
@@ -101,7 +101,7 @@ fn followed(text: &str, found: &Diagnosis) -> Result<Vec<Outcome>> {
 
 /// The delay of the sine as it was measured: that of the raw signals, so it takes the place of one that the design had.
 fn correct_skew(text: &str, found: &Diagnosis) -> Result<(String, Vec<Outcome>)> {
-    let skews = of(found, &["channel_skew"]);
+    let skews = of(found, &[Cause::ChannelSkew]);
     let delay = |&k: &usize| found.findings[k].parameter("delay_s");
     let delays: Vec<f64> = skews.iter().filter_map(delay).collect();
     if delays.is_empty() {

@@ -5,7 +5,7 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use nonius_diagnosis::{Diagnosis, Finding, diagnose, plots};
+use nonius_diagnosis::{Cause, Diagnosis, Finding, diagnose, plots};
 use nonius_recording::{Overrides, Recording};
 
 const PAGE: &str = "diagnosed-recordings";
@@ -190,13 +190,16 @@ fn tables() -> Option<String> {
                 .parameter("order")
                 .map(|n| format!(" {n}"))
                 .unwrap_or_default();
-            let timeless = ["saturation", "adc_nonlinearity", "glitches", "stuck_bit"];
-            let angle = f.cause.ends_with("nonlinearity") || f.cause == "spatial_harmonic";
-            assert!(
-                angle || timeless.contains(&f.cause.as_str()),
-                "{unit}: {}",
-                f.cause
-            );
+            let timeless = [
+                Cause::EvenNonlinearity,
+                Cause::OddNonlinearity,
+                Cause::SpatialHarmonic,
+                Cause::Saturation,
+                Cause::AdcNonlinearity,
+                Cause::Glitches,
+                Cause::StuckBit,
+            ];
+            assert!(timeless.contains(&f.cause), "{unit}: {}", f.cause);
             let snr = f.gain.detection_snr.map(|snr| format!(" ({snr:.0})"));
             format!("`{}`{order}{}", f.cause, snr.unwrap_or_default())
         };
@@ -221,7 +224,8 @@ fn tables() -> Option<String> {
 fn known(name: &str, found: &Diagnosis) {
     let hum = found.findings.iter().any(|f| {
         let hertz = f.parameter("frequency_hz").unwrap_or(0.0);
-        (f.cause == "interference" || f.cause == "amplitude_ripple") && (hertz - 256.0).abs() < 3.0
+        [Cause::Interference, Cause::AmplitudeRipple].contains(&f.cause)
+            && (hertz - 256.0).abs() < 3.0
     });
     let told = found.unexplained.signature.contains("a fixed frequency");
     assert!(hum || told, "{name}: the line near 256 Hz");

@@ -81,7 +81,7 @@ fn run(recording: &Recording) -> Run {
     let found = diagnose(recording).expect("an ellipse");
     let seconds = start.elapsed().as_secs_f64();
     let spent = processor_seconds().zip(before);
-    let mut names: Vec<String> = found.findings.iter().map(|f| f.cause.clone()).collect();
+    let mut names: Vec<String> = found.findings.iter().map(|f| f.cause.to_string()).collect();
     if found.unexplained.significant {
         names.push("unexplained".into());
     }

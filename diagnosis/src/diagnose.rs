@@ -13,15 +13,14 @@ use crate::doubt::codes;
 use crate::doubt::curves;
 use crate::doubt::steps;
 use crate::drifts::channels::Channels;
-use crate::finding::Finding;
 use crate::finding::units;
+use crate::finding::{Cause, Finding};
 use crate::model::System;
 use crate::model::exact;
 use crate::motion::calm;
 use crate::noise;
 use crate::noise::flicker::{self, Flicker};
 use crate::numerics::statistics;
-use crate::select::contender::is_drift;
 use crate::select::rounds::Rounds;
 use crate::select::score::KINDS;
 use crate::select::select;
@@ -135,10 +134,10 @@ pub(crate) fn whole(
     // A cause that is slow looks like flicker noise before it is known: names that explain it all are preferred.
     let context = repaired.context()?;
     let (other, _) = search(context, checked, repaired, false);
-    let known = |name: &str| found.findings.iter().any(|f| f.cause == name);
-    let more: Vec<&Finding> = other.findings.iter().filter(|f| !known(&f.cause)).collect();
+    let known = |name: Cause| found.findings.iter().any(|f| f.cause == name);
+    let more: Vec<&Finding> = other.findings.iter().filter(|f| !known(f.cause)).collect();
     let numbers: usize = more.iter().map(|f| f.parameters.len()).sum();
-    let drifts = more.iter().all(|f| is_drift(&f.cause));
+    let drifts = more.iter().all(|f| f.cause.is_drift());
     if numbers == 0 || drifts && noise.is_instead_of_a_change() {
         return Ok(found);
     }

@@ -28,7 +28,7 @@ mod unnamed;
 
 pub use context::{Context, ContextError};
 pub use diagnose::{Diagnosis, Extended, diagnose};
-pub use finding::{Chip, Effect, Finding, Gain, OTHER_ORDER, Parameter, Place};
+pub use finding::{Cause, Chip, Effect, Finding, Gain, OTHER_ORDER, Parameter, Place};
 pub use report::{plots, report};
 pub use simulation::motion::motion_csv;
 pub use simulation::sensor::{MOTION, sensor_toml};

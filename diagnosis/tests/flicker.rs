@@ -5,7 +5,7 @@
 
 use std::f64::consts::TAU;
 
-use nonius_diagnosis::{Diagnosis, diagnose};
+use nonius_diagnosis::{Cause, Diagnosis, diagnose};
 use nonius_kept::every;
 use nonius_recording::{Overrides, Recording};
 use rand::{SeedableRng, rngs::StdRng};
@@ -107,8 +107,8 @@ fn diagnosed_of(
         .expect("signals that draw an ellipse")
 }
 
-fn names(found: &Diagnosis) -> Vec<&str> {
-    found.findings.iter().map(|f| f.cause.as_str()).collect()
+fn names(found: &Diagnosis) -> Vec<Cause> {
+    found.findings.iter().map(|f| f.cause).collect()
 }
 
 /// Every second seed; in the long form all.
@@ -116,7 +116,7 @@ fn names(found: &Diagnosis) -> Vec<&str> {
 fn it_is_found() {
     for seed in every(2, 0..4) {
         let found = diagnosed(&Colour::Flicker(0.0005), seed, |_| 0.0, |_| 0.0);
-        assert_eq!(names(&found), ["flicker_noise"], "seed {seed}");
+        assert_eq!(names(&found), [Cause::FlickerNoise], "seed {seed}");
         assert!(found.findings[0].p_value < 1e-3);
         // A spectrum tells half of what samples do, and its other lines as much as those that were fitted.
         let gain = found.findings[0].gain;
@@ -147,7 +147,7 @@ fn weak_noise_is_told_from_steps() {
         all += 1;
         let found = diagnosed(&Colour::Flicker(0.00004), seed, |_| 0.0, |_| 0.0);
         for name in names(&found) {
-            if name == "flicker_noise" {
+            if name == Cause::FlickerNoise {
                 known += 1;
             } else {
                 other += 1;
@@ -200,7 +200,7 @@ fn it_is_not_claimed_of_anything_else() {
         for (what, colour, motion, drift) in cases {
             let found = diagnosed(&colour, seed, motion, drift);
             assert!(
-                !names(&found).contains(&"flicker_noise"),
+                !names(&found).contains(&Cause::FlickerNoise),
                 "{what}, seed {seed}: {:?}",
                 found.findings
             );
@@ -212,7 +212,7 @@ fn it_is_not_claimed_of_anything_else() {
 fn offsets_that_jump_between_two_levels_are_not_flicker_noise() {
     for seed in 0..3 {
         let found = diagnosed(&Colour::Telegraph(0.0004), seed, |_| 0.0, |_| 0.0);
-        assert_eq!(names(&found), Vec::<&str>::new(), "seed {seed}");
+        assert_eq!(names(&found), [], "seed {seed}");
         assert!(found.unexplained.significant, "seed {seed}");
     }
 }
@@ -229,7 +229,7 @@ fn steps_are_no_drift() {
     };
     for seed in 0..3 {
         let found = diagnosed(&Colour::White, seed, |_| 0.0, steps);
-        assert_eq!(names(&found), Vec::<&str>::new(), "seed {seed}");
+        assert_eq!(names(&found), [], "seed {seed}");
         assert!(found.unexplained.significant, "seed {seed}");
     }
 }
@@ -240,7 +240,7 @@ fn steps_are_no_drift() {
 fn a_long_recording_of_white_noise_has_none() {
     let still: OfTime = |_| 0.0;
     let found = diagnosed_of(LONG, &Colour::White, 13, still, still);
-    assert_eq!(names(&found), Vec::<&str>::new());
+    assert_eq!(names(&found), []);
     assert!(!found.unexplained.significant);
 }
 
@@ -250,5 +250,5 @@ fn weak_noise_is_found_in_a_long_recording() {
     let still: OfTime = |_| 0.0;
     // More samples than are looked at one by one.
     let found = diagnosed_of(90_000, &Colour::Flicker(0.00008), 1, still, still);
-    assert_eq!(names(&found), ["flicker_noise"]);
+    assert_eq!(names(&found), [Cause::FlickerNoise]);
 }

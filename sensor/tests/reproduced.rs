@@ -63,10 +63,10 @@ fn with(causes: &[&str]) -> Sensor {
 /// What a diagnosis says of a recording, simulated along the motion that it found, with other noise, and to and fro; and its noise.
 fn replayed(recording: &Recording, causes: &[&str]) -> ([Samples; 2], f64) {
     let found = diagnose(recording).expect("an ellipse");
-    let names: Vec<&str> = found.findings.iter().map(|f| f.cause.as_str()).collect();
+    let names: Vec<String> = found.findings.iter().map(|f| f.cause.to_string()).collect();
     assert_eq!(names.len(), causes.len(), "{names:?}");
     for name in names {
-        assert!(causes.iter().any(|c| c.contains(name)), "{name}");
+        assert!(causes.iter().any(|c| c.contains(&name)), "{name}");
     }
     let emitted = sensor_toml(&found, recording);
     let sensor = Sensor::from_toml(&emitted, "sensor.toml").expect("what was emitted");

@@ -57,7 +57,7 @@ fn round_trip_beside(cause: &str, reference: bool) {
         let mut recording = recording(&sensor, sensor.simulate(&motion, 5 + round));
         recording.reference_rad = reference.then_some(motion.alpha);
         let found = diagnose(&recording).expect("an ellipse");
-        let names: Vec<&str> = found.findings.iter().map(|f| f.cause.as_str()).collect();
+        let names: Vec<String> = found.findings.iter().map(|f| f.cause.to_string()).collect();
         let expected: toml::Table = cause.parse().expect("TOML");
         let name = expected["name"].as_str().expect("a name");
         assert_eq!(names, [name], "{}", found.unexplained.signature);

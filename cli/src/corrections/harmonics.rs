@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use nonius_diagnosis::{Diagnosis, Finding, OTHER_ORDER};
+use nonius_diagnosis::{Cause, Diagnosis, Finding, OTHER_ORDER};
 use nonius_model::design::ORDER_MAX;
 use nonius_model::spec::Harmonic;
 use nonius_quantity::ordinal;
@@ -33,11 +33,11 @@ pub(super) fn bend(finding: &Finding, beta: f64) -> Option<f64> {
         return None;
     }
     let largest = |a: Option<f64>, b: Option<f64>| Some(a?.abs().max(b?.abs()));
-    match finding.cause.as_str() {
+    match finding.cause {
         // u² = (1 + T2)/2 and u³ = (3 u + T3)/4.
-        "even_nonlinearity" => Some(largest(of("k_cos"), of("k_sin"))? / 2.0),
-        "odd_nonlinearity" => Some(largest(of("k_cos"), of("k_sin"))? / 4.0),
-        "spatial_harmonic" => {
+        Cause::EvenNonlinearity => Some(largest(of("k_cos"), of("k_sin"))? / 2.0),
+        Cause::OddNonlinearity => Some(largest(of("k_cos"), of("k_sin"))? / 4.0),
+        Cause::SpatialHarmonic => {
             let order = of("order")?;
             if order != 2.0 && order != 3.0 {
                 return None;
@@ -66,26 +66,26 @@ fn sine_phase(order: f64, beta: f64) -> f64 {
 fn waves(finding: &Finding, beta: f64, whole_revolution: bool) -> Vec<(u32, Wave, Wave)> {
     let of = |name: &str| finding.parameter(name).unwrap_or(0.0);
     let order = of("order");
-    match finding.cause.as_str() {
-        "spatial_harmonic" => vec![(
+    match finding.cause {
+        Cause::SpatialHarmonic => vec![(
             order as u32,
             (of("amplitude_cos"), of("phase_cos")),
             (of("amplitude_sin"), of("phase_sin")),
         )],
         // cos² = (1 + cos 2)/2, sin² = (1 − cos 2)/2.
-        "even_nonlinearity" => vec![(
+        Cause::EvenNonlinearity => vec![(
             2,
             (of("k_cos") / 2.0, 0.0),
             (-of("k_sin") / 2.0, sine_phase(2.0, beta)),
         )],
         // cos³ = (3 cos + cos 3)/4, sin³ = (3 sin − sin 3)/4.
-        "odd_nonlinearity" => vec![(
+        Cause::OddNonlinearity => vec![(
             3,
             (of("k_cos") / 4.0, 0.0),
             (of("k_sin") / 4.0, sine_phase(3.0, beta)),
         )],
         // The angle is off by ε = amplitude · cos(order α + phase): −ε sin α and ε cos α.
-        "graduation_error" if whole_revolution && order >= 3.0 => {
+        Cause::GraduationError if whole_revolution && order >= 3.0 => {
             let (half, phase) = (of("amplitude") / 2.0, of("phase"));
             [(1.0, FRAC_PI_2), (-1.0, -FRAC_PI_2)]
                 .map(|(beside, turned)| {

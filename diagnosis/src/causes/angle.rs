@@ -7,7 +7,7 @@ use nonius_quantity::ordinal;
 
 use crate::causes::cause::{Adds, Candidate, Domain, Exact, Sign, each, polar};
 use crate::context::Context;
-use crate::finding::{Chip, Parameter};
+use crate::finding::{Cause, Chip, Parameter};
 use crate::shapes::block::Block;
 use crate::shapes::library::{Library, Shape, Use};
 use crate::shapes::trig::{Trig, normalised, raw};
@@ -120,8 +120,8 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
     };
     let list = &mut catalogue.candidates;
     list.extend([
-        of("even_nonlinearity", powers(2), "y + k·y²"),
-        of("odd_nonlinearity", powers(3), "y + k·y³"),
+        of(Cause::EvenNonlinearity, powers(2), "y + k·y²"),
+        of(Cause::OddNonlinearity, powers(3), "y + k·y³"),
     ]);
     for order in 2..=7 {
         let adds = waves(order);
@@ -150,7 +150,7 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
                     p[3].brief()
                 )
             }),
-            ..Candidate::new("spatial_harmonic", Domain::Angle, shapes)
+            ..Candidate::new(Cause::SpatialHarmonic, Domain::Angle, shapes)
         });
     }
     for threshold in THRESHOLDS {
@@ -208,7 +208,7 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
                         loses(&p[1], where_ == EACH)
                     )
                 }),
-                ..Candidate::new("saturation", Domain::Angle, of(&rails))
+                ..Candidate::new(Cause::Saturation, Domain::Angle, of(&rails))
             });
         }
     }

@@ -4,7 +4,7 @@ use std::rc::Rc;
 
 use nonius_fourier::Complex;
 
-use crate::finding::{Chip, Parameter};
+use crate::finding::{Cause, Chip, Parameter};
 use crate::shapes::library::{Library, Shape};
 use crate::shapes::trig::Trig;
 
@@ -78,7 +78,7 @@ pub(crate) enum Sign {
 #[derive(Clone)]
 pub(crate) struct Candidate {
     /// Name of the contract.
-    pub name: &'static str,
+    pub name: Cause,
     /// Domain.
     pub domain: Domain,
     /// How many choices like this one were tried.
@@ -119,7 +119,7 @@ impl Candidate {
 
     /// One choice, of amounts that can be anything, of shapes that are what they are; the chip cannot correct it, and
     /// nothing is said of it yet.
-    pub(crate) fn new(name: &'static str, domain: Domain, shapes: Vec<Shape>) -> Self {
+    pub(crate) fn new(name: Cause, domain: Domain, shapes: Vec<Shape>) -> Self {
         Self {
             name,
             domain,

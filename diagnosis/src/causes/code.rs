@@ -5,7 +5,7 @@ use std::rc::Rc;
 use super::Catalogue;
 use crate::causes::cause::{Candidate, Domain};
 use crate::context::Context;
-use crate::finding::Parameter;
+use crate::finding::{Cause, Parameter};
 use crate::shapes::block::Block;
 use crate::shapes::library::Shape;
 
@@ -70,7 +70,7 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
                     p[2].brief()
                 )
             }),
-            ..Candidate::new("adc_nonlinearity", Domain::Code, shapes)
+            ..Candidate::new(Cause::AdcNonlinearity, Domain::Code, shapes)
         });
     }
 }

@@ -3,9 +3,9 @@
 use std::rc::Rc;
 
 use super::speed::{ACCELERATION, SIGN, SOFT, Speed, cause};
-use super::{ACCELERATION_GAIN, HYSTERESIS};
 use crate::causes::cause::Candidate;
 use crate::context::Context;
+use crate::finding::Cause;
 use crate::shapes::trig::{Trig, channel, normalised};
 
 fn reverses(context: &Context) -> bool {
@@ -60,7 +60,7 @@ pub(super) fn hysteresis(context: &Context, speed: &Speed) -> Vec<Candidate> {
                 )
             }),
             ..cause(
-                HYSTERESIS,
+                Cause::Hysteresis,
                 shapes.into(),
                 &["offset_cos", "offset_sin"],
                 "amplitude",
@@ -78,5 +78,5 @@ pub(super) fn tilt(speed: &Speed) -> Candidate {
         speed.by.shape(ACCELERATION, &own)
     };
     let shapes = [0, 1].map(gain).into();
-    cause(ACCELERATION_GAIN, shapes, &["gain"], "1")
+    cause(Cause::AccelerationGain, shapes, &["gain"], "1")
 }

@@ -7,10 +7,10 @@ use std::rc::Rc;
 use nonius_fourier::Complex;
 
 use super::speed::follows;
-use super::{AC_COUPLING, Catalogue, in_time};
+use super::{Catalogue, in_time};
 use crate::causes::cause::{Candidate, Domain, Estimate, Exact, Sign};
 use crate::context::Context;
-use crate::finding::Parameter;
+use crate::finding::{Cause, Parameter};
 use crate::shapes::block::Block;
 use crate::shapes::library::{Library, Shape};
 
@@ -162,7 +162,7 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
                     p[0].brief()
                 )
             }),
-            ..Candidate::new(AC_COUPLING, Domain::Speed, shapes)
+            ..Candidate::new(Cause::AcCoupling, Domain::Speed, shapes)
         });
         // At constant speed nothing else of a high pass is seen.
         catalogue.candidates.push(Candidate {
@@ -182,7 +182,7 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
                     p[0].brief()
                 )
             }),
-            ..Candidate::new(AC_COUPLING, Domain::Time, leaking)
+            ..Candidate::new(Cause::AcCoupling, Domain::Time, leaking)
         });
         least = corner;
         corner *= 3.0;

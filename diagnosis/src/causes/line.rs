@@ -3,11 +3,10 @@
 use std::f64::consts::TAU;
 use std::rc::Rc;
 
-use super::INTERFERENCE;
 use super::frequencies::{self, Line, Search};
 use crate::causes::cause::{Candidate, Domain, Estimate, Exact, Make, Reads, polar};
 use crate::context::Context;
-use crate::finding::{Chip, Parameter};
+use crate::finding::{Cause, Chip, Parameter};
 use crate::model::{Residual, Weighed};
 use crate::numerics::lines::{spectrum, two_spectra};
 use crate::shapes::block::Block;
@@ -72,7 +71,7 @@ impl Search<'_> {
     /// A line of that name with its functions; its frequency is known to a small part of one cycle per recording.
     fn candidate(
         &self,
-        name: &'static str,
+        name: Cause,
         domain: Domain,
         hertz: f64,
         make: Make,
@@ -117,7 +116,7 @@ impl Search<'_> {
                         p[3].brief()
                     )
                 }),
-                ..self.candidate(INTERFERENCE, Domain::Line, hertz, make, library)
+                ..self.candidate(Cause::Interference, Domain::Line, hertz, make, library)
             }
         };
         reach.map(|harmonics| one(harmonics, library)).collect()
@@ -137,7 +136,7 @@ impl Search<'_> {
                     p[0].brief()
                 )
             }),
-            ..self.candidate("amplitude_ripple", Domain::Line, hertz, make, library)
+            ..self.candidate(Cause::AmplitudeRipple, Domain::Line, hertz, make, library)
         }
     }
 
@@ -160,14 +159,14 @@ impl Search<'_> {
                     p[1].brief()
                 )
             }),
-            ..self.candidate(super::VIBRATION, Domain::Motion, hertz, make, library)
+            ..self.candidate(Cause::Vibration, Domain::Motion, hertz, make, library)
         }
     }
 }
 
 /// Whether it is a line with its harmonics.
 pub(crate) fn has_harmonics(candidate: &Candidate) -> bool {
-    candidate.name == INTERFERENCE && candidate.shapes.len() > IN_CHANNELS
+    candidate.name == Cause::Interference && candidate.shapes.len() > IN_CHANNELS
 }
 
 /// Whether a line has become as slow as a drift where its frequency was fitted.

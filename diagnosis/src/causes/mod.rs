@@ -23,6 +23,7 @@ use std::collections::BTreeMap;
 
 use crate::causes::cause::{Candidate, Domain};
 use crate::context::Context;
+use crate::finding::Cause;
 use crate::model::{Residual, Weighed};
 use crate::shapes::block::Block;
 use crate::shapes::library::{Library, Place, Shape, Use};
@@ -37,35 +38,6 @@ pub(crate) use time::tells;
 
 /// Highest order of the scale period.
 pub(crate) const ORDERS: usize = 8;
-
-/// Offsets with the direction of motion.
-pub(crate) const HYSTERESIS: &str = "hysteresis";
-/// Real motion that goes with the revolution.
-pub(crate) const COGGING: &str = "cogging";
-/// A line that is added to the channels.
-pub(crate) const INTERFERENCE: &str = "interference";
-/// A channel that is sampled later.
-pub(crate) const CHANNEL_SKEW: &str = "channel_skew";
-/// A low pass in one channel.
-pub(crate) const BANDWIDTH_MISMATCH: &str = "bandwidth_mismatch";
-/// A low pass in both channels.
-pub(crate) const COMMON_BANDWIDTH: &str = "common_bandwidth";
-/// Real motion at a fixed frequency.
-pub(crate) const VIBRATION: &str = "vibration";
-
-/// Offsets that change slowly.
-pub(crate) const OFFSET_DRIFT: &str = "offset_drift";
-/// Gains that change slowly.
-pub(crate) const GAIN_DRIFT: &str = "gain_drift";
-
-/// Capacitors in the channels.
-pub(crate) const AC_COUPLING: &str = "ac_coupling";
-
-/// Errors of the graduation along a revolution.
-pub(crate) const GRADUATION_ERROR: &str = "graduation_error";
-
-/// A gain that follows the acceleration: no cause of the contract's list, so it is never a name.
-pub(crate) const ACCELERATION_GAIN: &str = "acceleration_gain";
 
 /// What does not depend on what is left of the recording: functions, causes, and generic bases.
 #[derive(Default)]
@@ -96,7 +68,7 @@ impl Catalogue {
         time::enter(context, &mut this);
         revolution::enter(context, &mut this);
         revolution::enter_apart(context, &mut this);
-        let mut so_far: BTreeMap<&str, usize> = BTreeMap::new();
+        let mut so_far: BTreeMap<Cause, usize> = BTreeMap::new();
         for candidate in &mut this.candidates {
             let count = so_far.entry(candidate.name).or_default();
             candidate.id = *count;
@@ -122,7 +94,7 @@ impl Catalogue {
     }
 
     /// The cause of a name that has a number among those of that name.
-    pub(crate) fn cause(&self, name: &str, id: usize) -> Option<&Candidate> {
+    pub(crate) fn cause(&self, name: Cause, id: usize) -> Option<&Candidate> {
         let mut all = self.candidates.iter();
         all.find(|c| c.name == name && c.id == id)
     }

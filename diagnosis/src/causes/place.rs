@@ -6,12 +6,11 @@ use std::rc::Rc;
 use nonius_fourier::Complex;
 use nonius_quantity::times;
 
-use super::COGGING;
 use super::mirror::unmirrored_order;
 use super::revolution::{harmonic, turns};
 use crate::causes::cause::{Candidate, Domain, Exact, Make, Sign, each};
 use crate::context::Context;
-use crate::finding::{Chip, Parameter};
+use crate::finding::{Cause, Chip, Parameter};
 use crate::model::{Residual, Weighed};
 use crate::numerics::lines::{cos_and_sin, median};
 use crate::numerics::solve::{Normal, without};
@@ -213,7 +212,7 @@ fn of_order(order: usize, (per, trials): (u32, f64), library: &mut Library) -> C
                 p[1].brief()
             )
         }),
-        ..Candidate::new(COGGING, Domain::Motion, shapes)
+        ..Candidate::new(Cause::Cogging, Domain::Motion, shapes)
     }
 }
 
@@ -284,7 +283,7 @@ fn contamination(phi: &[f64], residual: &Residual, library: &mut Library) -> Vec
                         p[1].brief()
                     )
                 }),
-                ..Candidate::new("contamination", Domain::Revolution, shapes)
+                ..Candidate::new(Cause::Contamination, Domain::Revolution, shapes)
             });
         }
     }

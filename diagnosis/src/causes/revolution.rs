@@ -5,10 +5,10 @@ use std::rc::Rc;
 
 use nonius_quantity::times;
 
-use super::{Catalogue, GRADUATION_ERROR};
+use super::Catalogue;
 use crate::causes::cause::{Candidate, Domain, polar};
 use crate::context::Context;
-use crate::finding::{Chip, Parameter};
+use crate::finding::{Cause, Chip, Parameter};
 use crate::numerics::ends::span;
 use crate::shapes::block::Block;
 use crate::shapes::generic::{BOTH, Modulation, Of, per_channel};
@@ -72,7 +72,7 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
                     p[1].brief()
                 )
             }),
-            ..Candidate::new("runout", Domain::Revolution, shapes)
+            ..Candidate::new(Cause::Runout, Domain::Revolution, shapes)
         });
     }
     let cogging = super::place::cogging_with_the_period(context, &mut catalogue.library);
@@ -98,7 +98,7 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
                         p[1].brief()
                     )
                 }),
-                ..Candidate::new(GRADUATION_ERROR, Domain::Revolution, shapes)
+                ..Candidate::new(Cause::GraduationError, Domain::Revolution, shapes)
             });
         }
     }

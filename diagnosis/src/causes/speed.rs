@@ -9,7 +9,7 @@ use super::lag::{falls, falls_behind, later, low_pass};
 use super::{Catalogue, Modulated, modulated};
 use crate::causes::cause::{Candidate, Domain, Exact, Sign, each};
 use crate::context::Context;
-use crate::finding::{Chip, Parameter};
+use crate::finding::{Cause, Chip, Parameter};
 use crate::shapes::block::Block;
 use crate::shapes::library::{Library, Shape, Use};
 use crate::shapes::trig::{Trig, channel, derivatives};
@@ -122,7 +122,7 @@ impl Speed {
 
 /// A cause of this domain, of which nothing but shapes and parameters is special.
 pub(super) fn cause(
-    name: &'static str,
+    name: Cause,
     shapes: Vec<Shape>,
     parameters: &'static [&'static str],
     unit: &'static str,
@@ -182,7 +182,7 @@ fn latency(speed: &Speed) -> Candidate {
     let shape = speed.by.shape(ODD, &angle).scaled(-speed.top);
     Candidate {
         evidence: Rc::new(|p| format!("both channels lag the reference by {}", p[0].brief())),
-        ..cause("latency", vec![shape], &["delay_s"], "s")
+        ..cause(Cause::Latency, vec![shape], &["delay_s"], "s")
     }
 }
 
@@ -205,7 +205,7 @@ fn late_bandwidths(speed: &Speed, library: &mut Library) -> Vec<Candidate> {
                     time_constant(&p[0])
                 )
             }),
-            ..cause(super::COMMON_BANDWIDTH, shapes, &["tau_s"], "s")
+            ..cause(Cause::CommonBandwidth, shapes, &["tau_s"], "s")
         }
     };
     speed.time_constants().map(one).collect()
@@ -236,7 +236,7 @@ fn skew(speed: &Speed, library: &mut Library) -> Candidate {
                 "the phase error grows in proportion to speed, as if {second} were sampled {delay} after {first}"
             )
         }),
-        ..cause(super::CHANNEL_SKEW, shapes, &["delay_s"], "s")
+        ..cause(Cause::ChannelSkew, shapes, &["delay_s"], "s")
     }
 }
 
@@ -261,7 +261,7 @@ fn mismatches(speed: &Speed, library: &mut Library) -> Vec<Candidate> {
                     time_constant(&p[0])
                 )
             }),
-            ..cause(super::BANDWIDTH_MISMATCH, shapes, names[which], "s")
+            ..cause(Cause::BandwidthMismatch, shapes, names[which], "s")
         }
     };
     let all = [0, 1]
@@ -294,7 +294,7 @@ fn common_bandwidth(speed: &Speed) -> Candidate {
             )
         }),
         ..cause(
-            super::COMMON_BANDWIDTH,
+            Cause::CommonBandwidth,
             vec![square.scaled(-0.5 * speed.top * speed.top)],
             &[],
             "s",
@@ -339,6 +339,6 @@ fn crosstalk(speed: &Speed, library: &mut Library) -> Candidate {
                 p[1].brief()
             )
         }),
-        ..cause("delayed_crosstalk", shapes, &[], "s")
+        ..cause(Cause::DelayedCrosstalk, shapes, &[], "s")
     }
 }

@@ -4,9 +4,9 @@
 
 use std::f64::consts::TAU;
 
-use super::INTERFERENCE;
 use crate::causes::cause::Candidate;
 use crate::context::Context;
+use crate::finding::Cause;
 use crate::model::Residual;
 use crate::numerics::lines::{pair_spectrum, window};
 
@@ -29,7 +29,7 @@ pub(crate) fn is_one_of_many(
     residual: &Residual,
     candidate: &Candidate,
 ) -> bool {
-    let line = candidate.name == INTERFERENCE;
+    let line = candidate.name == Cause::Interference;
     let Some(hertz) = candidate.inner().filter(|_| line) else {
         return false;
     };

@@ -2,10 +2,10 @@
 
 use std::rc::Rc;
 
-use super::{Catalogue, GAIN_DRIFT, Modulated, OFFSET_DRIFT, modulated};
+use super::{Catalogue, Modulated, modulated};
 use crate::causes::cause::{Candidate, Domain, Estimate};
 use crate::context::Context;
-use crate::finding::{Chip, Parameter};
+use crate::finding::{Cause, Chip, Parameter};
 use crate::numerics::polynomial::{DEGREE, legendre};
 use crate::shapes::library::Shape;
 use crate::shapes::trig::{Trig, channel, normalised};
@@ -89,9 +89,9 @@ pub(super) fn drift(
     all: Vec<Shape>,
 ) -> Candidate {
     let (name, what, of) = if gain {
-        (GAIN_DRIFT, "gains", "")
+        (Cause::GainDrift, "gains", "")
     } else {
-        (OFFSET_DRIFT, "offsets", " of the amplitude")
+        (Cause::OffsetDrift, "offsets", " of the amplitude")
     };
     Candidate {
         chip: Chip::Corrects,

@@ -9,7 +9,7 @@ use crate::checks::timebase::GAP;
 use crate::checks::turning::Turning;
 use crate::checks::{Checked, magnitudes, ninth, repeats};
 use crate::finding::units;
-use crate::finding::{Finding, Parameter, Place};
+use crate::finding::{Cause, Finding, Parameter, Place};
 use crate::numerics::correlate::sums;
 use crate::numerics::ends::ends;
 use crate::numerics::solve::{weights_of, without};
@@ -306,7 +306,7 @@ pub(crate) fn find(recording: &Recording, checked: &mut Checked) {
         found[0].0
     );
     let parameters = vec![Parameter::measured("share", share, error, "1"), largest];
-    let finding = Finding::digital("glitches", parameters, evidence);
+    let finding = Finding::digital(Cause::Glitches, parameters, evidence);
     let finding = finding.at(Place::Sample(found[0].0)).repairing(left_out);
     checked.findings.push(finding);
 }

@@ -2,7 +2,7 @@
 
 use nonius_quantity::{agree, counted};
 
-use crate::finding::{Finding, Parameter, Place};
+use crate::finding::{Cause, Finding, Parameter, Place};
 use crate::numerics::lines::median;
 
 /// Codes on either side that tell how often one is expected.
@@ -87,7 +87,7 @@ pub(crate) fn finding(name: &str, channel: usize, missing: &[i64]) -> Finding {
         Parameter::exact("missing_codes", count as f64, "codes"),
         Parameter::exact("first_code", missing[0] as f64, "LSB"),
     ];
-    Finding::digital("adc_nonlinearity", parameters, evidence).at(Place::Missing {
+    Finding::digital(Cause::AdcNonlinearity, parameters, evidence).at(Place::Missing {
         channel,
         code: missing[0],
     })

@@ -23,7 +23,7 @@ use nonius_calibration::Ellipse;
 use nonius_recording::{AdcSource, Recording};
 
 use crate::finding::units;
-use crate::finding::{Finding, Parameter, Place};
+use crate::finding::{Cause, Finding, Parameter, Place};
 
 /// What the checks found, and which samples do not count.
 pub(crate) struct Checked {
@@ -96,7 +96,7 @@ pub(crate) fn check(recording: &Recording, weight: Vec<f64>, time_base: TimeBase
             let channel = usize::from(name == CHANNELS[1]);
             let of_channel = |f: Finding| {
                 let largest = f.parameters.first().map_or(0.0, |p| p.value);
-                let step = if f.cause == "stuck_bit" {
+                let step = if f.cause == Cause::StuckBit {
                     2f64.powf(largest + 1.0)
                 } else {
                     largest
@@ -219,9 +219,9 @@ fn bits_and_steps(channel: &str, codes: &[i64], bits: u32) -> Vec<Finding> {
         let bit = step == 2 && lowest.len() == 1;
         found.push(Finding::digital(
             if bit {
-                "stuck_bit"
+                Cause::StuckBit
             } else {
-                "coarse_quantisation"
+                Cause::CoarseQuantisation
             },
             vec![if bit {
                 Parameter::exact("bit", 0.0, "1")
@@ -237,7 +237,7 @@ fn bits_and_steps(channel: &str, codes: &[i64], bits: u32) -> Vec<Finding> {
     }
     if let Some(stuck) = constant.iter().find(|b| !lowest.contains(b)) {
         found.push(Finding::digital(
-            "stuck_bit",
+            Cause::StuckBit,
             vec![Parameter::exact("bit", f64::from(*stuck), "1")],
             format!(
                 "bit {stuck} of the {channel} channel never changes while its codes sweep over {span}"

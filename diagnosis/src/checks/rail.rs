@@ -6,7 +6,7 @@ use nonius_quantity::{agree, counted};
 use nonius_recording::{Adc, Recording};
 
 use crate::checks::first;
-use crate::finding::{Finding, Parameter, Place};
+use crate::finding::{Cause, Finding, Parameter, Place};
 use crate::numerics::ends::{ends, span};
 
 /// So many times as often as each of the codes beside it, a rail's code comes: the top of a sine at most 3.2 times.
@@ -157,7 +157,7 @@ fn finding(rail: &Rail, adc: &Adc, offset: f64, amplitude: f64, left_out: usize)
         channel: rail.channel,
         code: rail.code,
     };
-    Finding::digital("saturation", parameters, evidence)
+    Finding::digital(Cause::Saturation, parameters, evidence)
         .at(place)
         .repairing(left_out)
 }

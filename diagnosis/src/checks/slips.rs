@@ -8,6 +8,7 @@ use crate::checks::repair::{Repaired, repair};
 use crate::checks::{self, Checked, TimeBase};
 use crate::context::ContextError;
 use crate::diagnose::{Diagnosis, whole};
+use crate::finding::Cause;
 use crate::motion::calm::Calm;
 
 /// Samples on either side of a place in which a slip that is not repaired shows.
@@ -19,12 +20,12 @@ const SIDES: [usize; 3] = [4, 16, 64];
 const WORTH: f64 = 32.0;
 const UP_TO: f64 = 16.0;
 /// Errors of the code or the angle that may look like slips.
-const STEEP: [&str; 5] = [
-    "adc_nonlinearity",
-    "spatial_harmonic",
-    "even_nonlinearity",
-    "odd_nonlinearity",
-    "saturation",
+const STEEP: [Cause; 5] = [
+    Cause::AdcNonlinearity,
+    Cause::SpatialHarmonic,
+    Cause::EvenNonlinearity,
+    Cause::OddNonlinearity,
+    Cause::Saturation,
 ];
 
 /// A diagnosis, and what it was made of.
@@ -99,8 +100,8 @@ impl Looked {
     }
 
     fn is_steep(&self) -> bool {
-        let mut causes = self.found.findings.iter().map(|f| f.cause.as_str());
-        causes.any(|cause| STEEP.contains(&cause))
+        let mut all = self.found.findings.iter();
+        all.any(|f| STEEP.contains(&f.cause))
     }
 }
 

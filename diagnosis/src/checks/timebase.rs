@@ -8,7 +8,7 @@ use nonius_recording::Recording;
 use crate::checks::jumps::jumps;
 use crate::checks::late::late;
 use crate::checks::{Checked, NINTH, TimeBase, ninth, repeats};
-use crate::finding::{Finding, Parameter, Place};
+use crate::finding::{Cause, Finding, Parameter, Place};
 
 /// Samples on either side whose slope tells how far the scale moves.
 const LINE: usize = 8;
@@ -194,7 +194,7 @@ pub(crate) fn repeated(recording: &Recording, checked: &mut Checked) {
         sample: first,
         inserted: !checked.extra.is_empty(),
     };
-    let finding = Finding::digital("repeated_samples", parameters, evidence);
+    let finding = Finding::digital(Cause::RepeatedSamples, parameters, evidence);
     checked.findings.push(finding.at(place).repairing(count));
 }
 
@@ -246,7 +246,7 @@ pub(crate) fn dropped(recording: &Recording, checked: &mut Checked, time_base: T
         sample: first,
         missing,
     };
-    let mut finding = Finding::digital("dropped_samples", parameters, evidence).at(place);
+    let mut finding = Finding::digital(Cause::DroppedSamples, parameters, evidence).at(place);
     // A long pause is no loss of samples that anything could bridge.
     if lost < n / 10 {
         checked.gaps = gaps;

@@ -11,7 +11,7 @@ use crate::causes::cause::Domain;
 use crate::causes::speed_varies;
 use crate::context::Context;
 use crate::doubt::{SLOW, gain_of, home};
-use crate::finding::Finding;
+use crate::finding::{Cause, Finding};
 use crate::model::System;
 use crate::select::selection::Selection;
 
@@ -77,11 +77,11 @@ fn known(system: &System, digital: &[Finding]) -> Error {
     let context = system.context;
     let lsb = context.adc.cos.lsb.max(context.adc.sin.lsb) / context.ellipse.amplitude();
     let error = |f: &Finding| {
-        Some(match f.cause.as_str() {
-            "stuck_bit" => Error::new(lsb * 2f64.powf(f.parameter("bit")?), 0.5),
-            "coarse_quantisation" => Error::new(lsb * f.parameter("step_lsb")?, even()),
+        Some(match f.cause {
+            Cause::StuckBit => Error::new(lsb * 2f64.powf(f.parameter("bit")?), 0.5),
+            Cause::CoarseQuantisation => Error::new(lsb * f.parameter("step_lsb")?, even()),
             // So many of the codes of a channel, which are two amplitudes, are off by one.
-            "adc_nonlinearity" => {
+            Cause::AdcNonlinearity => {
                 let share = f.parameter("missing_codes")? * lsb / 2.0;
                 Error::new(lsb, share.min(1.0).sqrt())
             }

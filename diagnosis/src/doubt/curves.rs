@@ -3,8 +3,8 @@
 
 use crate::causes::cause::Domain;
 use crate::doubt::{TRACE, gain_of, so_small, unnamed};
+use crate::finding::Cause;
 use crate::model::{System, atoms_of};
-use crate::noise::flicker::FLICKER;
 use crate::numerics::statistics::log_tail;
 use crate::select::beside::Beside;
 use crate::select::rivals::NOTHING_NEW;
@@ -53,7 +53,7 @@ pub(crate) fn instead_of_noise(system: &System, found: &Selection, gain: f64) ->
     let (most, i) = gains.max_by(|a, b| a.0.total_cmp(&b.0))?;
     (gain < TRACE * most).then(|| {
         let but = so_small(gain, most, found.accepted[i].candidate.name);
-        unnamed(Domain::Time, FLICKER, gain, &but)
+        unnamed(Domain::Time, Cause::FlickerNoise, gain, &but)
     })
 }
 

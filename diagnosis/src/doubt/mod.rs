@@ -9,7 +9,7 @@ pub(crate) mod steps;
 
 use crate::causes::Catalogue;
 use crate::causes::cause::Domain;
-use crate::finding::names::plain;
+use crate::finding::Cause;
 use crate::model::System;
 use crate::select::beside::Beside;
 use crate::select::held::share;
@@ -95,7 +95,7 @@ fn traces(system: &System, found: &mut Selection) -> Vec<Unnamed> {
     let everything = found.of(found.accepted.clone(), system);
     let (kept, named) = found.kept(system);
     // All that has one name is one error.
-    let mut names: Vec<(&'static str, Vec<usize>)> = vec![];
+    let mut names: Vec<(Cause, Vec<usize>)> = vec![];
     for (i, one) in found.accepted.iter().enumerate() {
         let name = one.candidate.name;
         match names.iter_mut().find(|(known, _)| *known == name) {
@@ -128,19 +128,19 @@ fn traces(system: &System, found: &mut Selection) -> Vec<Unnamed> {
         if *gain > ANYTHING {
             let domain = found.accepted[own[0]].candidate.domain;
             let but = so_small(*gain, most, names[strongest].0);
-            list.push(unnamed(domain, name, *gain, &but));
+            list.push(unnamed(domain, *name, *gain, &but));
         }
     }
     list
 }
 
 /// Why something weak is no error of its own.
-pub(crate) fn so_small(gain: f64, most: f64, strongest: &str) -> String {
+pub(crate) fn so_small(gain: f64, most: f64, strongest: Cause) -> String {
     format!(
         "its SNR of {:.0} is so small beside the {:.0} of {} that it may be what that model leaves",
         (2.0 * gain).sqrt(),
         (2.0 * most).sqrt(),
-        plain(strongest)
+        strongest.plain()
     )
 }
 
@@ -157,7 +157,7 @@ fn all_gain_of(system: &System, found: &Selection, own: &[usize]) -> f64 {
 }
 
 /// What is taken back, and why; `gain` is what its name explained.
-pub(crate) fn unnamed(domain: Domain, nearest: &str, gain: f64, but: &str) -> Unnamed {
+pub(crate) fn unnamed(domain: Domain, nearest: Cause, gain: f64, but: &str) -> Unnamed {
     Unnamed {
         log_p: -gain,
         gain,
@@ -211,7 +211,7 @@ fn leftovers(
     let strongest = strength.iter().position(|gain| *gain > ALIKE * most)?;
     let name = found.accepted[own[strongest]].candidate.name;
     // The smallest goes first: without it the others explain more by themselves.
-    let mut largest: Option<(f64, &'static str)> = None;
+    let mut largest: Option<(f64, Cause)> = None;
     loop {
         let (kept, named) = found.kept(system);
         let gain = |i: &usize| {

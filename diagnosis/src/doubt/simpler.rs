@@ -5,6 +5,7 @@
 
 use crate::causes::Catalogue;
 use crate::causes::cause::{Candidate, Domain};
+use crate::finding::Cause;
 use crate::model::{Fit, System};
 use crate::numerics::statistics::price;
 use crate::select::beside::Beside;
@@ -53,9 +54,9 @@ pub(crate) fn simpler(
 /// together is like another beside one of them. Of the two that are alike then, the one that explains more is named.
 fn rivals_anew(system: &System, catalogue: &Catalogue, found: &mut Selection) {
     for i in 0..found.accepted.len() {
-        let names: Vec<&str> = found.accepted.iter().map(|a| a.candidate.name).collect();
+        let names: Vec<Cause> = found.accepted.iter().map(|a| a.candidate.name).collect();
         let one = &found.accepted[i];
-        let is_there = |rival: &String| names.contains(&rival.as_str());
+        let is_there = |rival: &Cause| names.contains(rival);
         let speed = one.candidate.domain == Domain::Speed;
         if !speed || !one.confounded.iter().any(is_there) || one.is_taken_off() {
             continue;
@@ -72,7 +73,7 @@ fn rivals_anew(system: &System, catalogue: &Catalogue, found: &mut Selection) {
         let others: Vec<Scored> = others.filter_map(|c| score(&beside, c.clone())).collect();
         let all: Vec<&Scored> = others.iter().collect();
         let rivals = rivals::among(system, &without, &beside, &own, &all);
-        let rival = |s: &&Scored| rivals.iter().any(|r| r == s.candidate.name);
+        let rival = |s: &&Scored| rivals.contains(&s.candidate.name);
         let best = others.iter().filter(rival);
         match best.max_by(|a, b| a.gain.total_cmp(&b.gain)) {
             Some(best) if best.gain > own.gain => {
@@ -80,7 +81,7 @@ fn rivals_anew(system: &System, catalogue: &Catalogue, found: &mut Selection) {
                 replace(found, i, best.candidate.clone(), system.fit(shapes));
             }
             best => {
-                let rival = best.map(|s| s.candidate.name.to_owned());
+                let rival = best.map(|s| s.candidate.name);
                 found.accepted[i].confounded = rival.into_iter().collect();
             }
         }
@@ -109,7 +110,7 @@ fn replace(found: &mut Selection, i: usize, candidate: Candidate, fit: Fit) {
         wide.candidate.shapes.len() - candidate.shapes.len(),
     );
     // Of an order that may be another, it is the one that a bend with fewer numbers has.
-    let confounded = vec![wide.candidate.name.to_owned()];
+    let confounded = vec![wide.candidate.name];
     for other in &mut found.accepted {
         if other.first > first {
             other.first -= fewer;

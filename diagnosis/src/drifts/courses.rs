@@ -4,9 +4,10 @@
 //! drift by 70 % into a measured interferometer.
 
 use crate::causes::cause::{Candidate, Domain};
-use crate::causes::{GAIN_DRIFT, settling, tells};
+use crate::causes::{settling, tells};
 use crate::drifts::channels::Channels;
 use crate::drifts::steps::{self, Change};
+use crate::finding::Cause;
 use crate::model::exact::{self, FITTED};
 use crate::model::{Fit, System};
 use crate::numerics::polynomial::DEGREE;
@@ -22,7 +23,7 @@ const BENDS: usize = 6;
 
 /// A polynomial of the catalogue that explains much.
 struct Polynomial {
-    name: &'static str,
+    name: Cause,
     shapes: Vec<Shape>,
     /// Log-likelihood that it explains, its numbers paid for.
     paid: f64,
@@ -77,7 +78,7 @@ fn exponentials(system: &mut System, fit: &Fit, like: &Polynomial) -> Vec<(f64, 
     let Some(last) = system.context.time.last().copied() else {
         return vec![];
     };
-    let (gain, change) = if like.name == GAIN_DRIFT {
+    let (gain, change) = if like.name == Cause::GainDrift {
         (true, Change::Gains)
     } else {
         (false, Change::Offsets)

@@ -1,9 +1,9 @@
 //! Whether steps in time are what a cause was taken for: a drift follows a few of them nearly as well as they do themselves, and
 //! so does what grows with the speed where that only rises.
 
-use crate::causes::{AC_COUPLING, GAIN_DRIFT, HYSTERESIS};
 use crate::drifts::channels::Channels;
 use crate::drifts::steps::{self, Change};
+use crate::finding::Cause;
 use crate::model::{Fit, System};
 use crate::numerics::statistics::price;
 use crate::select::beside::Beside;
@@ -41,7 +41,7 @@ pub(crate) fn instead_of_drift(
     drift: &Scored,
     rest: &[&Scored],
 ) -> Option<f64> {
-    let changes: &[Change] = if drift.candidate.name == GAIN_DRIFT {
+    let changes: &[Change] = if drift.candidate.name == Cause::GainDrift {
         &[Change::Gains, Change::Radius]
     } else {
         &[Change::Offsets]
@@ -66,7 +66,7 @@ pub(crate) fn instead_of_speed(
     /// By which share of it: tangents of what is large are off.
     const CLEARLY: f64 = 0.1;
     // What turns over with the direction has steps, and what a capacitor remembers may look like some.
-    if [HYSTERESIS, AC_COUPLING].contains(&own.candidate.name) {
+    if [Cause::Hysteresis, Cause::AcCoupling].contains(&own.candidate.name) {
         return None;
     }
     let paid = price(system.context.samples() as f64) * own.freedom as f64;

@@ -1,12 +1,13 @@
 //! Findings, as `findings.json` has them.
 
+mod cause;
 pub(crate) mod names;
 pub(crate) mod units;
 
 use nonius_quantity::Quantity;
 use serde::Serialize;
 
-use crate::finding::names::plain;
+pub use cause::Cause;
 
 /// A parameter of a cause.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -175,9 +176,9 @@ pub enum Place {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Finding {
     /// Its name, from the contract's list.
-    pub cause: String,
+    pub cause: Cause,
     /// Another cause that explains the data as well.
-    pub confounded_with: Vec<String>,
+    pub confounded_with: Vec<Cause>,
     /// After all trials.
     pub p_value: f64,
     /// Its parameters.
@@ -213,12 +214,7 @@ impl Finding {
     /// The causes that it may be, as people write them.
     #[must_use]
     pub fn plain_name(&self) -> String {
-        let others = self.confounded_with.iter().map(String::as_str);
-        let all: Vec<String> = std::iter::once(self.cause.as_str())
-            .chain(others)
-            .map(plain)
-            .collect();
-        all.join(" or ")
+        self.all_as(Cause::plain)
     }
 
     /// The evidence after the names of the contract.
@@ -228,8 +224,17 @@ impl Finding {
             .evidence
             .strip_prefix(&self.group())
             .unwrap_or(&self.evidence);
-        let all = [&[self.cause.clone()][..], &self.confounded_with].concat();
-        format!("{}: {seen}", all.join(" or "))
+        format!("{}: {seen}", self.all_as(|cause| cause.to_string()))
+    }
+
+    /// The causes that it may be, each as `said` says it.
+    fn all_as(&self, said: impl Fn(Cause) -> String) -> String {
+        let others = self.confounded_with.iter().copied();
+        let all: Vec<String> = std::iter::once(self.cause)
+            .chain(others)
+            .map(said)
+            .collect();
+        all.join(" or ")
     }
 
     /// What stands before the evidence of a group; nothing where there is one name.
@@ -260,9 +265,9 @@ impl Finding {
     }
 
     /// From the codes or the time base alone: nothing random about it.
-    pub(crate) fn digital(cause: &str, parameters: Vec<Parameter>, evidence: String) -> Self {
+    pub(crate) fn digital(cause: Cause, parameters: Vec<Parameter>, evidence: String) -> Self {
         Self {
-            cause: cause.into(),
+            cause,
             confounded_with: vec![],
             p_value: 0.0,
             parameters,

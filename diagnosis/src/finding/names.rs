@@ -1,15 +1,4 @@
-//! Names as people write them: of causes and of their parameters.
-
-/// A cause.
-pub(crate) fn plain(cause: &str) -> String {
-    match cause {
-        "adc_nonlinearity" => "ADC nonlinearity".into(),
-        "ac_coupling" => "AC coupling".into(),
-        "acceleration_gain" => "a gain that follows the acceleration".into(),
-        "runout" => "run-out".into(),
-        _ => cause.replace('_', " "),
-    }
-}
+//! Names of parameters as people write them.
 
 /// A parameter, without the unit that its name may end with.
 pub(crate) fn label(parameter: &str) -> String {

@@ -1,8 +1,9 @@
 //! What causes that are known do to the channels, sample by sample: it is taken off the signals.
 
+use crate::causes::Catalogue;
 use crate::causes::cause::Domain;
-use crate::causes::{Catalogue, HYSTERESIS, INTERFERENCE, OFFSET_DRIFT};
 use crate::context::Context;
+use crate::finding::Cause;
 use crate::model::exact::enter;
 use crate::model::sweep::Samples;
 use crate::model::{amounts, atoms_of};
@@ -63,7 +64,9 @@ impl Way {
             Self::Turns
         } else if candidate.domain != Domain::Speed && all(Row::Radial) {
             Self::Gains
-        } else if [HYSTERESIS, OFFSET_DRIFT, INTERFERENCE].contains(&candidate.name) {
+        } else if [Cause::Hysteresis, Cause::OffsetDrift, Cause::Interference]
+            .contains(&candidate.name)
+        {
             Self::Behind
         } else {
             Self::Added

@@ -2,10 +2,10 @@
 //! that only close knots follow; they would hide a vibration or cogging that goes on all the time. Away from the corners, wide
 //! knots do; and without any, where hardly anything but that needs close ones.
 
-use crate::causes::{COGGING, VIBRATION, highest_order};
+use crate::causes::highest_order;
 use crate::context::Context;
 use crate::diagnose::Diagnosis;
-use crate::finding::Finding;
+use crate::finding::{Cause, Finding};
 use crate::model::exact;
 use crate::motion::spline::Spline;
 use crate::numerics::lines::{median, spectrum, strongest, window};
@@ -74,9 +74,9 @@ impl Mark {
 
     /// What a finding says that it is, if it says so.
     fn of(finding: &Finding) -> Option<Self> {
-        match finding.cause.as_str() {
-            VIBRATION => finding.parameter("frequency_hz").map(Self::Line),
-            COGGING => finding.parameter("order").map(|o| Self::Order(o as usize)),
+        match finding.cause {
+            Cause::Vibration => finding.parameter("frequency_hz").map(Self::Line),
+            Cause::Cogging => finding.parameter("order").map(|o| Self::Order(o as usize)),
             _ => None,
         }
     }
@@ -304,8 +304,8 @@ fn height(values: &[f64], line: f64) -> f64 {
 pub(crate) fn beside(mut found: Diagnosis, calm: Diagnosis, mark: Mark) -> Diagnosis {
     let one = |f: &Finding| Mark::of(f).is_some_and(|own| own.is(mark));
     let kind = match mark {
-        Mark::Line(_) => VIBRATION,
-        Mark::Order(_) => COGGING,
+        Mark::Line(_) => Cause::Vibration,
+        Mark::Order(_) => Cause::Cogging,
     };
     if found.findings.iter().any(|f| f.cause == kind) {
         return found;

@@ -11,7 +11,7 @@ mod variance;
 use nonius_quantity::{Quantity, Unit};
 
 use crate::context::Context;
-use crate::finding::{Chip, Finding, Gain, Parameter};
+use crate::finding::{Cause, Chip, Finding, Gain, Parameter};
 use crate::model::whiten::Whitener;
 use crate::model::{ROUNDING, Residual, System};
 use crate::noise::variance::{ENOUGH, Fitted, Pairs, Products};
@@ -34,9 +34,6 @@ const A_LINE: f64 = 1e-4;
 const MUCH: f64 = 0.2;
 /// Log-likelihood by which a line of the axis has to stand higher to be the reason for one of the clock.
 const CLEARLY: f64 = 3.0;
-/// Names of the contract.
-const CLOCK_JITTER: &str = "clock_jitter";
-const AMPLITUDE_NOISE: &str = "amplitude_noise";
 /// Standard errors by which an amount that a part of the samples gives is below nothing for sure.
 const SURELY: f64 = 3.0;
 /// Standard errors below which an amount is shown by nothing.
@@ -256,8 +253,8 @@ fn refusal(
 ) -> Option<String> {
     let n = tangential.len();
     let name = match kind {
-        Kind::Amplitude => AMPLITUDE_NOISE,
-        Kind::Jitter => CLOCK_JITTER,
+        Kind::Amplitude => Cause::AmplitudeNoise,
+        Kind::Jitter => Cause::ClockJitter,
     };
     pairs.every = n.div_ceil(ENOUGH);
     let named = with.x.len();
@@ -359,11 +356,11 @@ fn finding(
     let (value, error) = (amount.sqrt(), error / (2.0 * amount.sqrt()));
     let (cause, parameter) = match kind {
         Kind::Jitter => (
-            CLOCK_JITTER,
+            Cause::ClockJitter,
             Parameter::measured("rms_s", value / top, error / top, "s"),
         ),
         Kind::Amplitude => (
-            AMPLITUDE_NOISE,
+            Cause::AmplitudeNoise,
             Parameter::measured("rms", value, error, "1"),
         ),
     };
@@ -377,7 +374,7 @@ fn finding(
         }
     };
     Finding {
-        cause: cause.into(),
+        cause,
         confounded_with: vec![],
         p_value: log_p.exp(),
         parameters: vec![parameter],

@@ -1,18 +1,18 @@
 //! The experiment that tells two causes apart: the first of a list to which they answer differently.
 
 use super::words::capital;
-use crate::finding::names::plain;
+use crate::finding::Cause;
 
 /// An experiment, and what each cause does in it; causes that do not answer stand in none.
 struct Experiment {
     /// What to do.
     setup: &'static str,
     /// Causes with the same answer, and the answer.
-    answers: &'static [(&'static [&'static str], &'static str)],
+    answers: &'static [(&'static [Cause], &'static str)],
 }
 
 impl Experiment {
-    fn answer(&self, cause: &str) -> Option<&'static str> {
+    fn answer(&self, cause: Cause) -> Option<&'static str> {
         let own = self
             .answers
             .iter()
@@ -22,26 +22,26 @@ impl Experiment {
 }
 
 /// Errors that repeat with the scale period.
-const PERIOD: &[&str] = &[
-    "even_nonlinearity",
-    "odd_nonlinearity",
-    "spatial_harmonic",
-    "saturation",
-    "adc_nonlinearity",
+const PERIOD: &[Cause] = &[
+    Cause::EvenNonlinearity,
+    Cause::OddNonlinearity,
+    Cause::SpatialHarmonic,
+    Cause::Saturation,
+    Cause::AdcNonlinearity,
 ];
-const REVOLUTION: &[&str] = &["runout", "contamination", "graduation_error"];
-const SPEED: &[&str] = &[
-    "channel_skew",
-    "bandwidth_mismatch",
-    "common_bandwidth",
-    "latency",
-    "delayed_crosstalk",
-    "hysteresis",
-    "ac_coupling",
+const REVOLUTION: &[Cause] = &[Cause::Runout, Cause::Contamination, Cause::GraduationError];
+const SPEED: &[Cause] = &[
+    Cause::ChannelSkew,
+    Cause::BandwidthMismatch,
+    Cause::CommonBandwidth,
+    Cause::Latency,
+    Cause::DelayedCrosstalk,
+    Cause::Hysteresis,
+    Cause::AcCoupling,
 ];
-const LINES: &[&str] = &["interference", "amplitude_ripple"];
-const DRIFTS: &[&str] = &["offset_drift", "gain_drift"];
-const MOTION: &[&str] = &["vibration", "cogging"];
+const LINES: &[Cause] = &[Cause::Interference, Cause::AmplitudeRipple];
+const DRIFTS: &[Cause] = &[Cause::OffsetDrift, Cause::GainDrift];
+const MOTION: &[Cause] = &[Cause::Vibration, Cause::Cogging];
 
 const ALONE: &str = "is in this sensor alone";
 const KEEPS: &str = "keeps its size and its place on the scale";
@@ -63,7 +63,7 @@ const EXPERIMENTS: &[Experiment] = &[
     Experiment {
         setup: "Clean the scale and record again",
         answers: &[
-            (&["contamination"], "is gone, or elsewhere"),
+            (&[Cause::Contamination], "is gone, or elsewhere"),
             (REVOLUTION, STAYS),
             (PERIOD, STAYS),
         ],
@@ -72,7 +72,7 @@ const EXPERIMENTS: &[Experiment] = &[
         setup: "Start the recording long after power-up, and stop the motion a few times",
         answers: &[
             (
-                &["ac_coupling"],
+                &[Cause::AcCoupling],
                 "makes the offsets decay after each stop, and none from the start on",
             ),
             (DRIFTS, "does not follow the stops"),
@@ -81,7 +81,7 @@ const EXPERIMENTS: &[Experiment] = &[
     Experiment {
         setup: "Reverse the motion several times",
         answers: &[
-            (&["hysteresis"], "turns over at each reversal"),
+            (&[Cause::Hysteresis], "turns over at each reversal"),
             (DRIFTS, "goes on through the reversals"),
         ],
     },
@@ -89,11 +89,11 @@ const EXPERIMENTS: &[Experiment] = &[
         setup: "Let the scale stand still at several angles",
         answers: &[
             (
-                &["interference", "offset_drift"],
+                &[Cause::Interference, Cause::OffsetDrift],
                 "is the same at every angle",
             ),
             (
-                &["amplitude_ripple", "gain_drift"],
+                &[Cause::AmplitudeRipple, Cause::GainDrift],
                 "is gone from a channel where its signal crosses zero",
             ),
         ],
@@ -109,30 +109,33 @@ const EXPERIMENTS: &[Experiment] = &[
         setup: "Record at a speed ten times as high",
         answers: &[
             (
-                &["channel_skew"],
+                &[Cause::ChannelSkew],
                 "makes ten times the phase error, at full amplitude of both channels",
             ),
             (
-                &["bandwidth_mismatch"],
+                &[Cause::BandwidthMismatch],
                 "lowers the amplitude of one channel with the square of the speed",
             ),
             (
-                &["common_bandwidth"],
+                &[Cause::CommonBandwidth],
                 "lowers the amplitude of both channels with the square of the speed",
             ),
-            (&["latency"], "makes ten times the lag, at full amplitude"),
             (
-                &["delayed_crosstalk"],
+                &[Cause::Latency],
+                "makes ten times the lag, at full amplitude",
+            ),
+            (
+                &[Cause::DelayedCrosstalk],
                 "changes the gains of both channels in proportion to the speed, with its sign",
             ),
             (
-                &["hysteresis"],
+                &[Cause::Hysteresis],
                 "stays as large, for it depends on the direction alone",
             ),
-            (&["ac_coupling"], "gets smaller"),
+            (&[Cause::AcCoupling], "gets smaller"),
             (LINES, "keeps its frequency"),
-            (&["vibration"], "keeps its frequency"),
-            (&["cogging"], "has ten times the frequency"),
+            (&[Cause::Vibration], "keeps its frequency"),
+            (&[Cause::Cogging], "has ten times the frequency"),
             (DRIFTS, "follows time, and not the motion"),
             (PERIOD, KEEPS),
             (REVOLUTION, KEEPS),
@@ -141,15 +144,15 @@ const EXPERIMENTS: &[Experiment] = &[
     Experiment {
         setup: "Centre the scale anew on its axis",
         answers: &[
-            (&["runout"], "changes with the eccentricity"),
+            (&[Cause::Runout], "changes with the eccentricity"),
             (PERIOD, STAYS),
         ],
     },
     Experiment {
         setup: "Exchange the scale (disc, tape or magnet) for another of its kind",
         answers: &[
-            (&["graduation_error"], "is another"),
-            (&["runout"], STAYS),
+            (&[Cause::GraduationError], "is another"),
+            (&[Cause::Runout], STAYS),
             (PERIOD, STAYS),
         ],
     },
@@ -157,29 +160,35 @@ const EXPERIMENTS: &[Experiment] = &[
         setup: "Halve the amplitude in front of the ADC",
         answers: &[
             (
-                &["even_nonlinearity"],
+                &[Cause::EvenNonlinearity],
                 "falls to a half of its share of the amplitude",
             ),
             (
-                &["odd_nonlinearity"],
+                &[Cause::OddNonlinearity],
                 "falls to a fourth of its share of the amplitude",
             ),
-            (&["spatial_harmonic"], "keeps its share of the amplitude"),
-            (&["saturation"], "is gone"),
-            (&["adc_nonlinearity"], "stays as large at the same codes"),
+            (
+                &[Cause::SpatialHarmonic],
+                "keeps its share of the amplitude",
+            ),
+            (&[Cause::Saturation], "is gone"),
+            (
+                &[Cause::AdcNonlinearity],
+                "stays as large at the same codes",
+            ),
         ],
     },
 ];
 
 /// The experiment that tells a cause from another, and what either does in it.
-pub(super) fn experiment(cause: &str, other: &str) -> String {
+pub(super) fn experiment(cause: Cause, other: Cause) -> String {
     let told = EXPERIMENTS.iter().find_map(|e| {
         let (a, b) = (e.answer(cause)?, e.answer(other)?);
         (a != b).then_some((e.setup, a, b))
     });
     match told {
         Some((setup, a, b)) => {
-            let (cause, other) = (plain(cause), plain(other));
+            let (cause, other) = (cause.plain(), other.plain());
             format!("{setup}: {cause} {a}; {other} {b}.")
         }
         None => capital(
@@ -198,9 +207,9 @@ mod tests {
         assert_eq!(causes.len(), 21);
         for (i, a) in causes.iter().enumerate() {
             for b in &causes[..i] {
-                let text = experiment(a, b);
+                let text = experiment(*a, *b);
                 assert!(
-                    text.contains(&plain(a)) && text.contains(&plain(b)),
+                    text.contains(&a.plain()) && text.contains(&b.plain()),
                     "{a} {b}: {text}"
                 );
             }
@@ -209,10 +218,10 @@ mod tests {
 
     #[test]
     fn a_delay_keeps_the_amplitude_and_a_low_pass_does_not() {
-        let text = experiment("latency", "common_bandwidth");
+        let text = experiment(Cause::Latency, Cause::CommonBandwidth);
         assert!(text.starts_with("Record at a speed ten times as high: latency makes ten times the lag, at full amplitude;"));
         assert!(text.contains("square of the speed"), "{text}");
-        let text = experiment("channel_skew", "latency");
+        let text = experiment(Cause::ChannelSkew, Cause::Latency);
         assert!(text.contains("phase error"), "{text}");
     }
 }

@@ -19,9 +19,10 @@ use nonius_quantity::{Quantity, Unit, counted, digits};
 use nonius_recording::Recording;
 
 use crate::diagnose::Diagnosis;
-use crate::finding::names::{label, plain};
-use crate::finding::{Finding, Parameter};
+use crate::finding::names::label;
+use crate::finding::{Cause, Finding, Parameter};
 use crate::unnamed::unseen::unseen;
+use experiments::experiment;
 use gain::Gain;
 use residue::Residue;
 
@@ -168,6 +169,7 @@ fn about(found: &Diagnosis, recording: &Recording) -> String {
 
 fn section(number: usize, finding: &Finding, found: &Diagnosis, recording: &Recording) -> Section {
     let confused = finding.confounded_with.iter();
+    let told = |other: &Cause| (other.plain(), experiment(finding.cause, *other));
     let plots = pictures::of(finding, found, recording);
     let snr = finding.gain.detection_snr;
     Section {
@@ -178,9 +180,7 @@ fn section(number: usize, finding: &Finding, found: &Diagnosis, recording: &Reco
         gain: Gain::of(finding),
         snr: snr.map(|snr| digits(snr, 3)),
         chance: words::chance(finding),
-        confused: confused
-            .map(|other| (plain(other), experiments::experiment(&finding.cause, other)))
-            .collect(),
+        confused: confused.map(told).collect(),
         chip: words::chip(finding),
         plots: plots.iter().map(Plot::html).collect(),
     }

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use nonius_plot::{Axis, Look, Plot, Series};
 
 use crate::diagnose::Diagnosis;
-use crate::finding::Finding;
+use crate::finding::{Cause, Finding};
 use crate::noise::flicker;
 
 const BINS: usize = 24;
@@ -17,8 +17,8 @@ pub(super) fn of(finding: &Finding, found: &Diagnosis) -> Vec<Plot> {
     let context = &found.context;
     let (radial, tangential) = &found.residuals[1];
     let n = context.samples();
-    match finding.cause.as_str() {
-        "amplitude_noise" => {
+    match finding.cause {
+        Cause::AmplitudeNoise => {
             let rms = finding.parameter("rms").unwrap_or(0.0);
             let sizes = [0, 1].map(|which| {
                 let value = |k: usize| {
@@ -38,7 +38,7 @@ pub(super) fn of(finding: &Finding, found: &Diagnosis) -> Vec<Plot> {
                 })
                 .collect()
         }
-        "clock_jitter" => {
+        Cause::ClockJitter => {
             let rms = finding.parameter("rms_s").unwrap_or(0.0);
             let value = |k: usize| (context.speed[k].abs() / TAU, tangential[k]);
             let top = context.top_speed() / TAU;
@@ -51,7 +51,7 @@ pub(super) fn of(finding: &Finding, found: &Diagnosis) -> Vec<Plot> {
                 |v| (rms * v * TAU).powi(2),
             )]
         }
-        "flicker_noise" => vec![spectrum(finding, found)],
+        Cause::FlickerNoise => vec![spectrum(finding, found)],
         _ => vec![],
     }
 }

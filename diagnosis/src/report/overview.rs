@@ -7,6 +7,7 @@ use super::binned::{Against, Along, Row, Seen};
 use super::pictures::{hertz_text, title};
 use super::spectra::Signal;
 use crate::diagnose::Diagnosis;
+use crate::finding::Cause;
 
 /// Points of a cloud.
 const POINTS: usize = 1500;
@@ -141,7 +142,7 @@ pub(super) fn residuals(found: &Diagnosis) -> Vec<Plot> {
     let orders = found
         .findings
         .iter()
-        .filter(|f| f.cause == "spatial_harmonic")
+        .filter(|f| f.cause == Cause::SpatialHarmonic)
         .filter_map(|f| f.parameter("order"))
         .take(MARKS)
         .map(|x| Mark {

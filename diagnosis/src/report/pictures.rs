@@ -9,7 +9,7 @@ use super::spectra::Signal;
 use super::{noisy, raw};
 use crate::context::Context;
 use crate::diagnose::Diagnosis;
-use crate::finding::{Finding, Parameter};
+use crate::finding::{Cause, Finding, Parameter};
 
 /// What a cause is shown against, and along what.
 fn ways(finding: &Finding, context: &Context) -> Vec<(Against, Along)> {
@@ -28,30 +28,32 @@ fn ways(finding: &Finding, context: &Context) -> Vec<(Against, Along)> {
     } else {
         Circle
     };
-    match finding.cause.as_str() {
-        "even_nonlinearity" | "odd_nonlinearity" | "saturation" => of_channels(Signal, Offset),
-        "spatial_harmonic" => vec![(Angle, Radius), (Angle, Circle)],
-        "adc_nonlinearity" => {
+    match finding.cause {
+        Cause::EvenNonlinearity | Cause::OddNonlinearity | Cause::Saturation => {
+            of_channels(Signal, Offset)
+        }
+        Cause::SpatialHarmonic => vec![(Angle, Radius), (Angle, Circle)],
+        Cause::AdcNonlinearity => {
             let bit = number("bit").unwrap_or(0.0) as u32;
             vec![(Code(0, bit), Offset(0)), (Code(1, bit), Offset(1))]
         }
-        "channel_skew" => vec![(Speed, Phase(1))],
-        "bandwidth_mismatch" => {
+        Cause::ChannelSkew => vec![(Speed, Phase(1))],
+        Cause::BandwidthMismatch => {
             let which = usize::from(number("tau_sin_s").is_some());
             vec![(Speed, Phase(which)), (Speed, Gain(which))]
         }
-        "common_bandwidth" => vec![(Speed, Radius)],
-        "latency" => vec![(Speed, Circle)],
-        "delayed_crosstalk" => with(Speed, Gain),
-        "hysteresis" => with(Speed, Offset),
-        "ac_coupling" | "offset_drift" => with(Time, Offset),
-        "gain_drift" => with(Time, Gain),
-        "interference" => with(Line(hertz), Offset),
-        "amplitude_ripple" => vec![(Line(hertz), Radius)],
-        "vibration" => vec![(Line(hertz), motion)],
-        "runout" | "contamination" => vec![(Revolution, Radius)],
-        "graduation_error" => vec![(Revolution, Circle)],
-        "cogging" => vec![(Revolution, motion)],
+        Cause::CommonBandwidth => vec![(Speed, Radius)],
+        Cause::Latency => vec![(Speed, Circle)],
+        Cause::DelayedCrosstalk => with(Speed, Gain),
+        Cause::Hysteresis => with(Speed, Offset),
+        Cause::AcCoupling | Cause::OffsetDrift => with(Time, Offset),
+        Cause::GainDrift => with(Time, Gain),
+        Cause::Interference => with(Line(hertz), Offset),
+        Cause::AmplitudeRipple => vec![(Line(hertz), Radius)],
+        Cause::Vibration => vec![(Line(hertz), motion)],
+        Cause::Runout | Cause::Contamination => vec![(Revolution, Radius)],
+        Cause::GraduationError => vec![(Revolution, Circle)],
+        Cause::Cogging => vec![(Revolution, motion)],
         _ => vec![],
     }
 }
@@ -127,15 +129,15 @@ pub(super) fn hertz_text(finding: &Finding) -> String {
 /// The spectrum close to a line.
 fn line(finding: &Finding, seen: &Seen, hertz: f64) -> Option<Plot> {
     let context = seen.context;
-    let added = finding.cause == "interference";
+    let added = finding.cause == Cause::Interference;
     let value = |row: Row, k: usize| {
         if added {
             // In the frame of the channels.
             let (cos, sin) = (context.cos[k], context.sin[k]);
             return Complex::new(row[0] * cos - row[1] * sin, row[0] * sin + row[1] * cos);
         }
-        let along = match finding.cause.as_str() {
-            "amplitude_ripple" => row[0],
+        let along = match finding.cause {
+            Cause::AmplitudeRipple => row[0],
             _ if context.against_reference.is_some() => row[2],
             _ => row[1],
         };
@@ -143,9 +145,9 @@ fn line(finding: &Finding, seen: &Seen, hertz: f64) -> Option<Plot> {
     };
     let after = |k: usize| value((seen.left)(k), k);
     let before = |k: usize| after(k) + value((seen.effect)(k), k);
-    let (label, unit) = match finding.cause.as_str() {
-        "vibration" => ("motion, mrad (electrical)", 1000.0),
-        "amplitude_ripple" => ("radius, % of the amplitude", 100.0),
+    let (label, unit) = match finding.cause {
+        Cause::Vibration => ("motion, mrad (electrical)", 1000.0),
+        Cause::AmplitudeRipple => ("radius, % of the amplitude", 100.0),
         _ => ("both channels, % of the amplitude", 100.0),
     };
     let signal = Signal {

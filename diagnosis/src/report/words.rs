@@ -1,6 +1,6 @@
 //! Titles, what the chip can do, how likely chance is.
 
-use crate::finding::{Chip, Finding, OTHER_ORDER};
+use crate::finding::{Cause, Chip, Finding, OTHER_ORDER};
 
 /// The title of a finding: its name and what tells it from others of that name.
 pub(super) fn title(finding: &Finding) -> String {
@@ -39,27 +39,27 @@ pub(super) fn chip(finding: &Finding) -> String {
 /// What the chip can do about it.
 fn able(finding: &Finding) -> &'static str {
     let order = finding.parameter("order");
-    match (finding.chip, finding.cause.as_str()) {
-        (Chip::Corrects, "even_nonlinearity" | "odd_nonlinearity") => {
+    match (finding.chip, finding.cause) {
+        (Chip::Corrects, Cause::EvenNonlinearity | Cause::OddNonlinearity) => {
             "The chip corrects it with nine parameters on line, or from its table of harmonics where a scale period is a revolution."
         }
-        (Chip::Corrects, "spatial_harmonic") if finding.parameter(OTHER_ORDER).is_some() => {
+        (Chip::Corrects, Cause::SpatialHarmonic) if finding.parameter(OTHER_ORDER).is_some() => {
             "The chip can correct it from its table of harmonics once its order is known; by the wrong one the angle would be twice as wrong. A reference tells, or a speed at which the motion is smoother than this."
         }
-        (Chip::Corrects, "spatial_harmonic") if order == Some(2.0) || order == Some(3.0) => {
+        (Chip::Corrects, Cause::SpatialHarmonic) if order == Some(2.0) || order == Some(3.0) => {
             "The chip corrects it: with nine parameters on line where it is a bend of the channels, else from its table of harmonics."
         }
-        (Chip::Corrects, "spatial_harmonic" | "graduation_error") => {
+        (Chip::Corrects, Cause::SpatialHarmonic | Cause::GraduationError) => {
             "The chip corrects it from its table of harmonics."
         }
-        (Chip::Corrects, "channel_skew") => {
+        (Chip::Corrects, Cause::ChannelSkew) => {
             "The chip corrects it: it turns the sine back by the speed times this delay."
         }
-        (Chip::Corrects, "offset_drift" | "gain_drift") => {
+        (Chip::Corrects, Cause::OffsetDrift | Cause::GainDrift) => {
             "The chip corrects it: the calibration on line follows it."
         }
         (Chip::Corrects, _) => "The chip corrects it.",
-        (Chip::CannotCorrect, "latency") => {
+        (Chip::CannotCorrect, Cause::Latency) => {
             "The chip cannot correct it. Behind the chip: add the speed times this delay to the position."
         }
         (Chip::CannotCorrect, _) if !finding.design.is_empty() => {

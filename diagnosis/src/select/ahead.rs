@@ -5,6 +5,7 @@
 use crate::causes;
 use crate::causes::cause::Domain;
 use crate::context::Context;
+use crate::finding::Cause;
 use crate::select::beside::Beside;
 use crate::select::score::{Scored, can_be};
 
@@ -20,7 +21,7 @@ pub(crate) struct Ahead {
     /// Two others explain clearly more than it does with any second.
     pub(crate) outdone: bool,
     /// What does as much in its place.
-    pub(crate) rival: Option<&'static str>,
+    pub(crate) rival: Option<Cause>,
 }
 
 /// What two causes explain together, each number at its price.
@@ -63,7 +64,7 @@ pub(crate) fn look(
     }
 }
 
-fn name(of: &Scored) -> &'static str {
+fn name(of: &Scored) -> Cause {
     of.candidate.name
 }
 

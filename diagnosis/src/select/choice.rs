@@ -5,6 +5,7 @@ use nonius_recording::Recording;
 
 use crate::causes::cause::Candidate;
 use crate::context::Context;
+use crate::finding::Cause;
 use crate::model::exact::{Start, followed, look};
 use crate::motion::spline::Spline;
 use crate::numerics::statistics::price;
@@ -138,13 +139,13 @@ pub(crate) fn best(
     let mut all = all.into_iter();
     let mut best = all.next()?;
     let nearly = all.filter(|other| best.is_hardly_likelier_than(other));
-    let names: Vec<&str> = nearly
+    let names: Vec<Cause> = nearly
         .filter_map(|other| Some(other.last()?.name))
         .collect();
     if let Some(last) = best.start.carried.last_mut() {
         for name in names {
-            if name != last.candidate.name && !last.confounded.iter().any(|known| known == name) {
-                last.confounded.push(name.to_owned());
+            if name != last.candidate.name && !last.confounded.contains(&name) {
+                last.confounded.push(name);
             }
         }
     }

@@ -4,11 +4,11 @@
 use nonius_quantity::agree;
 
 use crate::causes::cause::{Candidate, Domain, Sign};
-use crate::causes::{self, ACCELERATION_GAIN, Catalogue, GAIN_DRIFT, OFFSET_DRIFT};
+use crate::causes::{self, Catalogue};
 use crate::drifts::channels::Channels;
 use crate::drifts::courses;
 use crate::drifts::stairs;
-use crate::finding::names::plain;
+use crate::finding::Cause;
 use crate::model::exact;
 use crate::model::{Fit, Residual, System};
 use crate::numerics::statistics::price;
@@ -33,10 +33,6 @@ const OTHERS: usize = 3;
 const NEARLY: f64 = 0.8;
 /// Share from which on a drift explains as much as what may be one.
 const AS_WELL: f64 = 0.95;
-/// A drift of the offsets or of the gains: slow, as noise may be.
-pub(crate) fn is_drift(cause: &str) -> bool {
-    [OFFSET_DRIFT, GAIN_DRIFT].contains(&cause)
-}
 
 /// The cause to accept and others that may turn out better where tangents are exact, or what cannot be named in its
 /// domain and what looks most like it.
@@ -51,7 +47,7 @@ pub(crate) struct Nameless {
     pub(crate) unnamed: Unnamed,
     pub(crate) domain: Option<Domain>,
     /// Name of what looks most like it.
-    pub(crate) name: &'static str,
+    pub(crate) name: Option<Cause>,
     /// Shapes that hold it.
     pub(crate) shapes: Vec<Shape>,
     /// Log-likelihood that it explains where noise of the channels shows, its numbers paid for, or that steps do.
@@ -84,7 +80,7 @@ pub(crate) fn contender(
     let mut large = most * system.every() as f64 > large;
     let (mut first, mut named): (Option<Contender>, Option<Box<Accepted>>) = (None, None);
     let mut others = vec![];
-    let mut tried: Vec<(&'static str, Domain)> = vec![];
+    let mut tried: Vec<(Cause, Domain)> = vec![];
     let mut stepped = None;
     for i in 0..scored.len() {
         let best = &scored[i];
@@ -94,7 +90,7 @@ pub(crate) fn contender(
             continue;
         }
         let drifts = |s: &Scored| {
-            s.candidate.name == OFFSET_DRIFT && s.gain > AS_WELL * best.gain && near(s)
+            s.candidate.name == Cause::OffsetDrift && s.gain > AS_WELL * best.gain && near(s)
         };
         if best.candidate.as_drift && scored.iter().any(drifts) {
             continue;
@@ -122,7 +118,7 @@ pub(crate) fn contender(
         let ahead = ahead::look(system.context, &beside, &own, &rest, price);
         let mut rivals = rivals::among(system, fit, &beside, &own, &rest);
         if rivals.is_empty() {
-            rivals.extend(ahead.rival.map(str::to_owned));
+            rivals.extend(ahead.rival);
         }
         if rivals.is_empty() {
             rivals.extend(rivals::hidden(system, &beside, &own, catalogue));
@@ -131,8 +127,8 @@ pub(crate) fn contender(
         let wider = rivals::wider(&beside, &own, &rest);
         let other_order = rivals::other_order(&beside, &own, &rest);
         if own.candidate.as_drift {
-            rivals.retain(|name| name != OFFSET_DRIFT);
-            rivals.push(OFFSET_DRIFT.to_owned());
+            rivals.retain(|name| *name != Cause::OffsetDrift);
+            rivals.push(Cause::OffsetDrift);
         }
         let mark = system.samples.library.atoms.len();
         let held = holds(system, catalogue, fit, &own, &rest);
@@ -148,12 +144,12 @@ pub(crate) fn contender(
         if !slow && stepped.is_none() {
             stepped = Some(i);
         }
-        let listed = |name: &str| name != ACCELERATION_GAIN;
+        let listed = |name: Cause| name != Cause::AccelerationGain;
         let locked = locked::why(system.context, &own);
         let crawling = causes::crawls(system.context, &own.candidate);
         let wandering = causes::is_one_of_many(system.context, left, &own.candidate);
         let nameable = listed(own.candidate.name)
-            && rivals.iter().all(|r| listed(r))
+            && rivals.iter().all(|r| listed(*r))
             && !(locked.is_some() || crawling || wandering);
         if nameable && slow && !ahead.outdone && rivals.len() <= 1 && held.refusal.is_none() {
             if rivals.is_empty() {
@@ -193,7 +189,7 @@ pub(crate) fn contender(
         } else if ahead.outdone {
             "two other causes together explain more".to_owned()
         } else {
-            let rivals: Vec<String> = rivals.iter().map(|r| plain(r)).collect();
+            let rivals: Vec<String> = rivals.iter().map(|r| r.plain()).collect();
             format!(
                 "{} {} it as well",
                 rivals.join(" and "),
@@ -224,7 +220,7 @@ pub(crate) fn contender(
         first = Some(Contender::Unnamed(Nameless {
             unnamed,
             domain: Some(domain),
-            name: own.candidate.name,
+            name: Some(own.candidate.name),
             shapes,
             paid: paid.max(steps.unwrap_or_default()),
             is_noise: held.is_noise,

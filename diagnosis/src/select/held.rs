@@ -1,8 +1,9 @@
 //! The open set: how much a name holds of what any shape of its domain, or around it, explains.
 
 use crate::causes::cause::{Candidate, Domain};
-use crate::causes::{self, AC_COUPLING, Catalogue, GRADUATION_ERROR};
+use crate::causes::{self, Catalogue};
 use crate::doubt;
+use crate::finding::Cause;
 use crate::model::{Fit, System, atoms_of};
 use crate::noise::flicker::records::Records;
 use crate::numerics::statistics::{at_most_of_noise, by_chance};
@@ -26,8 +27,8 @@ const MOST_BESIDE: usize = 8;
 fn least(candidate: &Candidate) -> f64 {
     match candidate.domain {
         Domain::Code | Domain::Motion | Domain::Angle => HOLDS,
-        Domain::Speed if candidate.name == AC_COUPLING => HOLDS,
-        Domain::Revolution if candidate.name == GRADUATION_ERROR => HOLDS,
+        Domain::Speed if candidate.name == Cause::AcCoupling => HOLDS,
+        Domain::Revolution if candidate.name == Cause::GraduationError => HOLDS,
         Domain::Speed => 0.85,
         Domain::Time | Domain::Line => 0.9,
         Domain::Revolution => 0.95,

@@ -4,6 +4,7 @@
 use crate::causes;
 use crate::causes::cause::{Candidate, Domain};
 use crate::context::Context;
+use crate::finding::Cause;
 use crate::numerics::lines::strongest;
 use crate::select::score::Scored;
 
@@ -115,7 +116,7 @@ fn stands_at(
     mut places: impl Iterator<Item = (f64, f64)>,
 ) -> bool {
     // Vibration too: where it goes with the angle it may be an error of the sensor.
-    let line = candidate.domain == Domain::Line || candidate.name == causes::VIBRATION;
+    let line = candidate.domain == Domain::Line || candidate.name == Cause::Vibration;
     let many = context.periods_travelled() > FEWEST;
     let told = line && many && !causes::speed_varies_much(context);
     let Some(hertz) = candidate.inner().filter(|_| told) else {

@@ -14,12 +14,13 @@ pub(crate) mod speed_anew;
 
 use crate::causes::angle::is_a_circle;
 use crate::causes::cause::{Candidate, Domain};
-use crate::causes::{self, AC_COUPLING, BANDWIDTH_MISMATCH, CHANNEL_SKEW, Catalogue, HYSTERESIS};
+use crate::causes::{self, Catalogue};
 use crate::context::Context;
 use crate::doubt::curves;
 use crate::doubt::simpler::simpler;
 use crate::doubt::{self, doubt};
 use crate::drifts::channels::Channels;
+use crate::finding::Cause;
 use crate::model::exact::{self, Start};
 use crate::model::{Fit, Halves, Residual, System, atoms_of};
 use crate::noise::flicker::{self, records::Records};
@@ -39,7 +40,12 @@ const MOST: usize = 8;
 const BEYOND_UNKNOWN: f64 = 0.5;
 /// What is there once: the direction turns over in one way only, of two high passes in a row the faster is nearly all, and two delays
 /// are one.
-pub(crate) const ONCE: [&str; 4] = [HYSTERESIS, AC_COUPLING, CHANNEL_SKEW, BANDWIDTH_MISMATCH];
+pub(crate) const ONCE: [Cause; 4] = [
+    Cause::Hysteresis,
+    Cause::AcCoupling,
+    Cause::ChannelSkew,
+    Cause::BandwidthMismatch,
+];
 
 /// Shapes of one list, then of the other.
 pub(crate) fn both(a: &[Shape], b: &[Shape]) -> Vec<Shape> {
@@ -177,7 +183,7 @@ pub(crate) fn select(
 }
 
 /// Beside flicker noise, what is slow in the channels is that noise: drift cannot be told from it, nor can these.
-pub(crate) const SLOW: [&str; 2] = [HYSTERESIS, AC_COUPLING];
+pub(crate) const SLOW: [Cause; 2] = [Cause::Hysteresis, Cause::AcCoupling];
 
 /// Log-likelihood, its numbers paid for (an SNR of 25), below which a drift may be what is seen of slow noise: a stronger one has its
 /// own shape.
@@ -217,7 +223,7 @@ fn search(
         return found;
     }
     let mut closed: Vec<Domain> = vec![];
-    let mut refused: Vec<&'static str> = vec![];
+    let mut refused: Vec<Cause> = vec![];
     let mut circled = false;
     if system.flicker.is_some() {
         closed.push(Domain::Time);
@@ -227,7 +233,7 @@ fn search(
         let residual = system.residual(&found.fit);
         let coloured = system.flicker.is_some();
         let shown = causes::shown(context, &residual, coloured, &mut system.samples.library);
-        let names: Vec<&str> = found.accepted.iter().map(|a| a.candidate.name).collect();
+        let names: Vec<Cause> = found.accepted.iter().map(|a| a.candidate.name).collect();
         let open = |c: &Candidate| {
             let again = ONCE.contains(&c.name) && names.contains(&c.name);
             let circle = circled && c.order == Some(2);
@@ -272,9 +278,9 @@ fn search(
             Contender::Unnamed(_) if partial => break,
             Contender::Unnamed(one) => match one.domain {
                 // Real motion that is no line is the axis at work, and no error.
-                Some(Domain::Motion) => refused.push(one.name),
+                Some(Domain::Motion) => refused.extend(one.name),
                 // Slow noise explains it, and has a name.
-                _ if one.is_noise => refused.push(one.name),
+                _ if one.is_noise => refused.extend(one.name),
                 Some(Domain::Time) if slow_noise(system, &residual, one.paid) => {
                     closed.push(Domain::Time);
                     refused.extend(SLOW);

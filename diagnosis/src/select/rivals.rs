@@ -1,7 +1,8 @@
 //! Which other causes a name cannot be told from: those to which it adds nothing, decided from the data.
 
+use crate::causes::Catalogue;
 use crate::causes::cause::{Candidate, Domain};
-use crate::causes::{self, Catalogue};
+use crate::finding::Cause;
 use crate::model::{Fit, System};
 use crate::numerics::statistics::{at_most_of_noise, log_tail};
 use crate::select::beside::Beside;
@@ -24,8 +25,8 @@ pub(crate) fn among(
     beside: &Beside,
     best: &Scored,
     others: &[&Scored],
-) -> Vec<String> {
-    let mut found: Vec<(&str, f64)> = vec![];
+) -> Vec<Cause> {
+    let mut found: Vec<(Cause, f64)> = vec![];
     for other in others {
         let name = other.candidate.name;
         if name == best.candidate.name {
@@ -57,9 +58,9 @@ pub(crate) fn among(
             }
         }
     }
-    let near: Vec<(&str, f64)> = found.iter().copied().filter(|f| f.1 < BEATEN).collect();
+    let near: Vec<(Cause, f64)> = found.iter().copied().filter(|f| f.1 < BEATEN).collect();
     let left = if near.len() == 1 { near } else { found };
-    left.into_iter().map(|(name, _)| name.to_owned()).collect()
+    left.into_iter().map(|(name, _)| name).collect()
 }
 
 /// The order of the scale period that a harmonic may have as well. Of order n, turning backwards, it does to the radius what one of order
@@ -104,16 +105,16 @@ pub(crate) fn hidden(
     beside: &Beside,
     best: &Scored,
     catalogue: &Catalogue,
-) -> Option<String> {
+) -> Option<Cause> {
     along_the_circle(beside, best, catalogue)
         .or_else(|| of_the_place(system, beside, best, catalogue))
 }
 
 /// What a static error of the sensor does that the radius does not show: two bends that make up for each other there, beside
 /// other gains. To that, cogging of an order of the scale period adds nothing.
-fn along_the_circle(beside: &Beside, best: &Scored, catalogue: &Catalogue) -> Option<String> {
+fn along_the_circle(beside: &Beside, best: &Scored, catalogue: &Catalogue) -> Option<Cause> {
     let own = &best.candidate;
-    if own.domain != Domain::Motion || own.name == causes::VIBRATION {
+    if own.domain != Domain::Motion || own.name == Cause::Vibration {
         return None;
     }
     let alike = |c: &&Candidate| {
@@ -122,7 +123,7 @@ fn along_the_circle(beside: &Beside, best: &Scored, catalogue: &Catalogue) -> Op
     };
     let alike = catalogue.candidates.iter().filter(alike);
     let fewest = alike.min_by_key(|c| c.shapes.len());
-    fewest.map(|c| c.name.to_owned())
+    fewest.map(|c| c.name)
 }
 
 /// Within less than a turn nobody looks for errors of the graduation, and what repeats with the scale period may be one: a reference
@@ -132,11 +133,11 @@ fn of_the_place(
     beside: &Beside,
     best: &Scored,
     catalogue: &Catalogue,
-) -> Option<String> {
+) -> Option<Cause> {
     let own = &best.candidate;
     let context = system.context;
     let place = context.phi.is_some() && context.against_reference.is_some();
-    let looked_for = |c: &Candidate| c.name == causes::GRADUATION_ERROR;
+    let looked_for = |c: &Candidate| c.name == Cause::GraduationError;
     if own.domain != Domain::Angle || !place || catalogue.candidates.iter().any(looked_for) {
         return None;
     }
@@ -145,12 +146,12 @@ fn of_the_place(
     // Offsets may make up for what it does to the radius.
     let parts: Vec<Shape> = own.shapes.iter().map(|s| s.only(&along)).collect();
     let needs_radius = best.gain - beside.gain(&parts).0 > at_most_of_noise(best.freedom);
-    (!needs_radius).then(|| causes::GRADUATION_ERROR.to_owned())
+    (!needs_radius).then_some(Cause::GraduationError)
 }
 
 /// A cause of the same kind that has more numbers, explains more with them, and to which the best adds nothing: it is dearer and so
 /// goes second, but nothing tells that it is not the one.
-pub(crate) fn richer(beside: &Beside, best: &Scored, others: &[&Scored]) -> Option<String> {
+pub(crate) fn richer(beside: &Beside, best: &Scored, others: &[&Scored]) -> Option<Cause> {
     let own = &best.candidate;
     let as_well = |other: &&&Scored| {
         let c = &other.candidate;
@@ -164,12 +165,12 @@ pub(crate) fn richer(beside: &Beside, best: &Scored, others: &[&Scored]) -> Opti
     };
     let most = others.iter().filter(as_well);
     let most = most.max_by(|a, b| a.gain.total_cmp(&b.gain))?;
-    Some(most.candidate.name.to_owned())
+    Some(most.candidate.name)
 }
 
 /// A cause of the same place that has more parameters and is this one for some of their values, as a harmonic of the scale
 /// is a bend of the channels at one phase: the simpler one goes first, but nothing in a recording tells them apart.
-pub(crate) fn wider(beside: &Beside, best: &Scored, others: &[&Scored]) -> Option<String> {
+pub(crate) fn wider(beside: &Beside, best: &Scored, others: &[&Scored]) -> Option<Cause> {
     let holds = |other: &&&Scored| {
         let c = &other.candidate;
         let own = best.candidate.domain;
@@ -179,8 +180,5 @@ pub(crate) fn wider(beside: &Beside, best: &Scored, others: &[&Scored]) -> Optio
         let wider = domain && other.freedom > best.freedom;
         wider && c.name != best.candidate.name && beside.holds(&c.shapes, &best.candidate.shapes)
     };
-    others
-        .iter()
-        .find(holds)
-        .map(|other| other.candidate.name.to_owned())
+    others.iter().find(holds).map(|other| other.candidate.name)
 }

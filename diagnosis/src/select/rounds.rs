@@ -1,6 +1,7 @@
 //! How often a recording is looked at anew. What is known is followed until its numbers rest; where they only go to and fro, as something
 //! large beside it has no name yet, that has to join first.
 
+use crate::finding::Cause;
 use crate::select::selection::Accepted;
 
 /// Most times that a recording is looked at anew.
@@ -40,7 +41,7 @@ pub(crate) struct Rounds {
     begun: usize,
     over: bool,
     /// Causes of the last look, and how many looks had the same.
-    names: Vec<&'static str>,
+    names: Vec<Cause>,
     alike: usize,
     /// Least power that was left with them, and that of the last two looks.
     least: f64,
@@ -99,6 +100,6 @@ impl Rounds {
     }
 }
 
-fn names(known: &[Accepted]) -> Vec<&'static str> {
+fn names(known: &[Accepted]) -> Vec<Cause> {
     known.iter().map(|one| one.candidate.name).collect()
 }

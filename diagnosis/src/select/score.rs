@@ -1,7 +1,7 @@
 //! What a candidate explains of what is left, and whether it can be that at all.
 
-use crate::causes::AC_COUPLING;
 use crate::causes::cause::{Candidate, Domain, Sign};
+use crate::finding::Cause;
 use crate::model::{Fit, System, atoms_of};
 use crate::numerics::solve::Solution;
 use crate::numerics::statistics::by_chance;
@@ -125,7 +125,7 @@ pub(crate) fn retain_likely(system: &System, list: &mut Vec<Scored>) {
 
 /// The same for one that is large from a size on.
 fn is_likely(scored: &Scored, large: f64) -> bool {
-    if scored.candidate.name == AC_COUPLING {
+    if scored.candidate.name == Cause::AcCoupling {
         return true;
     }
     // At constant speed, a line at the signals' own frequency is an offset or a gain of them, and hardly seen.

@@ -3,7 +3,7 @@
 use nonius_quantity::ordinal;
 
 use crate::causes::cause::{Candidate, Estimate};
-use crate::finding::{Finding, Gain, OTHER_ORDER, Parameter};
+use crate::finding::{Cause, Finding, Gain, OTHER_ORDER, Parameter};
 use crate::model::exact::Start;
 use crate::model::{Fit, Halves, System, amounts};
 use crate::numerics::statistics::{by_chance, price};
@@ -17,7 +17,7 @@ use crate::unnamed::unexplained::Unnamed;
 pub(crate) struct Accepted {
     pub(crate) candidate: Candidate,
     pub(crate) first: usize,
-    pub(crate) confounded: Vec<String>,
+    pub(crate) confounded: Vec<Cause>,
     /// Of a harmonic, the order that it may have as well.
     pub(crate) other_order: Option<usize>,
     /// The amounts at which its shapes are tangents; what is known of them is off the signals.
@@ -314,7 +314,7 @@ impl Selection {
                 );
             }
             let finding = Finding {
-                cause: accepted.candidate.name.into(),
+                cause: accepted.candidate.name,
                 confounded_with: accepted.confounded.clone(),
                 p_value,
                 evidence: seen,

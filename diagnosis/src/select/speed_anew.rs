@@ -3,9 +3,9 @@
 
 use nonius_recording::Recording;
 
-use crate::causes::BANDWIDTH_MISMATCH;
 use crate::causes::cause::{Candidate, Domain};
 use crate::context::Context;
+use crate::finding::Cause;
 use crate::model::exact::{NAMED, Start, followed, look, seen_together};
 use crate::select::beside::Beside;
 use crate::select::choice::best;
@@ -35,7 +35,7 @@ pub(crate) fn decided_anew(
     let (mut system, catalogue) = look(&without, &mut beside_it, recording);
     let mut found = begin(&mut system, &catalogue, beside_it);
     let beside = Beside::all_that_moves(&system, &found.fit.shapes);
-    let is_there = |name: &str| others.iter().any(|one| one.candidate.name == name);
+    let is_there = |name: Cause| others.iter().any(|one| one.candidate.name == name);
     let all = catalogue.candidates.iter();
     let mut scored: Vec<Scored> = all
         .filter(|c| goes_with_speed(c) && !(ONCE.contains(&c.name) && is_there(c.name)))
@@ -71,7 +71,7 @@ pub(crate) fn decided_anew(
     let new = best(&without, choices, recording)?;
     let (was, is) = (earlier[at].candidate.name, new.1.last()?.candidate.name);
     // The same name may be another channel's.
-    (was != is || is == BANDWIDTH_MISMATCH).then_some(new)
+    (was != is || is == Cause::BandwidthMismatch).then_some(new)
 }
 
 fn goes_with_speed(candidate: &Candidate) -> bool {

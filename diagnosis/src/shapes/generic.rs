@@ -7,8 +7,9 @@
 use std::rc::Rc;
 
 use crate::causes::cause::{Candidate, Domain};
-use crate::causes::{AC_COUPLING, GAIN_DRIFT, line_wave, speed_varies};
+use crate::causes::{line_wave, speed_varies};
 use crate::context::Context;
+use crate::finding::Cause;
 use crate::shapes::block::Block;
 use crate::shapes::library::{Group, Library, Row, Shape, Use};
 
@@ -268,7 +269,7 @@ pub(crate) fn at_any_speed(
     candidate: &Candidate,
     library: &mut Library,
 ) -> Vec<Shape> {
-    let now = candidate.domain == Domain::Speed && candidate.name != AC_COUPLING;
+    let now = candidate.domain == Domain::Speed && candidate.name != Cause::AcCoupling;
     if !now || !speed_varies(context) {
         return vec![];
     }
@@ -325,7 +326,7 @@ pub(crate) fn around(
             )
         }
         Domain::Time => {
-            let of: &[Of] = if candidate.name == GAIN_DRIFT {
+            let of: &[Of] = if candidate.name == Cause::GainDrift {
                 &[Of::Gain]
             } else {
                 &[Of::Offset]

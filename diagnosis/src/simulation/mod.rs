@@ -6,7 +6,7 @@ pub(crate) mod sensor;
 use nonius_calibration::Ellipse;
 use serde::Serialize;
 
-use crate::finding::Parameter;
+use crate::finding::{Cause, Parameter};
 use crate::model::exact;
 use crate::model::{Fit, System};
 
@@ -27,7 +27,7 @@ pub struct Simulation {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SimulatedCause {
     /// Its name.
-    pub cause: &'static str,
+    pub cause: Cause,
     /// Its parameters.
     pub parameters: Vec<Parameter>,
 }
@@ -75,19 +75,19 @@ pub(crate) fn simulation(
     Simulation {
         causes: vec![
             SimulatedCause {
-                cause: "offset",
+                cause: Cause::Offset,
                 parameters: vec![p("b_c", e.b_c, b_c, unit), p("b_s", e.b_s, b_s, unit)],
             },
             SimulatedCause {
-                cause: "gain_mismatch",
+                cause: Cause::GainMismatch,
                 parameters: vec![p("a_c", e.a_c, a_c, unit), p("a_s", e.a_s, a_s, unit)],
             },
             SimulatedCause {
-                cause: "quadrature_error",
+                cause: Cause::QuadratureError,
                 parameters: vec![p("beta", e.beta, beta, "rad")],
             },
             SimulatedCause {
-                cause: "white_noise",
+                cause: Cause::WhiteNoise,
                 parameters: vec![p("rms", noise, noise / (2.0 * n).sqrt(), "amplitude")],
             },
         ],

@@ -5,11 +5,10 @@ use std::fmt::Write;
 
 use nonius_recording::Recording;
 
-use crate::causes::{COGGING, COMMON_BANDWIDTH, VIBRATION};
 use crate::checks::timebase::GAP;
 use crate::context::{Context, MANY};
 use crate::diagnose::Diagnosis;
-use crate::finding::Finding;
+use crate::finding::{Cause, Finding};
 use crate::motion::spline::Spline;
 
 /// What a sample counts that the diagnosis leaves out: where there is no other, the motion goes along it.
@@ -82,15 +81,15 @@ fn weights(context: &Context) -> Vec<f64> {
 /// What the simulation of a finding adds to the angle at each sample, radians, and the positions hold yet: real motion, and the lag of a
 /// low pass that was seen in the radius.
 fn added_by<'a>(finding: &'a Finding, context: &'a Context) -> impl Fn(usize) -> f64 + 'a {
-    let cause = finding.cause.as_str();
+    let cause = finding.cause;
     let [amplitude, phase, frequency, order, tau] =
         ["amplitude", "phase", "frequency_hz", "order", "tau_s"]
             .map(|name| finding.parameter(name).unwrap_or(0.0));
     move |k| {
         let angle = match (cause, &context.phi) {
-            (VIBRATION, _) => TAU * frequency * context.time[k],
-            (COGGING, Some(phi)) => order * phi[k],
-            (COMMON_BANDWIDTH, _) => return -(tau * context.speed[k]).atan(),
+            (Cause::Vibration, _) => TAU * frequency * context.time[k],
+            (Cause::Cogging, Some(phi)) => order * phi[k],
+            (Cause::CommonBandwidth, _) => return -(tau * context.speed[k]).atan(),
             _ => return 0.0,
         };
         amplitude * (angle + phase).cos()

@@ -4,10 +4,8 @@ use std::fmt::Write;
 
 use nonius_recording::Recording;
 
-use crate::causes::AC_COUPLING;
 use crate::diagnose::Diagnosis;
-use crate::finding::{Finding, OTHER_ORDER, Parameter, Place};
-use crate::select::contender::is_drift;
+use crate::finding::{Cause, Finding, OTHER_ORDER, Parameter, Place};
 
 /// Name of the file beside it that the sensor is moved along: what [`crate::motion_csv`] says.
 pub const MOTION: &str = "motion.csv";
@@ -20,7 +18,7 @@ pub fn sensor_toml(found: &Diagnosis, recording: &Recording) -> String {
         .simulation
         .causes
         .iter()
-        .find(|c| c.cause == "white_noise");
+        .find(|c| c.cause == Cause::WhiteNoise);
     let white = noise
         .and_then(|c| c.parameters.first())
         .map_or(0.0, |p| p.value);
@@ -28,7 +26,7 @@ pub fn sensor_toml(found: &Diagnosis, recording: &Recording) -> String {
     let with_signal = found
         .findings
         .iter()
-        .filter(|f| f.cause == "amplitude_noise");
+        .filter(|f| f.cause == Cause::AmplitudeNoise);
     let with_signal: f64 = with_signal
         .filter_map(|f| f.parameter("rms"))
         .map(|rms| 0.75 * rms * rms)
@@ -66,13 +64,13 @@ pub fn sensor_toml(found: &Diagnosis, recording: &Recording) -> String {
     for finding in &found.findings {
         // Single codes that never come are a table, which the simulation has none of; nor does it know a charge at the beginning, which
         // offsets that drift do as well.
-        let drifts = finding.confounded_with.iter().any(|c| is_drift(c));
-        let charge = finding.cause == AC_COUPLING && drifts;
+        let drifts = finding.confounded_with.iter().any(|c| c.is_drift());
+        let charge = finding.cause == Cause::AcCoupling && drifts;
         if charge || matches!(finding.place, Some(Place::Missing { .. })) {
             let _ = writeln!(out, "\n# not simulated: {}", finding.evidence);
             continue;
         }
-        let _ = writeln!(out, "\n[[cause]]\nname = {:?}", finding.cause);
+        let _ = writeln!(out, "\n[[cause]]\nname = \"{}\"", finding.cause);
         for p in parameters(finding, recording) {
             let key = p
                 .name
@@ -96,25 +94,25 @@ pub fn sensor_toml(found: &Diagnosis, recording: &Recording) -> String {
 fn parameters(finding: &Finding, recording: &Recording) -> Vec<Parameter> {
     let mut all = finding.parameters.clone();
     let samples = recording.samples() as f64;
-    match (finding.cause.as_str(), finding.place) {
+    match (finding.cause, finding.place) {
         // As a share: a simulated recording is longer or shorter.
-        ("dropped_samples", _) => {
+        (Cause::DroppedSamples, _) => {
             let lost = finding.parameter("count").unwrap_or(0.0);
             all = vec![Parameter::exact("share", lost / (samples + lost), "1")];
         }
-        ("repeated_samples", _) => {
+        (Cause::RepeatedSamples, _) => {
             let doubled = finding.parameter("count").unwrap_or(0.0);
             all = vec![Parameter::exact("share", doubled / samples, "1")];
         }
         // One sensor is simulated, not both that it may be.
-        ("spatial_harmonic", _) => all.retain(|p| p.name != OTHER_ORDER),
+        (Cause::SpatialHarmonic, _) => all.retain(|p| p.name != OTHER_ORDER),
         (name, Some(Place::Code { channel, .. })) => {
             let adc = recording.metadata.adc;
             let bits = [adc.cos.bits, adc.sin.bits][channel];
             let codes = recording.codes().map(|(c, s)| [c, s][channel]);
             // From the lowest code on.
             let first = codes.map(|c| c + (1i64 << (bits - 1))).next().unwrap_or(0);
-            if name == "stuck_bit" {
+            if name == Cause::StuckBit {
                 let bit = finding.parameter("bit").unwrap_or(0.0) as u32;
                 all = vec![
                     Parameter::exact("bit", f64::from(bit), "1"),

@@ -6,6 +6,7 @@ use nonius_fourier::Complex;
 use nonius_quantity::{Quantity, Unit};
 
 use crate::context::Context;
+use crate::finding::Cause;
 use crate::numerics::ends::span;
 use crate::numerics::lines::median;
 use crate::numerics::statistics::after_trials;
@@ -185,7 +186,7 @@ pub(crate) fn no_noise(context: &Context, radial: &[f64], coded: f64) -> Vec<Unn
             format!(
                 "{} samples deviate in the radius by more than {FAR} standard deviations of the noise, the first is sample {first}; {}",
                 far.len(),
-                like("glitches", "the samples beside them deviate, too")
+                like(Cause::Glitches, "the samples beside them deviate, too")
             ),
         );
     }

@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use crate::causes::Catalogue;
 use crate::causes::cause::Domain;
-use crate::finding::names::plain;
+use crate::finding::Cause;
 use crate::model::{Fit, System};
 use crate::numerics::statistics::by_chance;
 use crate::select::beside::Beside;
@@ -121,8 +121,8 @@ fn does(domain: Domain) -> &'static str {
 }
 
 /// What it looks like, but is not.
-pub(crate) fn like(nearest: &str, but: &str) -> String {
-    format!("nearest likeness: {}, but {but}", plain(nearest))
+pub(crate) fn like(nearest: Cause, but: &str) -> String {
+    format!("nearest likeness: {}, but {but}", nearest.plain())
 }
 
 /// Why a name that explains this share of an error is none.

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use nonius_diagnosis::{Diagnosis, diagnose};
+use nonius_diagnosis::{Cause, Diagnosis, diagnose};
 use nonius_kept::{every, long};
 use nonius_recording::{Overrides, Recording};
 use rand::{SeedableRng, rngs::StdRng};
@@ -80,12 +80,12 @@ fn diagnosed(seen: &Seen, seed: u64) -> Diagnosis {
 }
 
 /// Exactly these names, and nothing is left.
-fn is_named(seen: &Seen, expected: &[&str]) {
+fn is_named(seen: &Seen, expected: &[Cause]) {
     is_named_with(seen, expected, 0..3);
 }
 
 /// The same with noise of these seeds.
-fn is_named_with(seen: &Seen, expected: &[&str], seeds: impl IntoIterator<Item = u64>) {
+fn is_named_with(seen: &Seen, expected: &[Cause], seeds: impl IntoIterator<Item = u64>) {
     for seed in seeds {
         let found = diagnosed(seen, seed);
         let left = &found.unexplained;
@@ -102,12 +102,12 @@ fn a_stuck_bit_has_no_companions() {
         code: |code, which| if which == 0 { code & !(1 << 5) } else { code },
         ..PLAIN
     };
-    is_named(&stuck, &["stuck_bit"]);
+    is_named(&stuck, &[Cause::StuckBit]);
     let reversing = Seen {
         periods: reversing,
         ..stuck
     };
-    is_named(&reversing, &["stuck_bit"]);
+    is_named(&reversing, &[Cause::StuckBit]);
 }
 
 /// An ADC whose noise is a tenth of its code is no cause, and the steps of its codes are no error of the sensor.
@@ -145,7 +145,7 @@ fn the_weight_of_a_bit() {
             ..PLAIN
         };
         let found = diagnosed(&heavy, 0);
-        assert_eq!(names(&found), ["adc_nonlinearity"], "bit {bit}");
+        assert_eq!(names(&found), [Cause::AdcNonlinearity], "bit {bit}");
     }
 }
 
@@ -163,7 +163,7 @@ fn codes_that_never_come() {
     };
     for seed in every(3, 0..3) {
         let found = diagnosed(&missing, seed);
-        assert_eq!(names(&found), ["adc_nonlinearity"]);
+        assert_eq!(names(&found), [Cause::AdcNonlinearity]);
         let count = found.findings[0].parameter("missing_codes");
         assert_eq!(count, Some(4.0), "{}", found.findings[0].evidence);
     }
@@ -200,7 +200,7 @@ fn noise_with_the_signal_at_an_even_speed() {
         share: 0.002,
         ..PLAIN
     };
-    is_named(&noisy, &["amplitude_noise"]);
+    is_named(&noisy, &[Cause::AmplitudeNoise]);
 }
 
 /// A drive that is slower at once bends the signals at one sample, and that sample is sound.
@@ -233,8 +233,8 @@ fn a_channel_clipped_at_a_rail() {
         },
         ..PLAIN
     };
-    is_named(&clipped, &["saturation"]);
-    is_named(&both, &["saturation", "saturation"]);
+    is_named(&clipped, &[Cause::Saturation]);
+    is_named(&both, &[Cause::Saturation, Cause::Saturation]);
     let rail = &diagnosed(&clipped, 0).findings[0];
     let threshold = (6500.0 / 8192.0 - 0.011) / AMPLITUDES[0];
     let found = rail.parameter("threshold").expect("a threshold");

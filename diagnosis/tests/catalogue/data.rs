@@ -1,5 +1,7 @@
 //! Causes in the data: samples that are off, lost or doubled, and noise with the signal.
 
+use nonius_diagnosis::Cause;
+
 use crate::harness::{
     Case, LSB, NOISE, PLAIN, Rows, damaged, farthest, finds, finds_nothing, names, near, shows,
     shows_in,
@@ -25,17 +27,17 @@ fn at_even_times(rows: &mut Rows) {
 
 #[test]
 fn samples() {
-    shows("glitches", |rows| {
+    shows(Cause::Glitches, |rows| {
         for k in [500, 4321, 9000, 15_000] {
             rows[k][1] += 0.2;
         }
     });
-    shows("dropped_samples", |rows| {
+    shows(Cause::DroppedSamples, |rows| {
         for k in [15_000, 9000, 4321, 500] {
             rows.remove(k);
         }
     });
-    shows("repeated_samples", |rows| {
+    shows(Cause::RepeatedSamples, |rows| {
         for k in [500, 4321, 9000, 12_000, 15_000, 17_000] {
             let before = rows[k - 1];
             rows[k][1] = before[1];
@@ -50,7 +52,7 @@ fn a_sample_an_hour() {
     let found = damaged(&PLAIN, |rows| {
         rows.iter_mut().for_each(|row| row[0] *= 3600.0 * 50e3);
     });
-    assert_eq!(names(&found), [""; 0]);
+    assert_eq!(names(&found), []);
 }
 
 /// Rows of zeros hold no signal: a logger shows them before its ADC has begun, after it has ended, and while its link is down.
@@ -93,14 +95,14 @@ fn a_glitch_beside_rows_of_zeros_counts_its_own_samples() {
         }
         rows[9000][1] += 0.2;
     });
-    assert_eq!(names(&found), ["glitches"]);
+    assert_eq!(names(&found), [Cause::Glitches]);
     assert_eq!(found.findings[0].gain.repaired_samples, Some(3));
 }
 
 /// A single row of zeros within a recording is a sample that is far off like any other.
 #[test]
 fn a_single_row_of_zeros_is_a_glitch() {
-    shows("glitches", |rows| {
+    shows(Cause::Glitches, |rows| {
         (rows[9000][1], rows[9000][2]) = (0.0, 0.0)
     });
 }
@@ -108,7 +110,7 @@ fn a_single_row_of_zeros_is_a_glitch() {
 /// No other sample is near it in value: how large noise is there, only its neighbours can tell.
 #[test]
 fn a_glitch_beyond_every_other_value() {
-    shows("glitches", |rows| {
+    shows(Cause::Glitches, |rows| {
         let lowest = (10..rows.len() - 10).min_by(|a, b| rows[*a][2].total_cmp(&rows[*b][2]));
         rows[lowest.expect("samples")][2] -= 0.15;
     });
@@ -120,7 +122,9 @@ fn a_glitch_of_eight_standard_deviations() {
     for k in [4321, 12_345] {
         for sense in [1.0, -1.0] {
             // Of an amplitude of about 0.8.
-            shows("glitches", |rows| rows[k][1] += sense * 8.0 * 0.8 * NOISE);
+            shows(Cause::Glitches, |rows| {
+                rows[k][1] += sense * 8.0 * 0.8 * NOISE
+            });
         }
     }
 }
@@ -129,7 +133,7 @@ fn a_glitch_of_eight_standard_deviations() {
 #[test]
 fn a_glitch_that_rings() {
     for sense in [1.0, -1.0] {
-        shows("glitches", |rows| {
+        shows(Cause::Glitches, |rows| {
             for k in [2523, 8613, 14_766] {
                 rows[k][1] += sense * 0.02;
                 rows[k + 1][1] -= sense * 0.008;
@@ -152,7 +156,7 @@ fn on_steps(rows: &mut Rows, step: i64, stuck: Option<u32>) {
 #[test]
 fn coarse_steps_a_stuck_bit_and_stray_codes() {
     let both = damaged(&PLAIN, |rows| on_steps(rows, 8, Some(5)));
-    let (steps, bit) = ("coarse_quantisation", "stuck_bit");
+    let (steps, bit) = (Cause::CoarseQuantisation, Cause::StuckBit);
     assert_eq!(names(&both)[..4], [steps, bit, steps, bit]);
     let stray = damaged(&PLAIN, |rows| {
         on_steps(rows, 16, None);
@@ -166,7 +170,7 @@ fn coarse_steps_a_stuck_bit_and_stray_codes() {
 /// Even where the scale moves by little more than the noise from sample to sample: chance hardly brings both codes back.
 #[test]
 fn samples_repeated_in_noise() {
-    shows_in(&NOISY, "repeated_samples", |rows| {
+    shows_in(&NOISY, Cause::RepeatedSamples, |rows| {
         // Where it moves by six times the noise, not by more.
         let fast: Vec<usize> = (1000..19_000)
             .step_by(700)
@@ -184,7 +188,7 @@ fn samples_repeated_in_noise() {
 /// The same of samples that were put in, which make all that follows late.
 #[test]
 fn samples_put_in_in_noise() {
-    shows_in(&NOISY, "repeated_samples", |rows| {
+    shows_in(&NOISY, Cause::RepeatedSamples, |rows| {
         put_in(rows, 0.025..0.03, 700)
     });
 }
@@ -206,7 +210,7 @@ fn put_in(rows: &mut Rows, moving: std::ops::Range<f64>, apart: usize) {
 /// Where noise could have brought the codes back, the angle tells: from there on it is late by what it moves in a sample.
 #[test]
 fn samples_put_in_that_the_angle_shows() {
-    shows_in(&NOISY, "repeated_samples", |rows| {
+    shows_in(&NOISY, Cause::RepeatedSamples, |rows| {
         put_in(rows, 0.008..0.02, 700)
     });
 }
@@ -219,12 +223,12 @@ fn put_in_slowly(rows: &mut Rows) {
 /// Where the angle does not tell either, the reference does: it hardly ever repeats itself without them.
 #[test]
 fn samples_put_in_that_a_reference_shows() {
-    assert_eq!(names(&damaged(&NOISY, put_in_slowly)), [""; 0]);
+    assert_eq!(names(&damaged(&NOISY, put_in_slowly)), []);
     let with_reference = Case {
         reference: true,
         ..NOISY
     };
-    shows_in(&with_reference, "repeated_samples", put_in_slowly);
+    shows_in(&with_reference, Cause::RepeatedSamples, put_in_slowly);
 }
 
 /// A lost sample makes a step, and its edge lies as far off the curve through its neighbours as a glitch does.
@@ -234,7 +238,7 @@ fn a_lost_sample_is_no_glitch() {
         noise: |_, _, _, n| 1.5 * NOISE * n[0],
         ..PLAIN
     };
-    shows_in(&noisy, "dropped_samples", |rows| {
+    shows_in(&noisy, Cause::DroppedSamples, |rows| {
         let mut fast: Vec<usize> = (1000..19_000)
             .step_by(300)
             .filter(|k| (0.025..0.035).contains(&moves(rows, *k)))
@@ -251,7 +255,7 @@ fn a_lost_sample_is_no_glitch() {
 /// drive's.
 #[test]
 fn a_sample_put_in_where_the_axis_turns_back() {
-    shows_in(&PLAIN, "repeated_samples", |rows| {
+    shows_in(&PLAIN, Cause::RepeatedSamples, |rows| {
         let inside = 2000..rows.len() - 2000;
         let turns = inside.min_by(|a, b| moves(rows, *a).total_cmp(&moves(rows, *b)));
         let turns = turns.expect("samples");
@@ -270,7 +274,7 @@ fn a_sample_lost_on_a_slow_axis() {
         rows.remove(lost.expect("samples"));
         at_even_times(rows);
     });
-    assert_eq!(names(&found), ["dropped_samples"]);
+    assert_eq!(names(&found), [Cause::DroppedSamples]);
     let count = found.findings[0].parameter("count");
     assert_eq!(count, Some(1.0), "{}", found.findings[0].evidence);
 }
@@ -284,12 +288,12 @@ fn lost_in_noise(rows: &mut Rows) {
 
 #[test]
 fn a_lost_sample_that_a_reference_shows() {
-    assert_eq!(names(&damaged(&NOISY, lost_in_noise)), [""; 0]);
+    assert_eq!(names(&damaged(&NOISY, lost_in_noise)), []);
     let with_reference = Case {
         reference: true,
         ..NOISY
     };
-    shows_in(&with_reference, "dropped_samples", lost_in_noise);
+    shows_in(&with_reference, Cause::DroppedSamples, lost_in_noise);
 }
 
 /// Angle of a drive that goes to and fro at an even speed, speeding up and slowing down evenly in between.
@@ -316,7 +320,7 @@ fn corners_of_a_drive_are_no_lost_samples() {
     for seed in 0..3 {
         finds_nothing(&cornered, seed);
     }
-    shows_in(&cornered, "dropped_samples", |rows| {
+    shows_in(&cornered, Cause::DroppedSamples, |rows| {
         rows.remove(17_000);
         rows.remove(15_402);
         at_even_times(rows);
@@ -335,13 +339,13 @@ fn a_reference_that_jumps_alone() {
         rows[9000..].iter_mut().for_each(|row| row[3] += moves);
     });
     let names = names(&found);
-    assert!(!names.contains(&"dropped_samples"), "{names:?}");
+    assert!(!names.contains(&Cause::DroppedSamples), "{names:?}");
 }
 
 #[test]
 fn noise_with_the_signal() {
     let found = finds(
-        "amplitude_noise",
+        Cause::AmplitudeNoise,
         &Case {
             noise: |u, _, _, n| NOISE * n[0] + 0.002 * u * n[1],
             ..PLAIN
@@ -374,7 +378,7 @@ fn a_wild_sample_beside_one_that_comes_again() {
     });
     assert_eq!(
         names(&found),
-        ["glitches"],
+        [Cause::Glitches],
         "{}",
         found.unexplained.signature
     );

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use nonius_diagnosis::{ContextError, Diagnosis, Finding, diagnose};
+use nonius_diagnosis::{Cause, ContextError, Diagnosis, Finding, diagnose};
 use nonius_recording::{Overrides, Recording};
 use rand::{Rng, SeedableRng, rngs::StdRng};
 use rand_distr::{Distribution, StandardNormal};
@@ -285,8 +285,8 @@ fn follows_as_claimed(found: &Diagnosis, rows: &Rows, claimed: f64) {
     );
 }
 
-pub(crate) fn names(found: &Diagnosis) -> Vec<&str> {
-    found.findings.iter().map(|f| f.cause.as_str()).collect()
+pub(crate) fn names(found: &Diagnosis) -> Vec<Cause> {
+    found.findings.iter().map(|f| f.cause).collect()
 }
 
 /// Motion and parameters drawn by a seed.
@@ -305,20 +305,20 @@ pub(crate) fn finds_nothing(case: &Case, seed: u64) {
 }
 
 /// The only finding is the cause.
-pub(crate) fn finds(name: &str, case: &Case) -> Diagnosis {
+pub(crate) fn finds(name: Cause, case: &Case) -> Diagnosis {
     let found = diagnosed(case, 7);
     is_only(&found, name);
     found
 }
 
 /// The only finding is a cause that the other may be as well.
-pub(crate) fn finds_beside(other: &str, name: &str, case: &Case) -> Diagnosis {
+pub(crate) fn finds_beside(other: Cause, name: Cause, case: &Case) -> Diagnosis {
     let found = finds(name, case);
     assert_eq!(found.findings[0].confounded_with, [other]);
     found
 }
 
-fn is_only(found: &Diagnosis, name: &str) {
+fn is_only(found: &Diagnosis, name: Cause) {
     let left = &found.unexplained.signature;
     assert_eq!(names(found), [name], "{left}");
     let first = &found.findings[0];
@@ -327,7 +327,7 @@ fn is_only(found: &Diagnosis, name: &str) {
 
 /// An effect a hundred times what can be seen, and more: what second order leaves of it is above the noise and must not be
 /// given another name. Nothing but the cause is named, nothing is left unexplained, and the residue is the noise.
-pub(crate) fn alone(name: &str, case: &Case) -> Diagnosis {
+pub(crate) fn alone(name: Cause, case: &Case) -> Diagnosis {
     let mut random = StdRng::seed_from_u64(11);
     let found = of_true_rows(
         case,
@@ -343,12 +343,12 @@ pub(crate) fn alone(name: &str, case: &Case) -> Diagnosis {
 }
 
 /// A plain recording that is `damaged` shows the cause of that name and nothing else, and keeps its length.
-pub(crate) fn shows(name: &str, damage: impl Fn(&mut Rows)) {
+pub(crate) fn shows(name: Cause, damage: impl Fn(&mut Rows)) {
     shows_in(&PLAIN, name, damage);
 }
 
 /// The same of any recording.
-pub(crate) fn shows_in(case: &Case, name: &str, damage: impl Fn(&mut Rows)) {
+pub(crate) fn shows_in(case: &Case, name: Cause, damage: impl Fn(&mut Rows)) {
     let found = damaged(case, damage);
     assert_eq!(names(&found), [name], "{}", found.unexplained.signature);
 }
@@ -379,7 +379,7 @@ fn off(of: &Finding, parameter: &str, value: f64) -> f64 {
 }
 
 /// A parameter of a cause is within four standard errors of what it truly is.
-pub(crate) fn of_cause(found: &Diagnosis, cause: &str, parameter: &str, value: f64) {
+pub(crate) fn of_cause(found: &Diagnosis, cause: Cause, parameter: &str, value: f64) {
     let own = found.findings.iter().find(|f| f.cause == cause);
     off(own.expect("the cause is found"), parameter, value);
 }

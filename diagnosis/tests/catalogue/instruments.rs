@@ -3,7 +3,7 @@
 
 use std::f64::consts::TAU;
 
-use nonius_diagnosis::{Diagnosis, diagnose};
+use nonius_diagnosis::{Cause, Diagnosis, diagnose};
 use nonius_kept::every;
 use nonius_recording::{Overrides, Recording};
 use rand::{SeedableRng, rngs::StdRng};
@@ -102,13 +102,13 @@ impl Instrument {
         };
         let found = bent.diagnosed(0);
         let first = names(&found);
-        let either = first == ["even_nonlinearity"] || first == ["spatial_harmonic"];
+        let either = first == [Cause::EvenNonlinearity] || first == [Cause::SpatialHarmonic];
         assert!(either, "{first:?}: {}", found.unexplained.signature);
         found
     }
 
     /// With this noise, and two others in the long form.
-    fn shows(&self, expected: &[&str]) {
+    fn shows(&self, expected: &[Cause]) {
         for seed in every(3, 0..3) {
             let found = self.diagnosed(seed);
             let left = &found.unexplained;
@@ -141,7 +141,7 @@ fn a_stuck_bit_of_an_adc_that_is_not_described() {
         damage: |_, [c, s]| [c & !(1 << 6), s],
         ..PLAIN
     };
-    stuck.shows(&["stuck_bit"]);
+    stuck.shows(&[Cause::StuckBit]);
 }
 
 /// What a counter rounds is no error of the sensor.
@@ -178,7 +178,7 @@ fn glitches_of_a_fast_axis() {
             damage: |k, [c, s]| [c + if OFF.contains(&k) { 260 } else { 0 }, s],
             ..PLAIN
         };
-        fast.shows(&["glitches"]);
+        fast.shows(&[Cause::Glitches]);
         let found = fast.diagnosed(1);
         let share = found.findings[0].parameters[0].value;
         assert!((share * SAMPLES as f64 - OFF.len() as f64).abs() < 1e-9);
@@ -203,7 +203,7 @@ fn a_mirror_within_a_period() {
         let found = mirror.diagnosed(seed);
         let residual = found.extended.residual_rms;
         assert!(residual < 1.1 * mirror.noise, "{residual}");
-        let sensor = |f: &&nonius_diagnosis::Finding| f.cause != "vibration";
+        let sensor = |f: &&nonius_diagnosis::Finding| f.cause != Cause::Vibration;
         assert_eq!(
             found.findings.iter().filter(sensor).count(),
             0,
@@ -230,7 +230,7 @@ fn a_step_motor_bends_no_sensor() {
     for seed in every(3, 0..3) {
         let found = stepping.diagnosed(seed);
         let left = &found.unexplained.signature;
-        assert_eq!(names(&found), ["even_nonlinearity"], "{seed}: {left}");
+        assert_eq!(names(&found), [Cause::EvenNonlinearity], "{seed}: {left}");
         assert!(!found.unexplained.significant, "{seed}: {left}");
         crate::harness::near(&found, "k_sin", BEND);
     }

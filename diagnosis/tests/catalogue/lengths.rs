@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use nonius_diagnosis::diagnose;
+use nonius_diagnosis::{Cause, diagnose};
 use nonius_kept::every;
 use nonius_recording::{Overrides, Recording};
 use rand::{Rng, SeedableRng, rngs::StdRng};
@@ -109,7 +109,11 @@ fn within_a_period_nothing_is_a_line() {
         }
         let recording = Recording::from_samples(time, cos, sin, &Overrides::default());
         let found = diagnose(&recording.expect("a recording")).expect("an ellipse");
-        let lines = ["interference", "amplitude_ripple", "vibration"];
+        let lines = [
+            Cause::Interference,
+            Cause::AmplitudeRipple,
+            Cause::Vibration,
+        ];
         let named = names(&found);
         assert!(!named.iter().any(|n| lines.contains(n)), "{named:?}");
         let left = &found.unexplained.signature;

@@ -2,6 +2,8 @@
 
 use std::f64::consts::TAU;
 
+use nonius_diagnosis::Cause;
+
 use crate::harness::{Case, PLAIN, long, names, of_cause};
 
 #[test]
@@ -28,12 +30,12 @@ fn large_and_small() {
     let left = &found.unexplained;
     assert_eq!(
         names(&found),
-        ["spatial_harmonic", "interference"],
+        [Cause::SpatialHarmonic, Cause::Interference],
         "{}",
         left.signature
     );
     assert!(!left.significant, "{}", left.signature);
-    of_cause(&found, "spatial_harmonic", "amplitude_cos", 0.002);
-    of_cause(&found, "interference", "frequency_hz", 151.3);
-    of_cause(&found, "interference", "amplitude_cos", 3e-5);
+    of_cause(&found, Cause::SpatialHarmonic, "amplitude_cos", 0.002);
+    of_cause(&found, Cause::Interference, "frequency_hz", 151.3);
+    of_cause(&found, Cause::Interference, "amplitude_cos", 3e-5);
 }

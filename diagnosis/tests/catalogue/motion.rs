@@ -2,14 +2,17 @@
 
 use std::f64::consts::TAU;
 
+use nonius_diagnosis::Cause;
+
 use crate::harness::{
-    Case, PERIODS, PLAIN, REVOLVING, alone, diagnosed, finds, finds_beside, near, within_errors,
+    Case, PERIODS, PLAIN, REVOLVING, alone, diagnosed, finds, finds_beside, names, near,
+    within_errors,
 };
 
 #[test]
 fn vibration_and_cogging() {
     let found = finds(
-        "vibration",
+        Cause::Vibration,
         &Case {
             motion: |t, _| 0.002 * (TAU * 1234.0 * t).sin(),
             ..PLAIN
@@ -21,7 +24,7 @@ fn vibration_and_cogging() {
         "is not a sensor error"
     );
     finds(
-        "cogging",
+        Cause::Cogging,
         &Case {
             motion: |_, a| 0.004 * (61.0 * a / PERIODS).sin(),
             ..REVOLVING
@@ -51,7 +54,7 @@ pub(crate) fn rumble(t: f64) -> f64 {
 #[test]
 fn beside_a_rumble() {
     let found = finds(
-        "cogging",
+        Cause::Cogging,
         &Case {
             motion: |t, a| rumble(t) + 0.01 * (5.0 * a / PERIODS).sin(),
             ..REVOLVING
@@ -59,7 +62,7 @@ fn beside_a_rumble() {
     );
     near(&found, "amplitude", 0.01);
     let found = finds(
-        "vibration",
+        Cause::Vibration,
         &Case {
             motion: |t, _| rumble(t) + 0.004 * (TAU * 431.0 * t).sin(),
             ..PLAIN
@@ -67,7 +70,7 @@ fn beside_a_rumble() {
     );
     near(&found, "frequency_hz", 431.0);
     let found = finds(
-        "interference",
+        Cause::Interference,
         &Case {
             motion: |t, _| rumble(t),
             channels: |c, s, t, _, _| (c + 6e-4 * (TAU * 700.0 * t).sin(), s),
@@ -96,7 +99,7 @@ fn stop_and_go(t: f64) -> f64 {
 #[test]
 fn beside_the_corners_of_a_drive() {
     let found = finds(
-        "vibration",
+        Cause::Vibration,
         &Case {
             motion: |t, drive| stop_and_go(t) - drive + 0.01 * (TAU * 309.0 * t).sin(),
             ..PLAIN
@@ -116,7 +119,7 @@ fn beside_the_corners_of_a_drive() {
 #[test]
 fn a_slow_vibration_alone() {
     let found = finds(
-        "vibration",
+        Cause::Vibration,
         &Case {
             motion: |t, drive| 30.0 * TAU * t - drive + 0.05 * (TAU * 47.0 * t).sin(),
             ..PLAIN
@@ -130,7 +133,7 @@ fn a_slow_vibration_alone() {
 #[test]
 fn slow_motion_beside_a_rumble() {
     let found = finds(
-        "vibration",
+        Cause::Vibration,
         &Case {
             motion: |t, _| rumble(t) + 0.008 * (TAU * 171.0 * t).sin(),
             ..PLAIN
@@ -138,7 +141,7 @@ fn slow_motion_beside_a_rumble() {
     );
     near(&found, "frequency_hz", 171.0);
     let found = finds(
-        "cogging",
+        Cause::Cogging,
         &Case {
             motion: |t, a| rumble(t) + 0.012 * (3.0 * a / PERIODS).sin(),
             ..REVOLVING
@@ -168,7 +171,7 @@ fn a_drive_that_swings() {
 #[test]
 fn a_drive_that_swings_fast() {
     let found = finds(
-        "vibration",
+        Cause::Vibration,
         &Case {
             motion: |t, drive| 9.0 * TAU * (TAU * 40.0 * t + 0.3).sin() + 12.0 * TAU * t - drive,
             ..PLAIN
@@ -182,7 +185,7 @@ fn a_drive_that_swings_fast() {
 #[test]
 fn beside_a_reference() {
     let found = finds(
-        "cogging",
+        Cause::Cogging,
         &Case {
             motion: |_, a| 0.002 * (13.0 * a / PERIODS).sin(),
             reference: true,
@@ -196,7 +199,7 @@ fn beside_a_reference() {
 #[test]
 fn beside_a_reference_and_a_rumble() {
     let found = finds(
-        "vibration",
+        Cause::Vibration,
         &Case {
             motion: |t, _| rumble(t) + 0.0015 * (TAU * 2431.0 * t).sin(),
             reference: true,
@@ -219,14 +222,13 @@ fn beside_a_reference_and_a_large_error() {
         },
         3,
     );
-    let names: Vec<&str> = found.findings.iter().map(|f| f.cause.as_str()).collect();
-    assert_eq!(names, ["even_nonlinearity", "cogging"]);
+    assert_eq!(names(&found), [Cause::EvenNonlinearity, Cause::Cogging]);
 }
 
 #[test]
 fn large() {
     let found = alone(
-        "vibration",
+        Cause::Vibration,
         &Case {
             motion: |t, _| 0.1 * (TAU * 1234.5 * t).sin(),
             ..PLAIN
@@ -247,14 +249,14 @@ fn cogging_at_orders_of_the_scale_period() {
     for reference in [false, true] {
         for motion in motions {
             let found = finds(
-                "cogging",
+                Cause::Cogging,
                 &Case {
                     motion,
                     reference,
                     ..REVOLVING
                 },
             );
-            assert_eq!(found.findings[0].cause, "cogging");
+            assert_eq!(found.findings[0].cause, Cause::Cogging);
         }
     }
 }
@@ -264,8 +266,8 @@ fn cogging_at_orders_of_the_scale_period() {
 #[test]
 fn bends_that_the_radius_does_not_show() {
     let found = finds_beside(
-        "odd_nonlinearity",
-        "cogging",
+        Cause::OddNonlinearity,
+        Cause::Cogging,
         &Case {
             motion: |t, _| rumble(t),
             channels: |c, s, _, _, _| (c + 0.003 * c.powi(3), s - 0.003 * s.powi(3)),
@@ -289,7 +291,7 @@ fn at_its_own_frequency_and_not_at_its_mirror() {
         (365.0, |t, _| 0.0008 * (TAU * 365.0 * t).sin()),
     ];
     for (hertz, motion) in motions {
-        let found = finds("vibration", &Case { motion, ..PLAIN });
+        let found = finds(Cause::Vibration, &Case { motion, ..PLAIN });
         near(&found, "frequency_hz", hertz);
     }
 }

@@ -12,7 +12,7 @@ const WITH_REFERENCE: Case = Case {
 /// What the reference says is another: the diagnosis is that without one, and says why in these words.
 fn left_out(case: &Case, says: impl Fn(f64) -> f64, why: &str) {
     let found = damaged(case, |rows| rows.iter_mut().for_each(|r| r[3] = says(r[3])));
-    assert_eq!(names(&found), [""; 0], "{why}");
+    assert_eq!(names(&found), [], "{why}");
     let left = &found.unexplained;
     assert!(!left.significant, "{why}: {}", left.signature);
     assert!(found.extended.residual_rms < 1.1 * NOISE, "{why}");

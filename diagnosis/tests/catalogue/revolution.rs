@@ -2,6 +2,8 @@
 
 use std::f64::consts::TAU;
 
+use nonius_diagnosis::Cause;
+
 use crate::harness::{
     Case, NOISE, PERIODS, REVOLVING, alone, diagnosed, evenly, evenly_followed, finds, names, near,
     of_cause, within_errors,
@@ -33,9 +35,9 @@ fn dirty<const DEPTH: u32, const WIDTH: u32>() -> Case {
 
 #[test]
 fn run_out_and_dirt() {
-    let found = finds("runout", &eccentric::<2>());
+    let found = finds(Cause::Runout, &eccentric::<2>());
     near(&found, "depth", 0.002);
-    finds("contamination", &dirty::<10, 80>());
+    finds(Cause::Contamination, &dirty::<10, 80>());
 }
 
 /// An error of the graduation, three times a revolution.
@@ -52,7 +54,7 @@ fn graduated(reference: bool) -> Case {
 
 #[test]
 fn graduation() {
-    let found = finds("graduation_error", &graduated(true));
+    let found = finds(Cause::GraduationError, &graduated(true));
     near(&found, "amplitude", 0.003);
     let gain = found.findings[0].gain;
     let before = gain.position_error_rms_before_rad.expect("a reference");
@@ -65,14 +67,17 @@ fn graduation() {
 fn no_graduation_without_a_reference() {
     let found = diagnosed(&graduated(false), 7);
     let names = names(&found);
-    assert!(names.iter().all(|name| *name == "cogging"), "{names:?}");
+    assert!(
+        names.iter().all(|name| *name == Cause::Cogging),
+        "{names:?}"
+    );
 }
 
 #[test]
 fn large() {
-    let found = alone("runout", &eccentric::<50>());
+    let found = alone(Cause::Runout, &eccentric::<50>());
     within_errors(&found, "depth", 0.05);
-    let found = alone("contamination", &dirty::<200, 100>());
+    let found = alone(Cause::Contamination, &dirty::<200, 100>());
     // The place counts from where the recording begins, a whole number of periods off.
     let place = &found.findings[0].parameters[1];
     let period = TAU / PERIODS;
@@ -108,13 +113,17 @@ fn what_repeats_with_the_revolution_stands_together() {
         let left = &found.unexplained.signature;
         assert_eq!(
             named,
-            ["graduation_error", "runout", "spatial_harmonic"],
+            [
+                Cause::SpatialHarmonic,
+                Cause::Runout,
+                Cause::GraduationError
+            ],
             "{left}"
         );
         assert!(!found.unexplained.significant, "{left}");
-        of_cause(found, "graduation_error", "amplitude", 0.06);
-        of_cause(found, "runout", "depth", 0.04);
-        of_cause(found, "spatial_harmonic", "amplitude_cos", 0.012);
+        of_cause(found, Cause::GraduationError, "amplitude", 0.06);
+        of_cause(found, Cause::Runout, "depth", 0.04);
+        of_cause(found, Cause::SpatialHarmonic, "amplitude_cos", 0.012);
     };
     check(&diagnosed(&magnet, 7));
     let (found, off) = evenly_followed(&magnet, 130.0, 7);

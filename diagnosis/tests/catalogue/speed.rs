@@ -4,6 +4,8 @@ use std::f64::consts::TAU;
 
 use nonius_kept::every;
 
+use nonius_diagnosis::Cause;
+
 use crate::harness::{
     Case, LSB, NOISE, PLAIN, alone, diagnosed, diagnosed_of, finds, finds_beside, finds_nothing,
     names, near, of_cause, shows, within_errors,
@@ -46,7 +48,7 @@ fn no_latency_without_a_reference() {
 #[test]
 fn delays_and_bandwidths() {
     let found = finds(
-        "channel_skew",
+        Cause::ChannelSkew,
         &Case {
             seen: |a, v| (a, a + 1e-6 * v),
             ..PLAIN
@@ -55,8 +57,8 @@ fn delays_and_bandwidths() {
     near(&found, "delay_s", 1e-6);
     // Far below its corner a low pass is a delay.
     finds_beside(
-        "bandwidth_mismatch",
-        "channel_skew",
+        Cause::BandwidthMismatch,
+        Cause::ChannelSkew,
         &Case {
             seen: |a, v| (a, a - (2e-6 * v).atan()),
             channels: |c, s, _, _, v| (c, s / (1.0 + (2e-6 * v).powi(2)).sqrt()),
@@ -64,7 +66,7 @@ fn delays_and_bandwidths() {
         },
     );
     let found = finds(
-        "common_bandwidth",
+        Cause::CommonBandwidth,
         &Case {
             channels: |c, s, _, _, v| {
                 let g = 1.0 / (1.0 + (2e-5 * v).powi(2)).sqrt();
@@ -74,14 +76,14 @@ fn delays_and_bandwidths() {
         },
     );
     near(&found, "tau_s", 2e-5);
-    let found = finds("latency", &late::<3>());
+    let found = finds(Cause::Latency, &late::<3>());
     near(&found, "delay_s", 3e-6);
 }
 
 #[test]
 fn crosstalk_and_hysteresis() {
     finds(
-        "delayed_crosstalk",
+        Cause::DelayedCrosstalk,
         &Case {
             channels: |c, s, _, a, v| {
                 (
@@ -92,7 +94,7 @@ fn crosstalk_and_hysteresis() {
             ..PLAIN
         },
     );
-    let found = finds("hysteresis", &turning::<2, -1>());
+    let found = finds(Cause::Hysteresis, &turning::<2, -1>());
     near(&found, "offset_cos", 0.002);
 }
 
@@ -103,19 +105,19 @@ fn clock_jitter() {
         noise: |_, slope, v, n| NOISE * n[0] + slope * v * 6e-7 * n[1],
         ..PLAIN
     };
-    finds("clock_jitter", &jitter);
+    finds(Cause::ClockJitter, &jitter);
     let shaking = Case {
         motion: |t, _| rumble(t),
         ..jitter
     };
-    finds("clock_jitter", &shaking);
+    finds(Cause::ClockJitter, &shaking);
 }
 
 #[test]
 fn large() {
     // The largest speed is some 3.4e3 rad/s: a tenth of a radian.
     let found = alone(
-        "bandwidth_mismatch",
+        Cause::BandwidthMismatch,
         &Case {
             tau: [0.0, 3e-5],
             ..PLAIN
@@ -123,7 +125,7 @@ fn large() {
     );
     within_errors(&found, "tau_sin_s", 3e-5);
     let found = alone(
-        "channel_skew",
+        Cause::ChannelSkew,
         &Case {
             seen: |a, v| (a, a + 3e-5 * v),
             ..PLAIN
@@ -131,7 +133,7 @@ fn large() {
     );
     within_errors(&found, "delay_s", 3e-5);
     let found = alone(
-        "common_bandwidth",
+        Cause::CommonBandwidth,
         &Case {
             tau: [1e-4, 1e-4],
             ..PLAIN
@@ -141,7 +143,7 @@ fn large() {
     // A third of a radian late, of a hundredth: where the fraction itself is large, its square turns the channels, and
     // that is not in the shape.
     alone(
-        "delayed_crosstalk",
+        Cause::DelayedCrosstalk,
         &Case {
             channels: |c, s, _, a, v| {
                 (
@@ -152,9 +154,9 @@ fn large() {
             ..PLAIN
         },
     );
-    let found = alone("hysteresis", &turning::<3, -4>());
+    let found = alone(Cause::Hysteresis, &turning::<3, -4>());
     within_errors(&found, "offset_cos", 0.003);
-    let found = alone("latency", &late::<30>());
+    let found = alone(Cause::Latency, &late::<30>());
     within_errors(&found, "delay_s", 3e-5);
 }
 
@@ -180,7 +182,7 @@ fn another_law_of_the_speed_has_no_name() {
 #[test]
 fn a_capacitor_before_each_channel() {
     const SECONDS: f64 = 0.04;
-    shows("ac_coupling", |rows| {
+    shows(Cause::AcCoupling, |rows| {
         let mut slow = [0.0; 2];
         for k in 0..rows.len() {
             let step = if k == 0 {
@@ -223,12 +225,26 @@ fn a_channel_that_is_late_bends_late() {
                 "{TENTHS} {COS} {SIN} {seed}: {}",
                 found.unexplained.signature
             );
-            assert_eq!(named, ["channel_skew", "odd_nonlinearity"], "{what}");
+            assert_eq!(
+                named,
+                [Cause::OddNonlinearity, Cause::ChannelSkew],
+                "{what}"
+            );
             assert!(!found.unexplained.significant, "{what}");
             let delay = 1e-7 * f64::from(TENTHS);
-            of_cause(&found, "channel_skew", "delay_s", delay);
-            of_cause(&found, "odd_nonlinearity", "k_cos", 1e-3 * f64::from(COS));
-            of_cause(&found, "odd_nonlinearity", "k_sin", 1e-3 * f64::from(SIN));
+            of_cause(&found, Cause::ChannelSkew, "delay_s", delay);
+            of_cause(
+                &found,
+                Cause::OddNonlinearity,
+                "k_cos",
+                1e-3 * f64::from(COS),
+            );
+            of_cause(
+                &found,
+                Cause::OddNonlinearity,
+                "k_sin",
+                1e-3 * f64::from(SIN),
+            );
         }
     }
     is_found::<60, 40, -20>();
@@ -263,17 +279,32 @@ fn a_channel_that_is_late_has_late_harmonics() {
         ..harmonic_and_late::<0>()
     };
     let all = [
-        ("channel_skew", "delay_s", 6e-5, harmonic_and_late::<60>()),
-        ("channel_skew", "delay_s", -6e-5, harmonic_and_late::<-60>()),
-        ("channel_skew", "delay_s", 2e-5, harmonic_and_late::<20>()),
         (
-            "bandwidth_mismatch",
+            Cause::ChannelSkew,
+            "delay_s",
+            6e-5,
+            harmonic_and_late::<60>(),
+        ),
+        (
+            Cause::ChannelSkew,
+            "delay_s",
+            -6e-5,
+            harmonic_and_late::<-60>(),
+        ),
+        (
+            Cause::ChannelSkew,
+            "delay_s",
+            2e-5,
+            harmonic_and_late::<20>(),
+        ),
+        (
+            Cause::BandwidthMismatch,
             "tau_cos_s",
             6e-5,
             low_pass([6e-5, 0.0]),
         ),
         (
-            "bandwidth_mismatch",
+            Cause::BandwidthMismatch,
             "tau_sin_s",
             6e-5,
             low_pass([0.0, 6e-5]),
@@ -284,11 +315,11 @@ fn a_channel_that_is_late_has_late_harmonics() {
         let mut named = names(&found);
         named.sort_unstable();
         let what = format!("{cause} {value}: {}", found.unexplained.signature);
-        assert_eq!(named, [cause, "spatial_harmonic"], "{what}");
+        assert_eq!(named, [Cause::SpatialHarmonic, cause], "{what}");
         assert!(!found.unexplained.significant, "{what}");
         of_cause(&found, cause, parameter, value);
-        of_cause(&found, "spatial_harmonic", "amplitude_cos", 0.006);
-        of_cause(&found, "spatial_harmonic", "amplitude_sin", 0.007);
+        of_cause(&found, Cause::SpatialHarmonic, "amplitude_cos", 0.006);
+        of_cause(&found, Cause::SpatialHarmonic, "amplitude_sin", 0.007);
     }
 }
 
@@ -305,6 +336,6 @@ fn a_line_that_the_motion_has_is_no_ripple() {
     };
     let found = diagnosed_of(&swung, 20_000).expect("an ellipse");
     let named = names(&found);
-    assert!(!named.contains(&"amplitude_ripple"), "{named:?}");
+    assert!(!named.contains(&Cause::AmplitudeRipple), "{named:?}");
     assert!(found.unexplained.significant || !named.is_empty());
 }

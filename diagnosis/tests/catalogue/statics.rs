@@ -2,6 +2,8 @@
 
 use std::f64::consts::FRAC_PI_2;
 
+use nonius_diagnosis::Cause;
+
 use crate::harness::{
     Case, LSB, PLAIN, alone, damaged, evenly, finds, names, near, of_cause, shows, within_errors,
 };
@@ -9,7 +11,7 @@ use crate::harness::{
 #[test]
 fn bends_and_harmonics() {
     let found = finds(
-        "even_nonlinearity",
+        Cause::EvenNonlinearity,
         &Case {
             channels: |c, s, _, _, _| (c + 0.003 * c * c, s + 0.002 * s * s),
             ..PLAIN
@@ -18,7 +20,7 @@ fn bends_and_harmonics() {
     near(&found, "k_cos", 0.003);
     near(&found, "k_sin", 0.002);
     let found = finds(
-        "odd_nonlinearity",
+        Cause::OddNonlinearity,
         &Case {
             channels: |c, s, _, _, _| (c + 0.004 * c.powi(3), s - 0.003 * s.powi(3)),
             ..PLAIN
@@ -26,7 +28,7 @@ fn bends_and_harmonics() {
     );
     near(&found, "k_cos", 0.004);
     let found = finds(
-        "spatial_harmonic",
+        Cause::SpatialHarmonic,
         &Case {
             channels: |c, s, _, a, _| {
                 (
@@ -60,7 +62,7 @@ fn harmonics_of_every_order() {
         (7.0, of::<7>),
     ];
     for (order, channels) in orders {
-        let found = finds("spatial_harmonic", &Case { channels, ..PLAIN });
+        let found = finds(Cause::SpatialHarmonic, &Case { channels, ..PLAIN });
         assert_eq!(found.findings[0].parameter("order"), Some(order));
         near(&found, "amplitude_cos", 0.002);
         near(&found, "amplitude_sin", 0.003);
@@ -71,7 +73,7 @@ fn harmonics_of_every_order() {
 #[test]
 fn a_harmonic_beside_a_bend_is_a_harmonic() {
     let found = finds(
-        "spatial_harmonic",
+        Cause::SpatialHarmonic,
         &Case {
             channels: |c, s, _, a, _| {
                 let third = |phase: f64| 0.0015 * (3.0 * a + phase).cos();
@@ -101,7 +103,7 @@ fn harmonics_at_one_speed_are_not_only_a_line() {
     assert!(!found.findings.is_empty());
     for one in &found.findings {
         let mut group = one.confounded_with.iter().chain([&one.cause]);
-        let harmonic = group.any(|name| name == "spatial_harmonic");
+        let harmonic = group.any(|name| *name == Cause::SpatialHarmonic);
         assert!(harmonic, "{:?}", names(&found));
     }
 }
@@ -109,7 +111,7 @@ fn harmonics_at_one_speed_are_not_only_a_line() {
 #[test]
 fn rails_and_codes() {
     finds(
-        "saturation",
+        Cause::Saturation,
         &Case {
             channels: |c, s, _, _, _| {
                 (c - 0.05 * (c - 0.8).max(0.0), s - 0.05 * (s - 0.8).max(0.0))
@@ -118,19 +120,19 @@ fn rails_and_codes() {
         },
     );
     finds(
-        "adc_nonlinearity",
+        Cause::AdcNonlinearity,
         &Case {
             channels: |c, s, _, _, _| (c + 0.0005 * (c + 0.02).signum(), s),
             ..PLAIN
         },
     );
-    shows("stuck_bit", |rows| {
+    shows(Cause::StuckBit, |rows| {
         for row in rows {
             let code = (row[1] / LSB).round() as i64 + 8192;
             row[1] = ((code & !8) - 8192) as f64 * LSB;
         }
     });
-    shows("coarse_quantisation", |rows| {
+    shows(Cause::CoarseQuantisation, |rows| {
         for row in rows {
             row[1] = (row[1] / LSB / 16.0).round() * 16.0 * LSB;
         }
@@ -152,7 +154,7 @@ fn a_bend_beside_coarse_steps() {
     let left = &found.unexplained.signature;
     assert_eq!(
         names(&found),
-        ["coarse_quantisation", "even_nonlinearity"],
+        [Cause::CoarseQuantisation, Cause::EvenNonlinearity],
         "{left}"
     );
 }
@@ -160,7 +162,7 @@ fn a_bend_beside_coarse_steps() {
 #[test]
 fn large() {
     let found = alone(
-        "spatial_harmonic",
+        Cause::SpatialHarmonic,
         &Case {
             channels: |c, s, _, a, _| {
                 (c + 0.05 * (3.0 * a + 0.4).cos(), s + 0.04 * (3.0 * a).sin())
@@ -171,7 +173,7 @@ fn large() {
     within_errors(&found, "amplitude_cos", 0.05);
     within_errors(&found, "amplitude_sin", 0.04);
     let found = alone(
-        "even_nonlinearity",
+        Cause::EvenNonlinearity,
         &Case {
             channels: |c, s, _, _, _| (c + 0.05 * c * c, s - 0.04 * s * s),
             ..PLAIN
@@ -179,7 +181,7 @@ fn large() {
     );
     within_errors(&found, "k_cos", 0.05);
     let found = alone(
-        "odd_nonlinearity",
+        Cause::OddNonlinearity,
         &Case {
             channels: |c, s, _, _, _| (c - 0.06 * c.powi(3), s - 0.05 * s.powi(3)),
             ..PLAIN
@@ -187,7 +189,7 @@ fn large() {
     );
     within_errors(&found, "k_sin", -0.05);
     let found = alone(
-        "saturation",
+        Cause::Saturation,
         &Case {
             channels: |c, s, _, _, _| {
                 let pressed = |v: f64| v - 0.3 * (v - 0.77).max(0.0);
@@ -218,14 +220,14 @@ fn an_order_that_may_be_another() {
         },
         ..PLAIN
     };
-    let seen = finds("spatial_harmonic", &backwards);
+    let seen = finds(Cause::SpatialHarmonic, &backwards);
     assert_eq!(seen.findings[0].parameter("order"), Some(3.0));
     assert_eq!(seen.findings[0].parameter("other_order"), None);
     let hidden = Case {
         motion: shaken,
         ..backwards
     };
-    let hidden = finds("spatial_harmonic", &hidden);
+    let hidden = finds(Cause::SpatialHarmonic, &hidden);
     let finding = &hidden.findings[0];
     let mut orders = ["order", "other_order"].map(|name| finding.parameter(name));
     orders.sort_by(|a, b| a.partial_cmp(b).expect("numbers"));
@@ -241,13 +243,13 @@ fn an_order_that_may_be_another() {
 #[test]
 fn one_rail_of_one_channel() {
     let found = finds(
-        "saturation",
+        Cause::Saturation,
         &Case {
             channels: |c, s, _, _, _| (c, s + 0.3 * (-s - 0.874).max(0.0)),
             ..PLAIN
         },
     );
-    of_cause(&found, "saturation", "threshold", 0.874);
-    of_cause(&found, "saturation", "compression_sin_lower", 0.3);
-    of_cause(&found, "saturation", "compression_sin_upper", 0.0);
+    of_cause(&found, Cause::Saturation, "threshold", 0.874);
+    of_cause(&found, Cause::Saturation, "compression_sin_lower", 0.3);
+    of_cause(&found, Cause::Saturation, "compression_sin_upper", 0.0);
 }

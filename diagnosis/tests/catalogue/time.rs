@@ -2,12 +2,14 @@
 
 use std::f64::consts::TAU;
 
+use nonius_diagnosis::Cause;
+
 use crate::harness::{Case, PLAIN, alone, diagnosed, finds, names, near, within_errors};
 
 #[test]
 fn lines() {
     let found = finds(
-        "interference",
+        Cause::Interference,
         &Case {
             channels: |c, s, t, _, _| {
                 (
@@ -21,7 +23,7 @@ fn lines() {
     near(&found, "frequency_hz", 150.0);
     near(&found, "amplitude_sin", 0.0015);
     let found = finds(
-        "amplitude_ripple",
+        Cause::AmplitudeRipple,
         &Case {
             channels: |c, s, t, _, _| {
                 let m = 1.0 + 0.001 * (TAU * 333.0 * t).cos();
@@ -36,14 +38,14 @@ fn lines() {
 #[test]
 fn slow_changes() {
     finds(
-        "offset_drift",
+        Cause::OffsetDrift,
         &Case {
             channels: |c, s, t, _, _| (c + 0.01 * t, s - 0.008 * t),
             ..PLAIN
         },
     );
     finds(
-        "gain_drift",
+        Cause::GainDrift,
         &Case {
             channels: |c, s, t, _, _| (c * (1.0 + 0.01 * t), s * (1.0 - 0.006 * t)),
             ..PLAIN
@@ -78,8 +80,8 @@ fn drifts_with_temperature() {
     // From one standard deviation below the mean to one above: twice 3 °C/√12.
     let change = 3f64.sqrt();
     for (name, case, per_degree) in [
-        ("offset_drift", offsets, 0.0003),
-        ("gain_drift", gains, 0.0005),
+        (Cause::OffsetDrift, offsets, 0.0003),
+        (Cause::GainDrift, gains, 0.0005),
     ] {
         let found = finds(name, &case);
         within_errors(&found, "change_cos", per_degree * change);
@@ -101,10 +103,10 @@ fn warming_up_is_a_drift() {
         ..PLAIN
     };
     for case in [slow, fast] {
-        let found = finds("offset_drift", &case);
+        let found = finds(Cause::OffsetDrift, &case);
         let first = &found.findings[0];
-        assert_eq!(first.cause, "offset_drift");
-        assert_eq!(first.confounded_with, ["ac_coupling"]);
+        assert_eq!(first.cause, Cause::OffsetDrift);
+        assert_eq!(first.confounded_with, [Cause::AcCoupling]);
     }
 }
 
@@ -118,7 +120,7 @@ fn what_warms_up_from_some_moment_on_has_a_start() {
         },
         ..PLAIN
     };
-    let found = finds("gain_drift", &lamp);
+    let found = finds(Cause::GainDrift, &lamp);
     near(&found, "tau_s", 0.05);
     near(&found, "start_s", 0.1);
     near(&found, "change_cos", 0.004);
@@ -139,7 +141,7 @@ fn a_line_that_wanders_has_no_name() {
         ..PLAIN
     };
     let found = diagnosed(&lamp, 7);
-    assert_eq!(names(&found), [""; 0]);
+    assert_eq!(names(&found), []);
     assert!(found.unexplained.significant);
 }
 
@@ -156,7 +158,7 @@ fn two_lines_beside_each_other() {
     let found = diagnosed(&mains, 7);
     assert_eq!(
         names(&found),
-        ["interference"; 2],
+        [Cause::Interference; 2],
         "{}",
         found.unexplained.signature
     );
@@ -179,7 +181,10 @@ fn hum_beside_a_slow_wave() {
         ..PLAIN
     };
     let found = diagnosed(&case, 7);
-    let lines = found.findings.iter().filter(|f| f.cause == "interference");
+    let lines = found
+        .findings
+        .iter()
+        .filter(|f| f.cause == Cause::Interference);
     let hertz: Vec<f64> = lines.filter_map(|f| f.parameter("frequency_hz")).collect();
     let hum = |hertz: &f64| (hertz - 350.0).abs() < 1.0;
     assert!(hertz.len() == 1 && hertz.iter().all(hum), "{hertz:?}");
@@ -188,7 +193,7 @@ fn hum_beside_a_slow_wave() {
 #[test]
 fn large() {
     let found = alone(
-        "interference",
+        Cause::Interference,
         &Case {
             channels: |c, s, t, _, _| {
                 (
@@ -202,7 +207,7 @@ fn large() {
     within_errors(&found, "frequency_hz", 151.3);
     within_errors(&found, "amplitude_sin", 0.04);
     let found = alone(
-        "amplitude_ripple",
+        Cause::AmplitudeRipple,
         &Case {
             channels: |c, s, t, _, _| {
                 let m = 1.0 + 0.06 * (TAU * 333.3 * t).cos();
@@ -213,14 +218,14 @@ fn large() {
     );
     within_errors(&found, "depth", 0.06);
     alone(
-        "offset_drift",
+        Cause::OffsetDrift,
         &Case {
             channels: |c, s, t, _, _| (c + 0.15 * t, s - 0.1 * t),
             ..PLAIN
         },
     );
     alone(
-        "gain_drift",
+        Cause::GainDrift,
         &Case {
             channels: |c, s, t, _, _| (c * (1.0 + 0.2 * t), s * (1.0 - 0.15 * t)),
             ..PLAIN

@@ -1,6 +1,6 @@
 //! Sentences of findings, what is not explained, and what a recording cannot show.
 
-use nonius_diagnosis::{Diagnosis, unseen};
+use nonius_diagnosis::{Cause, Diagnosis, unseen};
 
 use crate::harness::{Case, NOISE, PLAIN, arc, damaged, diagnosed, finds};
 
@@ -37,7 +37,7 @@ fn a_sentence_has_units_and_the_digits_that_are_known() {
         seen: |alpha, speed| (alpha, alpha - 1.3e-6 * speed),
         ..PLAIN
     };
-    let found = finds("channel_skew", &skew);
+    let found = finds(Cause::ChannelSkew, &skew);
     let said = evidence(&found);
     assert!(
         said.contains("grows in proportion to speed, as if cos were sampled 1."),
@@ -65,7 +65,7 @@ fn a_group_names_both() {
         channels: |c, s, t, _, _| (c + 0.02 * t, s - 0.015 * t),
         ..PLAIN
     };
-    let found = finds("offset_drift", &leaking);
+    let found = finds(Cause::OffsetDrift, &leaking);
     let said = evidence(&found);
     assert!(
         said.starts_with("offset drift or AC coupling: the offsets drift"),
@@ -85,7 +85,7 @@ fn noise_gains_likelihood_of_held_out_data() {
         noise: |u, _, _, n| NOISE * n[0] + 3.0 * NOISE * u * n[1],
         ..PLAIN
     };
-    let found = finds("amplitude_noise", &noisy);
+    let found = finds(Cause::AmplitudeNoise, &noisy);
     let gain = found.findings[0].gain;
     let all = gain.detection_snr.expect("an SNR").powi(2) / 2.0;
     let held_out = gain.held_out_log_likelihood_gain.expect("a gain");

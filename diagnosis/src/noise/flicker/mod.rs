@@ -16,15 +16,13 @@ mod spectrum;
 use crate::context::Context;
 use crate::drifts::channels::Channels;
 use crate::drifts::telegraph;
-use crate::finding::{Chip, Finding, Gain, Parameter};
+use crate::finding::{Cause, Chip, Finding, Gain, Parameter};
 use crate::numerics::statistics::{by_chance, price};
 use crate::select::score::SHOWN;
 use crate::unnamed::unexplained::{Unnamed, What, like};
 
 use self::spectrum::{Band, Line, bands, spectrum, without_hum};
 
-/// Its name.
-pub(crate) const FLICKER: &str = "flicker_noise";
 /// Slowest part of the spectrum, cycles per recording: below, polynomials of time were taken off.
 const SLOWEST: usize = 8;
 /// Fewest lines of the spectrum that tell a shape.
@@ -256,7 +254,7 @@ impl Flicker {
                     "the noise of the channels rises towards low frequencies, from {} down; {}",
                     corner.brief(),
                     like(
-                        FLICKER,
+                        Cause::FlickerNoise,
                         "offsets that jump between two levels explain nearly as much"
                     )
                 )),
@@ -268,7 +266,7 @@ impl Flicker {
             corner.brief()
         );
         Ok(Finding {
-            cause: FLICKER.into(),
+            cause: Cause::FlickerNoise,
             confounded_with: vec![],
             p_value: self.log_p.exp(),
             parameters: vec![
