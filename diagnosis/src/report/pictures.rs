@@ -54,7 +54,21 @@ fn ways(finding: &Finding, context: &Context) -> Vec<(Against, Along)> {
         Cause::Runout | Cause::Contamination => vec![(Revolution, Radius)],
         Cause::GraduationError => vec![(Revolution, Circle)],
         Cause::Cogging => vec![(Revolution, motion)],
-        _ => vec![],
+        // In the data themselves, or random: they have pictures of their own.
+        Cause::StuckBit
+        | Cause::CoarseQuantisation
+        | Cause::Glitches
+        | Cause::DroppedSamples
+        | Cause::RepeatedSamples
+        | Cause::ClockJitter
+        | Cause::FlickerNoise
+        | Cause::AmplitudeNoise => vec![],
+        // No findings.
+        Cause::Offset
+        | Cause::GainMismatch
+        | Cause::QuadratureError
+        | Cause::WhiteNoise
+        | Cause::AccelerationGain => vec![],
     }
 }
 
