@@ -323,7 +323,7 @@ fn conclude(
     sort(&mut findings);
     let was = system.residual(&selection.base);
     let left = system.residual(&extended.fit);
-    let mut unexplained = Unexplained::nothing();
+    let mut unexplained = Unexplained::nothing(&findings);
     let seen = Left {
         context,
         radial: &left.radial,

@@ -5,7 +5,7 @@ use std::rc::Rc;
 use super::{Catalogue, ORDERS};
 use nonius_quantity::ordinal;
 
-use crate::causes::cause::{Adds, Candidate, Domain, Exact, Sign, each, polar};
+use crate::causes::candidate::{Adds, Candidate, Domain, Exact, Sign, each, polar};
 use crate::context::Context;
 use crate::finding::{Cause, Chip, Parameter};
 use crate::shapes::block::Block;

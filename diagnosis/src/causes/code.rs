@@ -3,7 +3,7 @@
 use std::rc::Rc;
 
 use super::Catalogue;
-use crate::causes::cause::{Candidate, Domain};
+use crate::causes::candidate::{Candidate, Domain};
 use crate::context::Context;
 use crate::finding::{Cause, Parameter};
 use crate::shapes::block::Block;

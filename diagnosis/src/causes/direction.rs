@@ -3,7 +3,7 @@
 use std::rc::Rc;
 
 use super::speed::{ACCELERATION, SIGN, SOFT, Speed, cause};
-use crate::causes::cause::Candidate;
+use crate::causes::candidate::Candidate;
 use crate::context::Context;
 use crate::finding::Cause;
 use crate::shapes::trig::{Trig, channel, normalised};
@@ -78,5 +78,10 @@ pub(super) fn tilt(speed: &Speed) -> Candidate {
         speed.by.shape(ACCELERATION, &own)
     };
     let shapes = [0, 1].map(gain).into();
-    cause(Cause::AccelerationGain, shapes, &["gain"], "1")
+    cause(
+        Cause::AccelerationGain,
+        shapes,
+        &["gain_cos", "gain_sin"],
+        "1",
+    )
 }

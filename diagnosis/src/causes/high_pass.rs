@@ -8,7 +8,7 @@ use nonius_fourier::Complex;
 
 use super::speed::follows;
 use super::{Catalogue, in_time};
-use crate::causes::cause::{Candidate, Domain, Estimate, Exact, Sign};
+use crate::causes::candidate::{Candidate, Domain, Estimate, Exact, Sign};
 use crate::context::Context;
 use crate::finding::{Cause, Parameter};
 use crate::shapes::block::Block;

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 use std::rc::Rc;
 
 use super::frequencies::{self, Line, Search};
-use crate::causes::cause::{Candidate, Domain, Estimate, Exact, Make, Reads, polar};
+use crate::causes::candidate::{Candidate, Domain, Estimate, Exact, Make, Reads, polar};
 use crate::context::Context;
 use crate::finding::{Cause, Chip, Parameter};
 use crate::model::{Residual, Weighed};

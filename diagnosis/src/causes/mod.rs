@@ -1,7 +1,7 @@
 //! The catalogue: one file per kind of cause.
 
 pub(crate) mod angle;
-pub(crate) mod cause;
+pub(crate) mod candidate;
 mod code;
 mod direction;
 mod frequencies;
@@ -21,7 +21,7 @@ use std::rc::Rc;
 
 use std::collections::BTreeMap;
 
-use crate::causes::cause::{Candidate, Domain};
+use crate::causes::candidate::{Candidate, Domain};
 use crate::context::Context;
 use crate::finding::Cause;
 use crate::model::{Residual, Weighed};

@@ -8,7 +8,7 @@ use nonius_quantity::times;
 
 use super::mirror::unmirrored_order;
 use super::revolution::{harmonic, turns};
-use crate::causes::cause::{Candidate, Domain, Exact, Make, Sign, each};
+use crate::causes::candidate::{Candidate, Domain, Exact, Make, Sign, each};
 use crate::context::Context;
 use crate::finding::{Cause, Chip, Parameter};
 use crate::model::{Residual, Weighed};

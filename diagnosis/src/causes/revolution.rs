@@ -6,7 +6,7 @@ use std::rc::Rc;
 use nonius_quantity::times;
 
 use super::Catalogue;
-use crate::causes::cause::{Candidate, Domain, polar};
+use crate::causes::candidate::{Candidate, Domain, polar};
 use crate::context::Context;
 use crate::finding::{Cause, Chip, Parameter};
 use crate::numerics::ends::span;
@@ -129,7 +129,7 @@ pub(super) fn harmonic(
     order: u32,
     name: &'static str,
     unit: &'static str,
-) -> crate::causes::cause::Reads {
+) -> crate::causes::candidate::Reads {
     Rc::new(move |e| {
         let (a, d, p, ep) = polar(e.x, e.error);
         vec![

@@ -4,7 +4,7 @@ use std::rc::Rc;
 
 use super::in_time;
 use super::time::drift;
-use crate::causes::cause::{Candidate, Estimate, Exact, Make, each};
+use crate::causes::candidate::{Candidate, Estimate, Exact, Make, each};
 use crate::drifts::warming::{COURSES, Warming};
 use crate::finding::Parameter;
 use crate::shapes::library::{Library, Shape};

@@ -7,7 +7,7 @@ use nonius_fourier::Complex;
 use super::direction::{self, sides};
 use super::lag::{falls, falls_behind, later, low_pass};
 use super::{Catalogue, Modulated, modulated};
-use crate::causes::cause::{Candidate, Domain, Exact, Sign, each};
+use crate::causes::candidate::{Candidate, Domain, Exact, Sign, each};
 use crate::context::Context;
 use crate::finding::{Cause, Chip, Parameter};
 use crate::shapes::block::Block;

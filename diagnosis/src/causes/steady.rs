@@ -4,7 +4,7 @@
 
 use std::f64::consts::TAU;
 
-use crate::causes::cause::Candidate;
+use crate::causes::candidate::Candidate;
 use crate::context::Context;
 use crate::finding::Cause;
 use crate::model::Residual;

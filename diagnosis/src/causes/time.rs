@@ -3,7 +3,7 @@
 use std::rc::Rc;
 
 use super::{Catalogue, Modulated, modulated};
-use crate::causes::cause::{Candidate, Domain, Estimate};
+use crate::causes::candidate::{Candidate, Domain, Estimate};
 use crate::context::Context;
 use crate::finding::{Cause, Chip, Parameter};
 use crate::numerics::polynomial::{DEGREE, legendre};

@@ -40,21 +40,25 @@ struct Jump {
     sigma: f64,
 }
 
+/// One of the samples on either side of a place.
+fn single(side: usize, one: usize) -> Vec<f64> {
+    (0..2 * side).map(|i| f64::from(i == one)).collect()
+}
+
 /// What a step between two samples in the middle adds to a curve of that order through `side` samples on either side: the
 /// weights of the samples that give its size, free of that curve, and of one of the samples.
 fn step_weights(side: usize, order: i32, but: Option<usize>) -> Vec<f64> {
-    let single = |one: usize| (0..2 * side).map(|i| f64::from(i == one)).collect();
     let mut curve = powers(2 * side, order);
-    curve.extend(but.map(single));
+    curve.extend(but.map(|one| single(side, one)));
     let step = column(2 * side, |x| 0.5 * x.signum());
     weights_of(&step, &curve)
 }
 
-/// Corners of a drive: places where the speed, the acceleration or its change is another at once. A curve does not follow
-/// them, and what it leaves looks like a step.
-struct Corners(Vec<Vec<f64>>);
+/// What a curve does not follow either and what looks like a step in it: corners of a drive, where the speed, the acceleration or
+/// its change is another at once, and a wild sample beside the place, whose neighbours go on as before.
+struct Alike(Vec<Vec<f64>>);
 
-impl Corners {
+impl Alike {
     /// What they add to a curve of that order through `side` samples on either side: of unit square, free of that curve.
     fn new(side: usize, order: i32) -> Self {
         /// Steps of a sixteenth of a side by which they may stand beside the middle.
@@ -62,19 +66,22 @@ impl Corners {
         let curve = powers(2 * side, order);
         let corner = |(degree, place): (i32, i32)| -> Vec<f64> {
             let from = f64::from(place) / 16.0;
-            let bent = column(2 * side, |x| (x - from).max(0.0).powi(degree));
-            let free = crate::numerics::solve::without(&bent, &curve);
+            column(2 * side, |x| (x - from).max(0.0).powi(degree))
+        };
+        let places = -BESIDE..=BESIDE;
+        let corners = places.flat_map(|place| (1..=3).map(move |degree| (degree, place)));
+        let wild = [side - 1, side].map(|one| single(side, one));
+        let unit = |alike: Vec<f64>| -> Vec<f64> {
+            let free = crate::numerics::solve::without(&alike, &curve);
             let size = free.iter().map(|v| v * v).sum::<f64>().sqrt();
             free.iter().map(|v| v / size).collect()
         };
-        let places = -BESIDE..=BESIDE;
-        let all = places.flat_map(|place| (1..=3).map(move |degree| (degree, place)));
-        Self(all.map(corner).collect())
+        Self(corners.map(corner).chain(wild).map(unit).collect())
     }
 
     /// Square of the angle near a place that the best of them explains.
     fn explained(&self, near: &[f64]) -> f64 {
-        let squares = self.0.iter().map(|corner| dot(near, corner).powi(2));
+        let squares = self.0.iter().map(|alike| dot(near, alike).powi(2));
         squares.fold(0.0, f64::max)
     }
 
@@ -249,10 +256,9 @@ pub(crate) fn jumps(recording: &Recording, checked: &Checked) -> Vec<(usize, usi
     // Looks with shorter curves, at the sensor and at its reference.
     let mut shorter: [Vec<Look>; 2] = [vec![], vec![]];
     for (side, order) in sides(angle.len()) {
-        let corners = Corners::new(side, order);
-        let other = |look: &Look, j: &Jump| {
-            replaced(look, j) || corners.explain(look.near(j), &look.weights)
-        };
+        let alike = Alike::new(side, order);
+        let other =
+            |look: &Look, j: &Jump| replaced(look, j) || alike.explain(look.near(j), &look.weights);
         let look = Look::new(&angle, side, order);
         let far = look.far().into_iter();
         let far = far.filter(|j| !other(&look, j) && !goes_on(reference.as_deref(), j));

@@ -7,7 +7,7 @@ use std::f64::consts::{PI, TAU};
 use nonius_quantity::{Quantity, Unit};
 use nonius_recording::AdcSource;
 
-use crate::causes::cause::Domain;
+use crate::causes::candidate::Domain;
 use crate::causes::speed_varies;
 use crate::context::Context;
 use crate::doubt::{SLOW, gain_of, home};

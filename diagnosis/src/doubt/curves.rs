@@ -1,7 +1,7 @@
 //! Whether a weak error of speed, or weak noise that is slow, is what a drift's polynomials leave of its curve. What crosses
 //! over late is a gain that goes with the speed, and that is slow itself: beside a drift of any curve it may say nothing new.
 
-use crate::causes::cause::Domain;
+use crate::causes::candidate::Domain;
 use crate::doubt::{TRACE, gain_of, so_small, unnamed};
 use crate::finding::Cause;
 use crate::model::{System, atoms_of};

@@ -8,7 +8,7 @@ pub(crate) mod simpler;
 pub(crate) mod steps;
 
 use crate::causes::Catalogue;
-use crate::causes::cause::Domain;
+use crate::causes::candidate::Domain;
 use crate::finding::Cause;
 use crate::model::System;
 use crate::select::beside::Beside;

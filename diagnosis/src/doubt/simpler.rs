@@ -4,7 +4,7 @@
 //! numbers, which was the best single name for two errors of speed together, goes where both of them are known.
 
 use crate::causes::Catalogue;
-use crate::causes::cause::{Candidate, Domain};
+use crate::causes::candidate::{Candidate, Domain};
 use crate::finding::Cause;
 use crate::model::{Fit, System};
 use crate::numerics::statistics::price;
@@ -38,7 +38,7 @@ pub(crate) fn simpler(
         let simple = catalogue.candidates.iter().filter(|c| {
             let own = &wide.candidate;
             let other = c.domain == own.domain && c.name != own.name && !c.as_drift;
-            other && c.shapes.len() < own.shapes.len()
+            other && c.name.is_listed() && c.shapes.len() < own.shapes.len()
         });
         let swaps = simple.filter_map(|c| Some((c.clone(), swapped(system, found, wide, c)?)));
         let best = swaps.max_by(|a, b| a.1.solution.gain().total_cmp(&b.1.solution.gain()));
@@ -68,7 +68,8 @@ fn rivals_anew(system: &System, catalogue: &Catalogue, found: &mut Selection) {
         };
         let others = catalogue.candidates.iter().filter(|c| {
             let as_many = c.shapes.len() == own.candidate.shapes.len();
-            c.domain == Domain::Speed && as_many && !names.contains(&c.name)
+            let other = c.name.is_listed() && !names.contains(&c.name);
+            c.domain == Domain::Speed && as_many && other
         });
         let others: Vec<Scored> = others.filter_map(|c| score(&beside, c.clone())).collect();
         let all: Vec<&Scored> = others.iter().collect();

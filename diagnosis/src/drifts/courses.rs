@@ -3,7 +3,7 @@
 //! explains about as much as anything else does. Polynomials of more numbers are not: at standstill they run away, and got gains that
 //! drift by 70 % into a measured interferometer.
 
-use crate::causes::cause::{Candidate, Domain};
+use crate::causes::candidate::{Candidate, Domain};
 use crate::causes::{settling, tells};
 use crate::drifts::channels::Channels;
 use crate::drifts::steps::{self, Change};

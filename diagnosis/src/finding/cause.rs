@@ -90,6 +90,16 @@ impl Cause {
         }
     }
 
+    /// Whether a finding may have this name: the contract lists it.
+    pub(crate) fn is_listed(self) -> bool {
+        !matches!(self, Self::WhiteNoise | Self::AccelerationGain)
+    }
+
+    /// What it does to single codes, which no model of the sensor takes off what is left.
+    pub(crate) fn errs_in_codes(self) -> bool {
+        matches!(self, Self::StuckBit | Self::CoarseQuantisation)
+    }
+
     /// A drift of the offsets or of the gains: slow, as noise may be.
     pub(crate) fn is_drift(self) -> bool {
         matches!(self, Self::OffsetDrift | Self::GainDrift)

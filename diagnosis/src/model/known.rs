@@ -1,7 +1,7 @@
 //! What causes that are known do to the channels, sample by sample: it is taken off the signals.
 
 use crate::causes::Catalogue;
-use crate::causes::cause::Domain;
+use crate::causes::candidate::Domain;
 use crate::context::Context;
 use crate::finding::Cause;
 use crate::model::exact::enter;

@@ -102,6 +102,10 @@ const EXPERIMENTS: &[Experiment] = &[
         setup: "Record ten times as long",
         answers: &[
             (LINES, "stays a line of the same frequency and amplitude"),
+            (
+                &[Cause::FlickerNoise],
+                "keeps its spectrum, which is the same in each part of the recording",
+            ),
             (DRIFTS, "goes on changing, and does not repeat"),
         ],
     },
@@ -214,6 +218,15 @@ mod tests {
                 );
             }
         }
+    }
+
+    #[test]
+    fn slow_noise_is_told_from_a_drift_by_more_of_it() {
+        let text = experiment(Cause::FlickerNoise, Cause::OffsetDrift);
+        assert!(
+            text.starts_with("Record ten times as long: flicker noise keeps its spectrum"),
+            "{text}"
+        );
     }
 
     #[test]

@@ -45,6 +45,7 @@ struct Page<'a> {
     residue: &'a Residue,
     /// What is not explained, and how likely chance is.
     parts: Vec<String>,
+    nothing: String,
     chance: String,
     left: Vec<String>,
     unseen: Vec<String>,
@@ -136,6 +137,7 @@ pub fn report(
             .iter()
             .map(|p| words::capital(p))
             .collect(),
+        nothing: words::capital(&found.unexplained.signature),
         chance: words::probability(found.unexplained.p_value),
         unseen: unseen(&found.context),
         style: nonius_plot::STYLE,

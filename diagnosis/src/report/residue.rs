@@ -5,6 +5,7 @@ use nonius_quantity::{Unit, prefixed};
 
 use super::words::probability;
 use crate::diagnose::Diagnosis;
+use crate::finding::{Cause, Finding};
 use crate::select::score::SHOWN;
 use crate::unnamed::left::Bartlett;
 
@@ -17,6 +18,8 @@ pub(super) struct Residue {
     words: String,
     /// Of a difference as large as this in white noise.
     p_value: f64,
+    /// What is named and makes it another.
+    made_by: Option<String>,
     plot: Plot,
 }
 
@@ -49,6 +52,7 @@ impl Residue {
         Self {
             words: after.words(rate),
             p_value: after.p_value,
+            made_by: made_by(&found.findings),
             plot,
         }
     }
@@ -62,8 +66,10 @@ impl Residue {
     pub(super) fn sentence(&self) -> String {
         let p = probability(self.p_value);
         if self.p_value < SHOWN {
+            let made_by = self.made_by.as_deref();
+            let made_by = made_by.map_or(String::new(), |cause| format!(", as {cause} makes it"));
             format!(
-                "The radial residual is not white: {} (Bartlett's test, {p})",
+                "The radial residual is not white: {} (Bartlett's test, {p}){made_by}",
                 self.words
             )
         } else {
@@ -72,4 +78,10 @@ impl Residue {
             )
         }
     }
+}
+
+/// What of the findings stays in what is left and is no white noise.
+fn made_by(findings: &[Finding]) -> Option<String> {
+    let stays = |f: &&Finding| f.cause == Cause::FlickerNoise || f.cause.errs_in_codes();
+    findings.iter().find(stays).map(|f| f.cause.plain())
 }

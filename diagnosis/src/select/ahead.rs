@@ -3,7 +3,7 @@
 //! and where another does as much beside the same second, nothing tells the two.
 
 use crate::causes;
-use crate::causes::cause::Domain;
+use crate::causes::candidate::Domain;
 use crate::context::Context;
 use crate::finding::Cause;
 use crate::select::beside::Beside;

@@ -3,7 +3,7 @@
 use nonius_calibration::Ellipse;
 use nonius_recording::Recording;
 
-use crate::causes::cause::Candidate;
+use crate::causes::candidate::Candidate;
 use crate::context::Context;
 use crate::finding::Cause;
 use crate::model::exact::{Start, followed, look};

@@ -3,7 +3,7 @@
 
 use nonius_quantity::agree;
 
-use crate::causes::cause::{Candidate, Domain, Sign};
+use crate::causes::candidate::{Candidate, Domain, Sign};
 use crate::causes::{self, Catalogue};
 use crate::drifts::channels::Channels;
 use crate::drifts::courses;
@@ -123,8 +123,9 @@ pub(crate) fn contender(
         if rivals.is_empty() {
             rivals.extend(rivals::hidden(system, &beside, &own, catalogue));
         }
-        let richer = rivals::richer(&beside, &own, &rest);
-        let wider = rivals::wider(&beside, &own, &rest);
+        let listed = |name: &Cause| name.is_listed();
+        let richer = rivals::richer(&beside, &own, &rest).filter(listed);
+        let wider = rivals::wider(&beside, &own, &rest).filter(listed);
         let other_order = rivals::other_order(&beside, &own, &rest);
         if own.candidate.as_drift {
             rivals.retain(|name| *name != Cause::OffsetDrift);
@@ -144,12 +145,11 @@ pub(crate) fn contender(
         if !slow && stepped.is_none() {
             stepped = Some(i);
         }
-        let listed = |name: Cause| name != Cause::AccelerationGain;
         let locked = locked::why(system.context, &own);
         let crawling = causes::crawls(system.context, &own.candidate);
         let wandering = causes::is_one_of_many(system.context, left, &own.candidate);
-        let nameable = listed(own.candidate.name)
-            && rivals.iter().all(|r| listed(*r))
+        let nameable = own.candidate.name.is_listed()
+            && rivals.iter().all(listed)
             && !(locked.is_some() || crawling || wandering);
         if nameable && slow && !ahead.outdone && rivals.len() <= 1 && held.refusal.is_none() {
             if rivals.is_empty() {
@@ -174,7 +174,7 @@ pub(crate) fn contender(
             }
             break;
         }
-        let why = if !listed(own.candidate.name) {
+        let why = if !own.candidate.name.is_listed() {
             "the catalogue has no such cause".to_owned()
         } else if let Some(why) = locked {
             why.to_owned()

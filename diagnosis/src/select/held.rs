@@ -1,6 +1,6 @@
 //! The open set: how much a name holds of what any shape of its domain, or around it, explains.
 
-use crate::causes::cause::{Candidate, Domain};
+use crate::causes::candidate::{Candidate, Domain};
 use crate::causes::{self, Catalogue};
 use crate::doubt;
 use crate::finding::Cause;

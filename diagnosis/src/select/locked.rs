@@ -2,7 +2,7 @@
 //! along a motion that comes again what goes with the motion.
 
 use crate::causes;
-use crate::causes::cause::{Candidate, Domain};
+use crate::causes::candidate::{Candidate, Domain};
 use crate::context::Context;
 use crate::finding::Cause;
 use crate::numerics::lines::strongest;

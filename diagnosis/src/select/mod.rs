@@ -13,7 +13,7 @@ pub(crate) mod selection;
 pub(crate) mod speed_anew;
 
 use crate::causes::angle::is_a_circle;
-use crate::causes::cause::{Candidate, Domain};
+use crate::causes::candidate::{Candidate, Domain};
 use crate::causes::{self, Catalogue};
 use crate::context::Context;
 use crate::doubt::curves;

@@ -1,7 +1,7 @@
 //! Which other causes a name cannot be told from: those to which it adds nothing, decided from the data.
 
 use crate::causes::Catalogue;
-use crate::causes::cause::{Candidate, Domain};
+use crate::causes::candidate::{Candidate, Domain};
 use crate::finding::Cause;
 use crate::model::{Fit, System};
 use crate::numerics::statistics::{at_most_of_noise, log_tail};
@@ -17,7 +17,7 @@ const HARDLY_NEW: f64 = 1e-5;
 /// Log-likelihood by which a rival is beaten, if others are left: twenty to one.
 const BEATEN: f64 = 3.0;
 
-/// Causes of other names to which the best adds nothing, and that need no more parameters. Of several, those that it beats by
+/// Causes of other names to which the best adds nothing, and that need no more parameters or are as probable with them. Of several, those that it beats by
 /// twenty to one are none, where that leaves one.
 pub(crate) fn among(
     system: &System,
@@ -32,10 +32,10 @@ pub(crate) fn among(
         if name == best.candidate.name {
             continue;
         }
-        // Far behind, or bought with more parameters: no rival.
-        if other.gain < RIVALS * best.gain
-            || other.freedom > best.freedom + 1 + other.candidate.given()
-        {
+        // Far behind, or bought with more parameters and not as probable with them: no rival.
+        let bought = other.freedom > best.freedom + 1 + other.candidate.given()
+            && other.log_p > best.log_p + BEATEN;
+        if other.gain < RIVALS * best.gain || bought {
             continue;
         }
         let own = (other.gain, other.freedom);

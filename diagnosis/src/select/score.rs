@@ -1,6 +1,6 @@
 //! What a candidate explains of what is left, and whether it can be that at all.
 
-use crate::causes::cause::{Candidate, Domain, Sign};
+use crate::causes::candidate::{Candidate, Domain, Sign};
 use crate::finding::Cause;
 use crate::model::{Fit, System, atoms_of};
 use crate::numerics::solve::Solution;

@@ -2,7 +2,7 @@
 
 use nonius_quantity::ordinal;
 
-use crate::causes::cause::{Candidate, Estimate};
+use crate::causes::candidate::{Candidate, Estimate};
 use crate::finding::{Cause, Finding, Gain, OTHER_ORDER, Parameter};
 use crate::model::exact::Start;
 use crate::model::{Fit, Halves, System, amounts};

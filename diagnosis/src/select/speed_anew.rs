@@ -3,7 +3,7 @@
 
 use nonius_recording::Recording;
 
-use crate::causes::cause::{Candidate, Domain};
+use crate::causes::candidate::{Candidate, Domain};
 use crate::context::Context;
 use crate::finding::Cause;
 use crate::model::exact::{NAMED, Start, followed, look, seen_together};

@@ -6,7 +6,7 @@
 
 use std::rc::Rc;
 
-use crate::causes::cause::{Candidate, Domain};
+use crate::causes::candidate::{Candidate, Domain};
 use crate::causes::{line_wave, speed_varies};
 use crate::context::Context;
 use crate::finding::Cause;

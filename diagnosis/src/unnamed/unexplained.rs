@@ -4,8 +4,8 @@ use nonius_quantity::{Quantity, Unit};
 use serde::Serialize;
 
 use crate::causes::Catalogue;
-use crate::causes::cause::Domain;
-use crate::finding::Cause;
+use crate::causes::candidate::Domain;
+use crate::finding::{Cause, Finding};
 use crate::model::{Fit, System};
 use crate::numerics::statistics::by_chance;
 use crate::select::beside::Beside;
@@ -27,11 +27,18 @@ pub struct Unexplained {
 }
 
 impl Unexplained {
-    pub(crate) fn nothing() -> Self {
+    /// Nothing, beside these findings.
+    pub(crate) fn nothing(beside: &[Finding]) -> Self {
+        let codes_err = beside.iter().any(|f| f.cause.errs_in_codes());
+        let signature = if codes_err {
+            "nothing significant is left: the residue is noise and what codes that err leave"
+        } else {
+            "nothing significant is left: the residue is noise"
+        };
         Self {
             significant: false,
             p_value: 1.0,
-            signature: "nothing significant is left: the residue is noise".into(),
+            signature: signature.into(),
             parts: vec![],
         }
     }

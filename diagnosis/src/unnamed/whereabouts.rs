@@ -7,7 +7,7 @@ use std::f64::consts::TAU;
 use nonius_fourier::Complex;
 use nonius_quantity::{Unit, before_after, digits, periods_per_second, times};
 
-use crate::causes::cause::Domain;
+use crate::causes::candidate::Domain;
 use crate::context::Context;
 use crate::numerics::repeated::repeated;
 

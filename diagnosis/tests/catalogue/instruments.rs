@@ -142,6 +142,9 @@ fn a_stuck_bit_of_an_adc_that_is_not_described() {
         ..PLAIN
     };
     stuck.shows(&[Cause::StuckBit]);
+    // What is left is not white, and nobody says that it is noise alone.
+    let left = stuck.diagnosed(0).unexplained.signature;
+    assert!(left.ends_with("what codes that err leave"), "{left}");
 }
 
 /// What a counter rounds is no error of the sensor.

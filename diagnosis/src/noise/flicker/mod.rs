@@ -33,6 +33,8 @@ const HOLDS: f64 = 0.9;
 const BY_CHANCE: f64 = 4.0;
 /// From which gain of the spectrum in log-likelihood on the samples are asked.
 const SUSPECT: f64 = 2.0;
+/// Corner, cycles per recording, below which what is seen of 1/f is the course of one drift as well.
+const A_COURSE: f64 = 8.0;
 /// Shapes of noise that could have been claimed.
 const TRIALS: f64 = 30.0;
 
@@ -53,6 +55,8 @@ pub(crate) struct Flicker {
     slowest: usize,
     /// Two levels explain it: whatever it is, it has no name.
     jumps: bool,
+    /// It exceeds the white noise in so few cycles of the recording that a course of time has them too.
+    slow: bool,
 }
 
 /// Lines that a band counts for at most where the shape is judged: so every octave weighs alike.
@@ -217,6 +221,7 @@ fn find_from(seen: Channels, slowest: usize) -> Option<Flicker> {
         paid,
         slowest,
         jumps: jumps(seen, paid - in_time.steady),
+        slow: best.0 * (n as f64 / context.rate) < A_COURSE,
     })
 }
 
@@ -267,7 +272,11 @@ impl Flicker {
         );
         Ok(Finding {
             cause: Cause::FlickerNoise,
-            confounded_with: vec![],
+            confounded_with: self
+                .slow
+                .then_some(Cause::OffsetDrift)
+                .into_iter()
+                .collect(),
             p_value: self.log_p.exp(),
             parameters: vec![
                 Parameter::measured("density_at_1_hz", density, error, "amplitude/sqrt(Hz)"),
