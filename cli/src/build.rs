@@ -69,11 +69,11 @@ pub(crate) fn run(args: &Build) -> Result<bool> {
     let needed = package.json.latency.clock_hz_min;
     if let Some(clock) = spec.chip.clock_hz.filter(|clock| *clock < needed) {
         bail!(
-            "{}: chip.clock_hz = {clock}: {} clocks per sample at {} samples per second need at least {needed} Hz; more \
-             multipliers need fewer clocks",
+            "{}: chip.clock_hz = {clock}: {} clocks per sample at {} samples per second need at least {needed} Hz; {}",
             crate::design_file::place(&args.design, &text, "chip.clock_hz"),
             package.json.clocks_per_sample,
-            spec.adc.sample_rate_hz
+            spec.adc.sample_rate_hz,
+            fewer_clocks(&package.json)
         );
     }
     write(&package.files, &args.output)?;
@@ -179,6 +179,20 @@ fn summary(j: &DesignJson, output: &Path, shown: &str) {
             j.budget.arithmetic_allowed
         );
     }
+    if j.budget.total > j.budget.asked && j.budget.uncorrected == 0.0 {
+        say!(
+            "  note        predicted for the worst sensor that is promised: {:.2e} periods rms of {:.2e} asked; the run simulates a better one",
+            j.budget.total,
+            j.budget.asked
+        );
+    }
+    if j.spec.calibration.has_bend() && j.spec.sensor.bend_max > 0.0 {
+        say!(
+            "  note        what polynomials of third order leave of bends of {} goes with the square of the bend and is not in the \
+             budget: simulate such a sensor (`nonius simulate --sensor`)",
+            j.spec.sensor.bend_max
+        );
+    }
     if let Some(why) = unseen(&j.spec) {
         say!("  note        {why}");
     }
@@ -195,7 +209,8 @@ fn summary(j: &DesignJson, output: &Path, shown: &str) {
             "worse than the budget: the calibration has not converged at this speed, the loop lags behind the \
              acceleration of the run (a wider one lags less), or the signals clip"
         } else {
-            "calibration noise and loop noise add up; a smaller last gamma or a narrower loop would help"
+            "noise of the calibration, noise of the loop and what it lags behind in this run add up; a smaller last gamma helps, \
+             and where noise is most of it a narrower loop, where the lag is a wider one"
         };
         say!("  note        the simulated accuracy misses what was asked for: {why}");
     }
@@ -250,13 +265,26 @@ fn uncorrected(j: &DesignJson) -> Option<String> {
     ))
 }
 
+/// How a sample takes fewer clocks.
+fn fewer_clocks(j: &DesignJson) -> &'static str {
+    match j.spec.chip.multipliers {
+        Multipliers::All(_) => {
+            "no chip of this design takes fewer clocks: lower the sample rate or raise the clock"
+        }
+        Multipliers::Count(_) => {
+            "more multipliers need fewer clocks (chip.multipliers = \"all\" the fewest)"
+        }
+    }
+}
+
 /// From power-up into full speed.
 fn pulled_in(p: &PullIn) {
     let Some(missed) = p.missed() else {
         say!(
-            "  lock        every sensor that is promised, {} at the ends of the promise, from power-up into full speed both \
-             ways, within {}",
+            "  lock        all of {} sensors at the ends of the promise from power-up into full speed both ways, {} starts \
+             each, within {}",
             p.sensors,
+            p.starts_each,
             engineering(p.longest_s, "s")
         );
         return;

@@ -189,3 +189,15 @@ fn files_that_are_named_are_there() {
     }
     assert!(named > 60, "only {named} files are named");
 }
+
+/// Whoever writes a design finds each key of it explained.
+#[test]
+fn every_key_of_a_design_is_explained() {
+    let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs");
+    let page = |name: &str| fs::read_to_string(docs.join(name)).expect(name);
+    let (keys, words) = (page("design-file.md"), page("word-lengths.md"));
+    for (section, key) in nonius_model::spec::keys() {
+        let page = if section == "formats" { &words } else { &keys };
+        assert!(page.contains(&format!("`{key}`")), "{section}.{key}");
+    }
+}

@@ -35,12 +35,15 @@ pub(crate) fn purpose(spec: &Spec) -> Vec<String> {
             "The squared radius of the pair shows what the correction still misses and moves its parameters".to_owned()
         }
     };
-    let parameters = match c.parameters {
-        0 => "",
-        4 => " theta_1 to theta_4.",
-        5 => " theta_1 to theta_5.",
-        8 => " theta_1 to theta_4 and theta_6 to theta_9.",
-        _ => " theta_1 to theta_9.",
+    // θ9 moves by the completed gradient alone: no radius shows it.
+    let parameters = match (c.parameters, c.completed().is_some()) {
+        (0, _) => "",
+        (4, _) => " theta_1 to theta_4.",
+        (5, _) => " theta_1 to theta_5.",
+        (8, false) => " theta_1 to theta_4 and theta_6 to theta_8.",
+        (8, true) => " theta_1 to theta_4 and theta_6 to theta_9.",
+        (_, false) => " theta_1 to theta_8.",
+        (_, true) => " theta_1 to theta_9.",
     };
     let gamma = match (c.is_on(), c.gears()) {
         (false, _) => String::new(),

@@ -63,12 +63,12 @@ fn computed(w: &Writer, of: NodeId, id: NodeId) -> Vec<String> {
             last,
             to,
         } => match w.schedule.shift[id.index()] {
-            Some(unit) if crate::shifter::shared(w.schedule, unit) => {
+            Some(unit) => {
                 let name = format!("shifted_{unit}");
                 w.read(&name, bits - 1, 0);
                 one(name)
             }
-            _ => {
+            None => {
                 let keep = to.format.fraction + 1;
                 let input = crate::shifter::input(w, &at(value), keep);
                 let name = w.name(id);

@@ -143,7 +143,21 @@ impl Listed {
 
     fn settled(mut self, graph: &Graph) -> Schedule {
         settle(graph, &mut self.schedule, self.depth);
+        self.schedule.keep_shared_shifters();
         self.schedule
+    }
+}
+
+impl Schedule {
+    /// A shifter of one value is none that is shared: it is written where the value is.
+    fn keep_shared_shifters(&mut self) {
+        let shared: Vec<usize> = (0..self.shifters.len())
+            .filter(|&unit| self.shift.iter().filter(|s| **s == Some(unit)).count() > 1)
+            .collect();
+        for shift in &mut self.shift {
+            *shift = shift.and_then(|unit| shared.iter().position(|&of| of == unit));
+        }
+        self.shifters = shared.iter().map(|&unit| self.shifters[unit]).collect();
     }
 }
 

@@ -4,13 +4,7 @@ use nonius_model::graph::{NodeId, Op};
 
 use crate::layout;
 use crate::quantise::covering;
-use crate::schedule::Schedule;
 use crate::writer::{Source, Term, Writer, literal};
-
-/// Whether more than one value uses this shifter.
-pub(crate) fn shared(schedule: &Schedule, unit: usize) -> bool {
-    schedule.shift.iter().filter(|s| **s == Some(unit)).count() > 1
-}
 
 /// `value` with `keep` fraction bits: text, bits and range. Bits that no shift can bring to the rounding are cut off.
 ///
@@ -69,9 +63,6 @@ pub(crate) fn units(w: &Writer) -> Vec<Unit> {
     let schedule = w.schedule;
     let mut list = vec![];
     for (index, kind) in schedule.shifters.iter().enumerate() {
-        if !shared(schedule, index) {
-            continue;
-        }
         let keep = kind.to.format.fraction + 1;
         let users: Vec<(NodeId, NodeId)> = w
             .graph

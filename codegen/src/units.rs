@@ -230,7 +230,7 @@ pub(crate) fn timetable(w: &Writer) -> Vec<String> {
     let longest = products.iter().flatten().map(String::len).max();
     let width = longest.unwrap_or(0).max(title.len());
     let mut rows = vec![
-        format!("step | {title:<width$} | computed from it"),
+        format!("step | {title:<width$} | computed in this step"),
         format!(
             "-----+-{:-<width$}-+{:-<rest$}",
             "",

@@ -3,6 +3,7 @@
 mod corrections;
 mod edit;
 mod faults;
+mod periods;
 mod recall;
 mod seen_by;
 mod sparse;
@@ -13,12 +14,13 @@ use std::sync::{Arc, LazyLock, Mutex};
 use crate::chip::{self, optical};
 use corrections::{harmonic_faults, skew_faults};
 use edit::{Fault, on_one_line};
-use faults::{dropping_faults, faults, resting_faults};
+use faults::faults;
 use nonius_hdl::verify::{Options, verify};
 use nonius_kept::{every, figure, figure_of_all};
 use nonius_model::design::Design;
-use nonius_model::spec::Spec;
+use nonius_model::spec::{CalibrationMethod, Spec};
 use nonius_testvectors::stimulus::{self, Stimulus};
+use periods::{dropping_faults, first_gear_faults, resting_faults};
 use rayon::prelude::*;
 use recall::{moved_faults, recall_faults};
 use sparse::sparse_faults;
@@ -250,6 +252,16 @@ fn vectors_catch_every_fault_in_dropping_periods_and_resting_bends() {
     let chip = Sound::new(&spec);
     all_caught("the dropping of periods", &chip, RTL, &dropping_faults());
     all_caught("the resting of bends", &chip, RTL, &resting_faults());
+}
+
+#[test]
+fn vectors_catch_every_fault_in_the_first_gear_of_bends_by_squares() {
+    let mut spec = optical();
+    spec.calibration.parameters = 8;
+    spec.calibration.method = CalibrationMethod::SumOfSquares;
+    spec.calibration.gear_periods = Some(1);
+    let chip = Sound::new(&spec);
+    all_caught("the first gear of bends", &chip, RTL, &first_gear_faults());
 }
 
 #[test]

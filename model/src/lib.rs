@@ -14,6 +14,7 @@ pub mod kernel;
 pub mod physical;
 mod real;
 pub mod reference;
+pub mod registers;
 pub mod rom;
 pub mod signal;
 pub mod spec;

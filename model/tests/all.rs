@@ -19,6 +19,7 @@ mod on_line_held;
 mod on_line_interrupted;
 mod on_line_loss;
 mod on_line_moves;
+mod on_line_promised;
 mod on_line_rest;
 mod on_line_speeds;
 mod on_line_start;

@@ -65,6 +65,8 @@ pub struct Latency {
     pub clocks: usize,
     /// The slowest clock that serves the sample rate, hertz.
     pub clock_hz_min: f64,
+    /// The design's clock; without one the slowest, hertz.
+    pub clock_hz: f64,
     /// `clocks` at that clock, seconds.
     pub seconds_at_that_clock: f64,
     /// The position is the estimate for so many samples after the one that came in.
@@ -177,7 +179,8 @@ impl DesignJson {
     ) -> Self {
         let (spec, b) = (&design.spec, &design.budget);
         let (rate, products) = (spec.adc.sample_rate_hz, design.graph.products());
-        let clock = rate * clocks as f64;
+        let least = rate * clocks as f64;
+        let clock = spec.chip.clock_hz.map_or(least, |clock| clock.max(least));
         let rom = &design.structure.sine;
         Self {
             schema: "nonius.design/1",
@@ -188,7 +191,8 @@ impl DesignJson {
             multipliers,
             latency: Latency {
                 clocks,
-                clock_hz_min: clock,
+                clock_hz_min: least,
+                clock_hz: clock,
                 seconds_at_that_clock: clocks as f64 / clock,
                 position_is_ahead_by_samples: 1,
             },

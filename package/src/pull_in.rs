@@ -74,7 +74,7 @@ impl PullIn {
     pub fn missed(&self) -> Option<String> {
         let worst = self.worst.as_ref()?;
         Some(format!(
-            "{} of the {} sensors at the ends of the promise do not lock from power-up into full speed; worst: {worst}",
+            "{} of the {} sensors at the ends of the promise do not lock from power-up into full speed, or lose the lock again; worst: {worst}",
             self.not_locked, self.sensors
         ))
     }

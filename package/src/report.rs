@@ -140,13 +140,17 @@ fn said(design: &Design, j: &DesignJson) -> Vec<(&'static str, String, String)> 
             "Latency",
             format!("{} clocks", j.latency.clocks),
             format!(
-                "{} at that clock; the position is the estimate for the next sample",
-                engineering(j.latency.seconds_at_that_clock, "s")
+                "{} at a clock of {}; the position is the estimate for the next sample",
+                engineering(j.latency.seconds_at_that_clock, "s"),
+                engineering(j.latency.clock_hz, "Hz")
             ),
         ),
         (
             "Bandwidth, −3 dB",
-            engineering(t.bandwidth_3db_hz, "Hz"),
+            match t.bandwidth_3db_hz {
+                hz if hz < 0.499 * spec.adc.sample_rate_hz => engineering(hz, "Hz"),
+                _ => "none below half the sample rate".into(),
+            },
             format!(
                 "noise bandwidth {}, peak {:.2}",
                 engineering(t.noise_bandwidth_hz, "Hz"),
@@ -215,8 +219,8 @@ fn corrected(spec: &Spec) -> String {
 fn pull_in(j: &DesignJson) -> (&'static str, String, String) {
     let p = &j.pull_in;
     let starts = format!(
-        "into full speed from power-up, both ways; {} sensors with every promised error at an end of its range",
-        p.sensors
+        "into full speed from power-up, both ways; {} sensors with every promised error at an end of its range, {} starts each",
+        p.sensors, p.starts_each
     );
     match &p.worst {
         None => (
@@ -226,7 +230,10 @@ fn pull_in(j: &DesignJson) -> (&'static str, String, String) {
         ),
         Some(worst) => (
             PULL_IN,
-            format!("{} of {} sensors do not lock", p.not_locked, p.sensors),
+            format!(
+                "{} of {} sensors do not lock, or not for good",
+                p.not_locked, p.sensors
+            ),
             format!("{starts}; worst: {worst}; {}", p.advice()),
         ),
     }

@@ -82,6 +82,11 @@ const REASONS: &[(&[&str], &str, &[&str])] = &[
     ),
     (&["carry"], "whole periods gone by in a sample", &[]),
     (
+        &["alpha_hat_last_bits", "level_again"],
+        "last bits of the phase: from where the lock level fills again, at most half of it",
+        &["formats.phase_bits", "formats.lock_level_bits"],
+    ),
+    (
         &["sine_phase"],
         "phase in the sine: the budget's truncation",
         &["formats.sine_phase_bits"],

@@ -166,17 +166,16 @@ impl Squares {
     }
 }
 
-/// Half of what the design promises of offsets, amplitudes and phase, and the noise; the larger signal just fits the ADC.
+/// Half of what the design promises of offsets, amplitudes and phase, and the noise; an amplitude that is no round number of codes. Where
+/// that does not fit the ADC it clips, as on the axis.
 fn half(design: &Design) -> Sensor {
     let spec = &design.spec;
     let s = &spec.sensor;
-    let reach = 1.0 + s.amplitude_tolerance / 2.0 + s.offset_max / 2.0;
-    let room = spec.adc.full_scale / (s.amplitude * reach);
     let shares = Shares {
         gains: [0.5, -0.5],
         offsets: [0.5, -0.5],
         phase: 0.5,
         bends: [0.0; 2],
     };
-    Sensor::of(spec, &shares, s.amplitude * room.min(1.0) * 0.999, 1)
+    Sensor::of(spec, &shares, 0.999 * s.amplitude, 1)
 }

@@ -51,7 +51,7 @@ impl Tracking {
             noise_bandwidth_hz: t.noise_gain * rate / 2.0,
             peak: curves::peak(t),
             speed_max_periods_per_s: top,
-            lag_at_top_speed_periods: t.lag(top / rate) / std::f64::consts::TAU,
+            lag_at_top_speed_periods: t.lag(top / rate).min(1.0).asin() / std::f64::consts::TAU,
             acceleration_error_s2: 1.0 / (t.ab * std::f64::consts::TAU * rate * rate),
             acquisition_gears: design.acquisition.gears,
         }

@@ -20,18 +20,19 @@
 // and samples never overlap. Outputs are those of the last sample from `valid` until the next `sample_valid`; before
 // the first `valid` those that are not registers of the chip are undefined.
 //
-// step | in the multiplier        | computed from it
+// step | in the multiplier        | computed in this step
 // -----+--------------------------+------------------------------------------------------------------------------------
 //    0 | -                        | sine_phase upper_half odd_quadrant quarter_phase quarter_phase_mirrored sin_address
 //      |                          | sin_inside cos_address cos_inside cos_negative theta_1 theta_3 theta_5 last_gear
-//      |                          | gamma_settled periods_modulo_4 sector sector_relative period_ahead period_behind
-//      |                          | a_period_away reach_ahead reach_behind unseen_ahead used_ahead_counts may_add_ahead
-//      |                          | sector_ahead unseen_behind used_behind_counts may_add_behind sector_behind
-//      |                          | search_begun proven_stand held_and_lost lost_in_first_gear proven_or_unknown
-//      |                          | nominal held_before disturbed_again search_fails held_some_periods held_unknown
-//      |                          | held_long rises_again restart_cause last_gamma_gear returned_lately
-//      |                          | gear_periods_done disturbed_before quiet gear_done gain_c_inside gain_c_rests
-//      |                          | gain_s_inside gain_s_rests gains_steady proves nothing_proven_yet
+//      |                          | first_loop_gear alpha_hat_last_bits gamma_settled periods_modulo_4 sector
+//      |                          | sector_relative period_ahead period_behind a_period_away reach_ahead reach_behind
+//      |                          | unseen_ahead used_ahead_counts may_add_ahead sector_ahead unseen_behind
+//      |                          | used_behind_counts may_add_behind sector_behind search_begun proven_stand
+//      |                          | held_and_lost lost_in_first_gear proven_or_unknown nominal held_before
+//      |                          | disturbed_again search_fails held_some_periods held_unknown held_long rises_again
+//      |                          | restart_cause last_gamma_gear returned_lately gear_periods_done disturbed_before
+//      |                          | quiet gear_done gain_c_inside gain_c_rests gain_s_inside gain_s_rests gains_steady
+//      |                          | proves nothing_proven_yet
 //    1 | loop_ab * error_previous | sin_value sin_slope y_c y_s counting whole_period travel_clear sector_added
 //      |                          | new_sector still_used_ahead used_up_ahead still_used_behind used_up_behind y_5
 //      |                          | astray_goes_on period_breaks_off lost_before
@@ -49,15 +50,15 @@
 //   11 | e * e                    | rho_exact rho rho_in_window radius_present in_window flip level_step half_turn
 //      |                          | loop_follows opposite_present astray_present present_anywhere rho_high rho_large
 //      |                          | rho_not_small rho_rises proven_better may_recall
-//   12 | loop_a * e_change        | level_moved level_full level_empty narrower loop_gear_up full_in_last_gear
-//      |                          | sample_counts counted period_tick rho_too_large residual_large disturbed_lately
-//      |                          | disturbed_or_held disturbed_or_recalled hold_cause hold signal_in_doubt
-//      |                          | held_in_doubt recall residual_rough radius_large counted_and_free rho_limited
-//      |                          | disturbed_period gamma_restart period_kept gear_passed gamma_shift gamma_gear_up
-//      |                          | gamma_gear_counted quiet_period_ends quiet_period_kept gear_periods_up
-//      |                          | disturbed_period_ends quiet_breaks_off gear_breaks_off gear_ends gear_periods_again
-//      |                          | held_periods_up no_quiet_period_ends parameters_followed free_period
-//      |                          | held_periods_step goes_on_or_known held_periods_go_on held_or_going_on
+//   12 | loop_a * e_change        | level_moved level_full level_empty narrower loop_gear_up attempt_fails level_again
+//      |                          | full_in_last_gear sample_counts counted period_tick rho_too_large residual_large
+//      |                          | disturbed_lately disturbed_or_held disturbed_or_recalled hold_cause hold
+//      |                          | signal_in_doubt held_in_doubt recall residual_rough radius_large counted_and_free
+//      |                          | rho_limited disturbed_period gamma_restart period_kept gear_passed gamma_shift
+//      |                          | gamma_gear_up gamma_gear_counted quiet_period_ends quiet_period_kept
+//      |                          | gear_periods_up disturbed_period_ends quiet_breaks_off gear_breaks_off gear_ends
+//      |                          | gear_periods_again held_periods_up no_quiet_period_ends parameters_followed
+//      |                          | free_period held_periods_step goes_on_or_known held_periods_go_on held_or_going_on
 //      |                          | held_periods_stay within_period gear_ends_calm stays_calm still_held holding
 //      |                          | gamma_gear_searched first_gear_period restart_risen recall_again known_to_be_calm
 //      |                          | last_gear_passed quiet_periods_pass quiet_periods_end proved gain_moved remember
@@ -103,7 +104,8 @@
 //     gear_periods_last      3                       Periods of travel per γ gear, less one.
 //     held_periods_last      31                      Periods of travel that the parameters are held before the search
 //                                                    begins again, less one.
-//     hold_periods_last      255                     The same where better ones are known.
+//     hold_periods_last      255                     Periods of travel that the parameters are held where better ones
+//                                                    are known, less one.
 //     returning_periods      32                      Quiet periods of travel after a recall that move nothing.
 //     unit_radius            0.9999923706054688      The radius 1, less half a bit of the residual.
 //     zero                   0                       0.
@@ -144,9 +146,9 @@ module optical (
     input  wire calibrate, // this sample may teach the parameters; where it falls, what was learned so far is applied
     output wire signed [58:0] position, // periods, s59.27: whole periods and alpha_hat for the next sample
     output reg signed [15:0] theta_1, // θ1 as multiplied. s16.14
-    output reg signed [23:0] theta_2, // θ2. s24.25
+    output reg signed [23:0] theta_2, // θ2 as multiplied. s24.25
     output reg signed [15:0] theta_3, // θ3 as multiplied. s16.14
-    output reg signed [23:0] theta_4, // θ4. s24.25
+    output reg signed [23:0] theta_4, // θ4 as multiplied. s24.25
     output reg signed [13:0] theta_5, // θ5 as multiplied. s14.15
     output reg signed [25:0] speed, // Position increment of this sample, turns: the speed. s26.27
     output reg locked, // The loop follows.
@@ -162,15 +164,15 @@ module optical (
     reg signed [25:0] rate; // Phase increment per sample, turns.
     reg signed [17:0] error_previous; // e one sample ago, radians.
     reg signed [24:0] theta_1_deviation; // θ1 less its nominal value.
-    reg signed [23:0] theta_2_deviation; // θ2.
+    reg signed [23:0] theta_2_deviation; // θ2, nominally 0.
     reg signed [24:0] theta_3_deviation; // θ3 less its nominal value.
-    reg signed [23:0] theta_4_deviation; // θ4.
-    reg signed [23:0] theta_5_deviation; // θ5.
+    reg signed [23:0] theta_4_deviation; // θ4, nominally 0.
+    reg signed [23:0] theta_5_deviation; // θ5, nominally 0.
     reg signed [6:0] lock_level; // Confidence of the lock detector.
     reg signed [2:0] loop_gear; // Loop gear: 0 widest, the last is the designed bandwidth.
     reg signed [3:0] gamma_gear; // γ gear: 0 largest.
     reg signed [6:0] gear_periods; // Quiet periods kept in this γ gear, or since a recall.
-    reg signed [8:0] held_periods; // Periods with a large residual, with better parameters known less free ones.
+    reg signed [8:0] held_periods; // Periods with a large residual; with better parameters known, less those without.
     reg signed [7:0] travel_origin; // Position, modulo 4 periods, where the map of sectors was last cleared.
     reg signed [7:0] travel_low; // Lowest sector seen since, relative to the origin.
     reg signed [7:0] travel_high; // Highest sector seen since, relative to the origin.
@@ -184,11 +186,11 @@ module optical (
     reg signed [17:0] recent_3; // θ3 less its nominal value at the last end of some quiet periods of travel.
     reg signed [16:0] recent_4; // θ4 less its nominal value at the last end of some quiet periods of travel.
     reg signed [16:0] recent_5; // θ5 less its nominal value at the last end of some quiet periods of travel.
-    reg signed [17:0] proven_1; // θ1 less its nominal value at the end before.
-    reg signed [16:0] proven_2; // θ2 less its nominal value at the end before.
-    reg signed [17:0] proven_3; // θ3 less its nominal value at the end before.
-    reg signed [16:0] proven_4; // θ4 less its nominal value at the end before.
-    reg signed [16:0] proven_5; // θ5 less its nominal value at the end before.
+    reg signed [17:0] proven_1; // θ1 less its nominal value at the end before the one of recent_1.
+    reg signed [16:0] proven_2; // θ2 less its nominal value at the end before the one of recent_2.
+    reg signed [17:0] proven_3; // θ3 less its nominal value at the end before the one of recent_3.
+    reg signed [16:0] proven_4; // θ4 less its nominal value at the end before the one of recent_4.
+    reg signed [16:0] proven_5; // θ5 less its nominal value at the end before the one of recent_5.
     reg ahead_used; // The sectors ahead of the origin were used right before the map was cleared.
     reg behind_used; // The sectors behind the origin were used right before the map was cleared.
     reg disturbed; // The residual was large in this period of travel.
@@ -197,8 +199,8 @@ module optical (
     reg risen; // The radius was too large in this period of travel.
     reg held; // The residual was large in the period before: the parameters are held.
     reg astray; // The running period of travel has had an |e| larger than its γ gear expects of a sensor.
-    reg astray_before; // And in the last one.
-    reg astray_long; // And in the last two or more: it is not catching up.
+    reg astray_before; // The period of travel before had one.
+    reg astray_long; // The two periods before had one, or more: it is not catching up.
     reg returning; // What was recalled is held until some periods have passed quietly (recall).
     reg fading; // The search began again where the residual had stayed: the signal may have faded (recall).
     reg known; // Parameters have been remembered in the last gear (recall).
@@ -245,7 +247,9 @@ module optical (
     reg loop_gear_below_loop_gear_last;
     reg last_gear;
     reg signed [1:0] loop_gear_up;
-    reg signed [6:0] lock_level_next_chosen;
+    reg not_first_loop_gear;
+    reg signed [5:0] level_again_scaled;
+    reg signed [6:0] level_again;
     reg locked_next;
     reg signed [2:0] loop_gear_next;
     reg signed [17:0] e_change;
@@ -523,10 +527,15 @@ module optical (
     wire in_window_now = e_in_window & radius_present; // step 11
     wire may_flip_now = ~(locked | signal_lost_next_now); // step 8
     wire flip = ~($signed(~rho_now[17:16]) < 2'sd1) & may_flip; // step 11
+    wire across_present_now = // step 10, with lock_radius, minus_lock_radius
+        ~(($signed(e[17:15]) < 3'sd1) & ($signed(~e[17:15]) < 3'sd1));
+    wire opposite_present = ~($signed(~rho_now[17:15]) < 3'sd3); // step 11, with minus_lock_opposite
+    wire astray_present = across_present | opposite_present; // step 11
+    wire present_anywhere = radius_present | astray_present; // step 11
 
     // Lock level and loop gear
     //   level' = level + 1 if good, else level - 8; full: narrower loop, in the last gear locked; empty: widest loop,
-    //   lock is lost
+    //   lock is lost, and where an attempt failed level' = last bits of alpha_hat
     wire signed [3:0] level_step_now = in_window_now ? 4'sd1 : 4'sh8; // s4.0, step 11, with lock_down
     wire signed [7:0] level_moved_sum = {lock_level[6], lock_level} + {{4{level_step[3]}}, level_step}; // s8.0, step 12
     wire signed [6:0] level_moved = // u6.0, step 12
@@ -541,10 +550,17 @@ module optical (
     wire signed [3:0] loop_gear_next_sum = // s4.0, step 13
         {loop_gear[2], loop_gear} + {{2{loop_gear_up[1]}}, loop_gear_up};
     wire signed [2:0] loop_gear_next_bits = {1'b0, loop_gear_next_sum[1:0]}; // u2.0, step 13
-    wire signed [6:0] lock_level_next_chosen_now = narrower ? 7'sh1f : level_moved; // s7.0, step 12, with lock_restart
+    wire signed [6:0] level_again_chosen = narrower ? 7'sh1f : level_moved; // s7.0, step 12, with lock_restart
+    wire first_loop_gear = loop_gear < 3'sd1; // step 0
+    wire not_first_loop_gear_now = ~first_loop_gear; // step 0
+    wire attempt_fails = level_empty_now & not_first_loop_gear; // step 12
+    wire signed [5:0] alpha_hat_last_bits = {1'b0, alpha_hat[4:0]}; // u5.27, step 0
+    wire signed [5:0] level_again_scaled_now = alpha_hat_last_bits; // s6.0, step 0
+    wire signed [6:0] level_again_now = // s7.0, step 12
+        attempt_fails ? {level_again_scaled[5], level_again_scaled} : level_again_chosen;
     wire full_in_last_gear = level_full & last_gear; // step 12
     wire locked_next_now = (locked | full_in_last_gear) & ~level_empty_now; // step 12
-    wire signed [6:0] lock_level_next = lock_level_next_chosen; // u6.0, step 19
+    wire signed [6:0] lock_level_next = level_again; // u6.0, step 19
     wire signed [2:0] loop_gear_next_now = level_empty ? 3'sd0 : loop_gear_next_bits; // u2.0, step 13
 
     // Loop filter
@@ -656,11 +672,6 @@ module optical (
     wire sample_counts = counting & loop_follows; // step 12
     wire counted = sample_counts & new_sector; // step 12
     wire period_tick = counted & whole_period; // step 12
-    wire across_present_now = // step 10, with lock_radius, minus_lock_radius
-        ~(($signed(e[17:15]) < 3'sd1) & ($signed(~e[17:15]) < 3'sd1));
-    wire opposite_present = ~($signed(~rho_now[17:15]) < 3'sd3); // step 11, with minus_lock_opposite
-    wire astray_present = across_present | opposite_present; // step 11
-    wire present_anywhere = radius_present | astray_present; // step 11
     wire astray_lately = astray | behind_or_far; // step 10
     wire astray_goes_on_now = ~whole_period_now & counting_now; // step 1
     wire astray_period_ends = whole_period & astray_lately; // step 10
@@ -710,6 +721,12 @@ module optical (
     wire period_dropped_now = travel_clear & period_has_hole; // step 10
     wire not_period_dropped_now = ~period_dropped_now; // step 10
     wire fresh_now = sample_teaches & not_period_dropped; // step 13
+    wire signed [24:0] running_1_next_chosen = period_dropped ? theta_1_deviation : running_1; // s25.25, step 17
+    wire signed [23:0] running_2_next_chosen = period_dropped ? theta_2_deviation : running_2; // s24.25, step 15
+    wire signed [24:0] running_3_next_chosen = period_dropped ? theta_3_deviation : running_3; // s25.25, step 18
+    wire signed [23:0] running_4_next_chosen = period_dropped ? theta_4_deviation : running_4; // s24.25, step 16
+    wire signed [23:0] running_5_next_chosen_now = // s24.25, step 10
+        period_dropped_now ? theta_5_deviation : running_5;
 
     // Radius, whatever the loop lags behind
     //   radius - 1 = rho + e^2/2
@@ -730,12 +747,6 @@ module optical (
     wire signed [31:0] sin_hat_times_rho_limited = product_0[31:0]; // s32.32, step 15
     wire signed [17:0] rho_s_now = // s18.18, step 15
         sin_hat_times_rho_limited[31:14] + {17'b0, sin_hat_times_rho_limited[13]};
-    wire signed [24:0] running_1_next_chosen = period_dropped ? theta_1_deviation : running_1; // s25.25, step 17
-    wire signed [23:0] running_2_next_chosen = period_dropped ? theta_2_deviation : running_2; // s24.25, step 15
-    wire signed [24:0] running_3_next_chosen = period_dropped ? theta_3_deviation : running_3; // s25.25, step 18
-    wire signed [23:0] running_4_next_chosen = period_dropped ? theta_4_deviation : running_4; // s24.25, step 16
-    wire signed [23:0] running_5_next_chosen_now = // s24.25, step 10
-        period_dropped_now ? theta_5_deviation : running_5;
 
     // Parameter update
     //   theta -= gamma gradient, each component times a power of two that lets all parameters converge alike; once
@@ -748,7 +759,7 @@ module optical (
     wire lost_in_first_gear = gamma_gear_below_one_now & (signal_lost & ~locked); // step 0
     wire proven_or_unknown = ~search_begun_now | known; // step 0
     wire nominal_now = lost_in_first_gear & proven_or_unknown; // step 0
-    wire signed [24:0] step_5_geared = shifted_2; // s25.25, step 18
+    wire signed [24:0] step_5_geared = shifted_0; // s25.25, step 18
     wire signed [24:0] step_5_now = fresh ? step_5_geared : 25'sd0; // s25.25, step 18
     wire signed [25:0] running_5_next_difference = // s26.25, step 19
         {{2{running_5_next_chosen[23]}}, running_5_next_chosen} - {step_5[24], step_5};
@@ -757,7 +768,7 @@ module optical (
             ? running_5_next_difference[23:0]
             : {running_5_next_difference[25], {23{~running_5_next_difference[25]}}};
     wire signed [28:0] gradient_1 = y_c_times_rho_c; // s29.32, step 16
-    wire signed [24:0] step_1_geared = shifted_2; // s25.25, step 16
+    wire signed [24:0] step_1_geared = shifted_0; // s25.25, step 16
     wire signed [21:0] step_1_now = fresh ? step_1_geared[21:0] : 22'sd0; // s22.25, step 16
     wire signed [25:0] running_1_next_difference = // s26.25, step 17
         {running_1_next_chosen[24], running_1_next_chosen} - {{4{step_1[21]}}, step_1};
@@ -766,7 +777,7 @@ module optical (
             ? running_1_next_difference[24:0]
             : {running_1_next_difference[25], {24{~running_1_next_difference[25]}}};
     wire signed [17:0] gradient_2 = rho_c_now; // s18.22, step 14
-    wire signed [24:0] step_2_geared_now = shifted_2; // s25.25, step 14
+    wire signed [24:0] step_2_geared_now = shifted_0; // s25.25, step 14
     wire signed [20:0] step_2 = fresh ? step_2_geared[20:0] : 21'sd0; // s21.25, step 15
     wire signed [24:0] running_2_next_difference = // s25.25, step 15
         {running_2_next_chosen[23], running_2_next_chosen} - {{4{step_2[20]}}, step_2};
@@ -775,7 +786,7 @@ module optical (
             ? running_2_next_difference[23:0]
             : {running_2_next_difference[24], {23{~running_2_next_difference[24]}}};
     wire signed [28:0] gradient_3 = y_s_times_rho_s; // s29.32, step 17
-    wire signed [24:0] step_3_geared = shifted_2; // s25.25, step 17
+    wire signed [24:0] step_3_geared = shifted_0; // s25.25, step 17
     wire signed [21:0] step_3_now = fresh ? step_3_geared[21:0] : 22'sd0; // s22.25, step 17
     wire signed [25:0] running_3_next_difference = // s26.25, step 18
         {running_3_next_chosen[24], running_3_next_chosen} - {{4{step_3[21]}}, step_3};
@@ -784,7 +795,7 @@ module optical (
             ? running_3_next_difference[24:0]
             : {running_3_next_difference[25], {24{~running_3_next_difference[25]}}};
     wire signed [17:0] gradient_4 = rho_s_now; // s18.22, step 15
-    wire signed [24:0] step_4_geared_now = shifted_2; // s25.25, step 15
+    wire signed [24:0] step_4_geared_now = shifted_0; // s25.25, step 15
     wire signed [20:0] step_4 = fresh ? step_4_geared[20:0] : 21'sd0; // s21.25, step 16
     wire signed [24:0] running_4_next_difference = // s25.25, step 16
         {running_4_next_chosen[23], running_4_next_chosen} - {{4{step_4[20]}}, step_4};
@@ -949,18 +960,18 @@ module optical (
     wire lock_falls = locked & ~locked_next; // step 13
     wire lock_lost_next_now = lost_before | lock_falls; // step 13
 
-    // Shifter 2, shared: gamma is a power of two
-    reg signed [25:0] unshifted_2;
+    // Shifter 0, shared: gamma is a power of two
+    reg signed [25:0] unshifted_0;
     always @*
         case (step)
-            5'd14: unshifted_2 = {{4{gradient_2[17]}}, gradient_2, 4'b0}; // step_2_geared
-            5'd15: unshifted_2 = {{4{gradient_4[17]}}, gradient_4, 4'b0}; // step_4_geared
-            5'd16: unshifted_2 = {{3{gradient_1[28]}}, gradient_1[28:6]}; // step_1_geared
-            5'd17: unshifted_2 = {{3{gradient_3[28]}}, gradient_3[28:6]}; // step_3_geared
-            default: unshifted_2 = gradient_5[30:5];
+            5'd14: unshifted_0 = {{4{gradient_2[17]}}, gradient_2, 4'b0}; // step_2_geared
+            5'd15: unshifted_0 = {{4{gradient_4[17]}}, gradient_4, 4'b0}; // step_4_geared
+            5'd16: unshifted_0 = {{3{gradient_1[28]}}, gradient_1[28:6]}; // step_1_geared
+            5'd17: unshifted_0 = {{3{gradient_3[28]}}, gradient_3[28:6]}; // step_3_geared
+            default: unshifted_0 = gradient_5[30:5];
         endcase
-    wire signed [25:0] shift_2 = unshifted_2 >>> gamma_gear[2:0];
-    wire signed [24:0] shifted_2 = shift_2[25:1] + {24'b0, shift_2[0]};
+    wire signed [25:0] shift_0 = unshifted_0 >>> gamma_gear[2:0];
+    wire signed [24:0] shifted_0 = shift_0[25:1] + {24'b0, shift_0[0]};
 
     // Multiplier 0
     always @(posedge clk)
@@ -1014,6 +1025,8 @@ module optical (
             theta_5 <= theta_5_now;
             loop_gear_below_loop_gear_last <= loop_gear_below_loop_gear_last_now;
             last_gear <= last_gear_now;
+            not_first_loop_gear <= not_first_loop_gear_now;
+            level_again_scaled <= level_again_scaled_now;
             gamma_gear_below_gamma_gear_settled <= gamma_gear_below_gamma_gear_settled_now;
             gamma_settled <= gamma_settled_now;
             sector <= sector_now;
@@ -1131,7 +1144,7 @@ module optical (
         if (step == 5'd12) begin
             level_empty <= level_empty_now;
             loop_gear_up <= loop_gear_up_now;
-            lock_level_next_chosen <= lock_level_next_chosen_now;
+            level_again <= level_again_now;
             locked_next <= locked_next_now;
             recall <= recall_now;
             counted_and_free <= counted_and_free_now;

@@ -5,66 +5,6 @@ use super::edit::{
     zero_extended,
 };
 
-/// Faults in the dropping of periods in which the loop caught up.
-pub(crate) fn dropping_faults() -> Vec<Fault> {
-    vec![
-        swap(
-            "every period is dropped",
-            &["wire period_dropped"],
-            " & period_has_hole",
-            "",
-        ),
-        swap(
-            "a period is dropped before it ends",
-            &["wire period_dropped"],
-            "travel_clear & ",
-            "",
-        ),
-        swap(
-            "a period that is dropped counts for a gear",
-            &["wire period_kept ="],
-            " & not_period_dropped",
-            "",
-        ),
-        swap(
-            "a period is dropped for a stop in its last sample only",
-            &["wire period_has_hole"],
-            "astray_and_not_astray_long | ",
-            "",
-        ),
-    ]
-}
-
-/// Faults in the resting of bends.
-pub(crate) fn resting_faults() -> Vec<Fault> {
-    vec![
-        swap(
-            "bends learn at every speed",
-            &["wire bends_due_now ="],
-            " & bends_shown",
-            "",
-        ),
-        swap(
-            "the completion learns at every speed",
-            &["wire bends_free_now ="],
-            " & bends_shown",
-            "",
-        ),
-        swap(
-            "offsets are told from bends that rest",
-            &["[17:0] half_cos_2_shown_now ="],
-            "bends_shown ? half_cos_2 : 18'sd0",
-            "half_cos_2",
-        ),
-        swap(
-            "bends rest backwards only",
-            &["wire bends_shown_now ="],
-            "($signed(rate[25:20]) < 6'sh11) & ",
-            "",
-        ),
-    ]
-}
-
 /// Faults in the Verilog, each of one place.
 pub(crate) fn faults() -> Vec<Fault> {
     vec![
@@ -73,6 +13,24 @@ pub(crate) fn faults() -> Vec<Fault> {
             &["wire held_long_now ="],
             "7'sh27",
             "7'sh26",
+        ),
+        swap(
+            "an attempt that failed begins again like the first",
+            &["level_again_now ="],
+            "attempt_fails ? {level_again_scaled[5], level_again_scaled} : level_again_chosen",
+            "level_again_chosen",
+        ),
+        swap(
+            "an attempt in the widest gear fails as well",
+            &["wire attempt_fails ="],
+            " & not_first_loop_gear",
+            "",
+        ),
+        swap(
+            "a level that begins again where other bits say",
+            &["alpha_hat_last_bits ="],
+            "alpha_hat[4:0]",
+            "alpha_hat[5:1]",
         ),
         swap(
             "the loop catches up from twice the phase error on",

@@ -107,6 +107,13 @@ pub(super) fn constants(
         small_error: Constant::rounded(spec.small_error(), f.min(8)),
         far_error: Constant::rounded(spec.far_error(), f.min(8)),
         travel_samples_last: whole(travel_samples(spec).into()),
+        gamma_gear_bends: whole(
+            structure
+                .calibration
+                .gears()
+                .min(Calibration::BENDS_GEAR)
+                .into(),
+        ),
         gamma_gear_settled: whole(spec.calibration.settled_gears().into()),
         gamma_gear_last: whole(structure.calibration.gears().into()),
         gear_periods_last: whole(i64::from(spec.calibration.gear_periods()) - 1),

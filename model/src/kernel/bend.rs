@@ -22,6 +22,10 @@ pub struct Bends<S: Signal> {
     pub theta_6: S,
     /// θ7.
     pub theta_7: S,
+    /// θ8, as it is added to both.
+    pub theta_8: S,
+    /// θ9, as it is added to the cosine's and taken off the sine's.
+    pub theta_9: S,
     /// 4 (θ8 + θ9) as multiplied by u², and 4 (θ8 + θ9) − θ8.
     cubic_c: (S, S),
     /// 4 (θ8 − θ9) as multiplied by u², and 4 (θ8 − θ9) − θ8.
@@ -43,6 +47,8 @@ pub fn parameters<S: Signal>(state: &State<S>, structure: &Structure) -> Bends<S
     Bends {
         theta_6: state.theta_6_deviation.quantise(&formats.theta_bend),
         theta_7: state.theta_7_deviation.quantise(&formats.theta_bend),
+        theta_8: both,
+        theta_9: opposite,
         cubic_c: cubic(both + opposite, ["cubic_c", "cubic_c_constant"]),
         cubic_s: cubic(both - opposite, ["cubic_s", "cubic_s_constant"]),
     }
@@ -68,6 +74,27 @@ pub fn shown<S: Signal>(
     state.alpha_hat.begin(&SHOWN);
     let rate = loop_filter::rate_before(state, structure);
     Some(within(rate, k.bend_rate).named("bends_shown"))
+}
+
+/// Bends by sums of squares rest.
+pub fn rest<S: Signal>(state: &State<S>, k: &Coefficients<S>) -> S::Bool {
+    let early = state.gamma_gear.less_than(k.gamma_gear_bends);
+    early.named("bends_rest")
+}
+
+/// Whether bends are calibrated in a sample whose speed shows them. By sums of squares they rest until the ellipse is nearly found: all
+/// nine parameters at once, far from what they will be, swing from bound to bound.
+pub fn taught<S: Signal>(
+    shown: Option<S::Bool>,
+    state: &State<S>,
+    k: &Coefficients<S>,
+    structure: &Structure,
+) -> Option<S::Bool> {
+    if !structure.calibration.swings() {
+        return shown;
+    }
+    let rest = rest(state, k);
+    shown.map(|shown| shown.and(rest.not()).named("bends_taught"))
 }
 
 /// (c, s) before the phase, of (u_c, u_s).

@@ -101,6 +101,7 @@ pub fn searched<S: Signal>(
     let Some(dropped) = dropped.filter(|_| structure.calibration.waits()) else {
         return theta;
     };
+    state.gamma_gear.begin(&DROPPED);
     for (theta, applied) in theta.iter_mut().zip(waits::applied(state)).take(8) {
         *theta = S::select(dropped, applied, *theta);
     }

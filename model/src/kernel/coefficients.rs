@@ -154,6 +154,8 @@ coefficients! {
     far_error,
     /// A period of travel that takes so many samples is too slow for the completion.
     travel_samples_last,
+    /// From this γ gear on bends are searched by sums of squares.
+    gamma_gear_bends,
     /// From this γ gear on γ has settled.
     gamma_gear_settled,
     /// Last γ gear.
@@ -162,7 +164,7 @@ coefficients! {
     gear_periods_last,
     /// Periods of travel that the parameters are held before the search begins again, less one.
     held_periods_last,
-    /// The same where better ones are known.
+    /// Periods of travel that the parameters are held where better ones are known, less one.
     hold_periods_last,
     /// One sample without lock, of all that the counter of samples without lock can hold.
     unlocked_sample,

@@ -14,7 +14,7 @@
 use super::calibration::Gate;
 use super::detector::within;
 use super::strays::{bend_near_bound, strays};
-use super::{Coefficients, State, Structure};
+use super::{Coefficients, State, Structure, bend};
 use crate::signal::{Formula, Logic, Signal};
 
 static HOLD: Formula = Formula {
@@ -359,7 +359,14 @@ pub fn gears<S: Signal>(
     let again = again.named("gear_periods_again");
     let held_periods = held_periods((gate, quiet_ends), restart, counting, state, k, structure);
     let within = tick.not().and(counting).named("within_period");
-    let smooth = passed.and(state.rough.not()).named("gear_ends_calm");
+    let smooth = passed.and(state.rough.not());
+    // While bends by sums of squares rest, what they will do is not known.
+    let smooth = if structure.calibration.swings() {
+        smooth.and(bend::rest(state, k).not())
+    } else {
+        smooth
+    };
+    let smooth = smooth.named("gear_ends_calm");
     let calm = smooth.or(state.calm).and(begins.not()).named("stays_calm");
     let still_held = state.held.and(tick.not()).named("still_held");
     let held = disturbed_period(gate, state)

@@ -1,12 +1,14 @@
 //! Lock detection and acquisition.
 //!
 //! A level counts good samples up by one and bad ones down by eight. Full: the loop shifts to the next narrower
-//! gear, or is locked in the last one. Empty: lock is lost and acquisition starts again in the widest gear. While
-//! it is not locked, an estimate that points away from the signal is turned by half a period: the phase detector
-//! cannot tell α from α + ½.
+//! gear, or is locked in the last one. Empty: lock is lost and acquisition starts again in the widest gear, from
+//! anywhere in the lower half of the level where an attempt failed: after the same number of samples each would come to a
+//! narrower gear at the same place of the period, and fail there again. While it is not locked, an estimate that points
+//! away from the signal is turned by half a period: the phase detector cannot tell α from α + ½.
 
 use super::detector::within;
 use super::{Coefficients, State, Structure};
+use crate::format::{Format, Quantiser};
 use crate::signal::{Formula, Logic, Signal};
 
 static WINDOW: Formula = Formula {
@@ -28,9 +30,17 @@ static LEVEL: Formula = Formula {
 
 static LEVEL_AND_GEAR: Formula = Formula {
     title: "Lock level and loop gear",
-    equation: "level' = level + 1 if good, else level - 8; full: narrower loop, in the last gear locked; empty: widest loop, lock is lost",
+    equation: "level' = level + 1 if good, else level - 8; full: narrower loop, in the last gear locked; empty: widest loop, lock is lost, and where an attempt failed level' = last bits of alpha_hat",
     source: "",
 };
+
+fn window_formula(structure: &Structure) -> &'static Formula {
+    if structure.calibration.is_on() {
+        &WINDOW
+    } else {
+        &WINDOW_OF_FIXED
+    }
+}
 
 /// What the lock detector decides after a sample.
 pub struct Lock<S: Signal> {
@@ -63,11 +73,7 @@ pub fn in_window<S: Signal>(
     k: &Coefficients<S>,
     structure: &Structure,
 ) -> Window<S> {
-    e.begin(if structure.calibration.is_on() {
-        &WINDOW
-    } else {
-        &WINDOW_OF_FIXED
-    });
+    e.begin(window_formula(structure));
     let of_e = within(e, k.lock_error).named("e_in_window");
     let of_rho = rho.less_than(-k.lock_residual).not();
     let present = of_rho
@@ -87,7 +93,9 @@ pub fn present_anywhere<S: Signal>(
     e: S,
     rho: S,
     k: &Coefficients<S>,
+    structure: &Structure,
 ) -> S::Bool {
+    e.begin(window_formula(structure));
     let across = within(e, k.lock_radius).not().named("across_present");
     let opposite = rho.less_than(-k.lock_opposite).named("opposite_present");
     window
@@ -145,6 +153,12 @@ pub fn update<S: Signal>(
         (state.loop_gear + up).quantise(&formats.loop_gear),
     );
     let level = S::select(narrower, k.lock_restart, level);
+    let first = state.loop_gear.less_than(k.one).named("first_loop_gear");
+    let fails = empty.and(first.not()).named("attempt_fails");
+    let alpha = formats.alpha.format.fraction;
+    let any = Quantiser::wrapping(Format::unsigned(formats.level.format.width - 1, alpha));
+    let any = state.alpha_hat.quantise(&any).named("alpha_hat_last_bits");
+    let level = S::select(fails, any.scale(alpha as i32), level).named("level_again");
     let full_in_last = full.and(last).named("full_in_last_gear");
     let locked = state.locked.or(full_in_last).and(empty.not());
     Lock {

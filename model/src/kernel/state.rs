@@ -17,13 +17,13 @@ bundle! {
         error_previous,
         /// θ1 less its nominal value.
         theta_1_deviation,
-        /// θ2.
+        /// θ2, nominally 0.
         theta_2_deviation,
         /// θ3 less its nominal value.
         theta_3_deviation,
-        /// θ4.
+        /// θ4, nominally 0.
         theta_4_deviation,
-        /// θ5.
+        /// θ5, nominally 0.
         theta_5_deviation,
         /// θ6: second-order bend of the cosine.
         theta_6_deviation,
@@ -41,9 +41,9 @@ bundle! {
         gamma_gear,
         /// Quiet periods kept in this γ gear, or since a recall.
         gear_periods,
-        /// Periods with a large residual, with better parameters known less free ones.
+        /// Periods with a large residual; with better parameters known, less those without.
         held_periods,
-        /// Samples with signal since lock was lost, until γ has settled; of its range.
+        /// Samples with signal but no lock, until γ has settled; unit: its whole range.
         unlocked_samples,
         /// Periods in the first γ gear that failed with bends near their bounds.
         failed_periods,
@@ -55,39 +55,39 @@ bundle! {
         travel_high,
         /// ∇α̂ by θ1, radians (recursion 11).
         alpha_gradient_1,
-        /// Its increment per sample, radians.
+        /// Increment per sample of alpha_gradient_1, radians.
         alpha_gradient_rate_1,
         /// w1 − ∇α̂ one sample ago.
         alpha_gradient_error_1,
         /// ∇α̂ by θ2, radians (recursion 11).
         alpha_gradient_2,
-        /// Its increment per sample, radians.
+        /// Increment per sample of alpha_gradient_2, radians.
         alpha_gradient_rate_2,
         /// w2 − ∇α̂ one sample ago.
         alpha_gradient_error_2,
         /// ∇α̂ by θ3, radians (recursion 11).
         alpha_gradient_3,
-        /// Its increment per sample, radians.
+        /// Increment per sample of alpha_gradient_3, radians.
         alpha_gradient_rate_3,
         /// w3 − ∇α̂ one sample ago.
         alpha_gradient_error_3,
         /// ∇α̂ by θ4, radians (recursion 11).
         alpha_gradient_4,
-        /// Its increment per sample, radians.
+        /// Increment per sample of alpha_gradient_4, radians.
         alpha_gradient_rate_4,
         /// w4 − ∇α̂ one sample ago.
         alpha_gradient_error_4,
         /// ∇α̂ by θ5, radians (recursion 11).
         alpha_gradient_5,
-        /// Its increment per sample, radians.
+        /// Increment per sample of alpha_gradient_5, radians.
         alpha_gradient_rate_5,
         /// w5 − ∇α̂ one sample ago.
         alpha_gradient_error_5,
         /// ∇α̂ along the direction that no radius shows, radians (recursion 11).
         null_gradient,
-        /// Its increment per sample, radians.
+        /// Increment per sample of null_gradient, radians.
         null_gradient_rate,
-        /// w − ∇α̂ along it, one sample ago.
+        /// w − null_gradient one sample ago.
         null_gradient_error,
         /// Gathered gradient by θ1.
         gathered_1,
@@ -145,23 +145,23 @@ bundle! {
         recent_8,
         /// θ9 less its nominal value at the last end of some quiet periods of travel.
         recent_9,
-        /// θ1 less its nominal value at the end before.
+        /// θ1 less its nominal value at the end before the one of recent_1.
         proven_1,
-        /// θ2 less its nominal value at the end before.
+        /// θ2 less its nominal value at the end before the one of recent_2.
         proven_2,
-        /// θ3 less its nominal value at the end before.
+        /// θ3 less its nominal value at the end before the one of recent_3.
         proven_3,
-        /// θ4 less its nominal value at the end before.
+        /// θ4 less its nominal value at the end before the one of recent_4.
         proven_4,
-        /// θ5 less its nominal value at the end before.
+        /// θ5 less its nominal value at the end before the one of recent_5.
         proven_5,
-        /// θ6 less its nominal value at the end before.
+        /// θ6 less its nominal value at the end before the one of recent_6.
         proven_6,
-        /// θ7 less its nominal value at the end before.
+        /// θ7 less its nominal value at the end before the one of recent_7.
         proven_7,
-        /// θ8 less its nominal value at the end before.
+        /// θ8 less its nominal value at the end before the one of recent_8.
         proven_8,
-        /// θ9 less its nominal value at the end before.
+        /// θ9 less its nominal value at the end before the one of recent_9.
         proven_9,
     } {
         /// The loop follows.
@@ -188,9 +188,9 @@ bundle! {
         held,
         /// The running period of travel has had an |e| larger than its γ gear expects of a sensor.
         astray,
-        /// And in the last one.
+        /// The period of travel before had one.
         astray_before,
-        /// And in the last two or more: it is not catching up.
+        /// The two periods before had one, or more: it is not catching up.
         astray_long,
         /// Whole periods of travel follow one another fast enough for the completion.
         moving,
@@ -231,11 +231,11 @@ bundle! {
         y_s,
         /// θ1 as multiplied.
         theta_1,
-        /// θ2.
+        /// θ2 as multiplied.
         theta_2,
         /// θ3 as multiplied.
         theta_3,
-        /// θ4.
+        /// θ4 as multiplied.
         theta_4,
         /// θ5 as multiplied.
         theta_5,
@@ -243,13 +243,17 @@ bundle! {
         theta_6,
         /// θ7 as multiplied.
         theta_7,
+        /// θ8 as applied to both channels.
+        theta_8,
+        /// θ9 as applied to the cosine, and with the other sign to the sine.
+        theta_9,
         /// Corrected cosine.
         c,
         /// Corrected sine.
         s,
         /// Stored harmonics of the cosine at the estimate, as a fraction of the amplitude.
         harmonic_cos,
-        /// The same of the sine.
+        /// Stored harmonics of the sine at the estimate, as a fraction of the amplitude.
         harmonic_sin,
         /// Phase by which the sine is sampled later than the cosine, radians.
         skew,

@@ -54,7 +54,7 @@ pub struct Hold {
     calm: bool,
     /// The residual was large in the running period.
     disturbed: bool,
-    /// And in the last one.
+    /// The residual was large in the period before.
     held: bool,
     /// An earlier Θ was recalled.
     returning: bool,

@@ -142,6 +142,8 @@ impl Spec {
 impl Calibration {
     /// Periods of travel that parameters are held of which nothing better is known, before the search begins again.
     pub const HELD: u32 = 32;
+    /// γ gear from which on bends are searched by sums of squares: the ellipse is nearly found by then, and γ a fourth.
+    pub const BENDS_GEAR: u32 = 2;
     /// Periods of travel in the first gear, with bends near their bounds, after which a search that began again with each gives up.
     pub const FAILED: u32 = 31;
     /// The same of those of which something is known, where the design does not say.

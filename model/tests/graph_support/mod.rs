@@ -1,10 +1,11 @@
 //! The recorded graph beside the chip.
 
 use nonius_model::bits::Bits;
-use nonius_model::chip::{Chip, register_format, registers};
+use nonius_model::chip::Chip;
 use nonius_model::design::Design;
 use nonius_model::graph::Evaluation;
 use nonius_model::kernel::Input;
+use nonius_model::registers::{format, registers};
 
 /// Every register and probe of both, in every bit, over so many samples of `codes`, with presets and without calibration at
 /// times.
@@ -29,7 +30,7 @@ pub(crate) fn graph_equals_chip(design: &Design, codes: impl Fn(u32) -> [i64; 2]
             "preset" => input.preset.into(),
             "calibrate" => input.calibrate.into(),
             name => before.flag(name).map(i128::from).unwrap_or_else(|| {
-                let fraction = register_format(name, &design.structure).fraction;
+                let fraction = format(name, &design.structure).map_or(0, |f| f.fraction);
                 before.value(name).map_or(0, |v| v.raw(fraction).into())
             }),
         });
@@ -38,7 +39,7 @@ pub(crate) fn graph_equals_chip(design: &Design, codes: impl Fn(u32) -> [i64; 2]
                 chip.state.flag(name).map(i128::from)
             } else {
                 assert!(values.contains(&name.as_str()));
-                let fraction = register_format(name, &design.structure).fraction;
+                let fraction = format(name, &design.structure).map_or(0, |f| f.fraction);
                 assert_eq!(fraction, design.graph.node(*node).format.fraction, "{name}");
                 chip.state.value(name).map(|v| v.raw(fraction).into())
             };
