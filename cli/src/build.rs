@@ -268,12 +268,10 @@ fn uncorrected(j: &DesignJson) -> Option<String> {
 /// How a sample takes fewer clocks.
 fn fewer_clocks(j: &DesignJson) -> &'static str {
     match j.spec.chip.multipliers {
-        Multipliers::All(_) => {
-            "no chip of this design takes fewer clocks: lower the sample rate or raise the clock"
-        }
-        Multipliers::Count(_) => {
+        Multipliers::Count(n) if (n as usize) < j.products => {
             "more multipliers need fewer clocks (chip.multipliers = \"all\" the fewest)"
         }
+        _ => "no chip of this design takes fewer clocks: lower the sample rate or raise the clock",
     }
 }
 

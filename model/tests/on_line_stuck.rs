@@ -113,7 +113,7 @@ const WATCHED: u32 = 4;
 fn worse_by(spec: &Spec) -> f64 {
     let calibration = &spec.calibration;
     match calibration.method {
-        // Bends by sums of squares are not guarded before their second gear: what they learn on their way cannot be told from a loss.
+        // Bends by sums of squares are not guarded: what they learn on their way cannot be told from a loss.
         // Without one they are there within so few periods that this is the loss alone.
         _ if calibration.swings() => 0.32,
         // A part of a period says little of bends, and what is remembered goes on acting.

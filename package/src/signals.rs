@@ -82,8 +82,13 @@ const REASONS: &[(&[&str], &str, &[&str])] = &[
     ),
     (&["carry"], "whole periods gone by in a sample", &[]),
     (
-        &["alpha_hat_last_bits", "level_again"],
+        &["alpha_hat_last_bits"],
         "last bits of the phase: from where the lock level fills again, at most half of it",
+        &["formats.phase_bits", "formats.lock_level_bits"],
+    ),
+    (
+        &["level_again"],
+        "the lock level, or from where it fills again",
         &["formats.phase_bits", "formats.lock_level_bits"],
     ),
     (

@@ -39,6 +39,17 @@ fn lock_radius(spec: &Spec) -> f64 {
     (1.25 * radius).clamp(0.4, 0.9)
 }
 
+/// γ gear from which on bends by sums of squares are searched. What they leave in the radius while they rest (0.71 of the second order of
+/// both channels, and all of the third) must not keep a gear from passing; where it could they are searched from the first one on.
+fn bends_gear(spec: &Spec) -> u32 {
+    let left = 1.71 * spec.sensor.bend_max + 6.0 * spec.sensor.noise_rms;
+    if left < spec.calibration.restart_residual {
+        spec.calibration.gears().min(Calibration::BENDS_GEAR)
+    } else {
+        0
+    }
+}
+
 pub(super) fn constants(
     spec: &Spec,
     tracking: &Loop,
@@ -107,13 +118,7 @@ pub(super) fn constants(
         small_error: Constant::rounded(spec.small_error(), f.min(8)),
         far_error: Constant::rounded(spec.far_error(), f.min(8)),
         travel_samples_last: whole(travel_samples(spec).into()),
-        gamma_gear_bends: whole(
-            structure
-                .calibration
-                .gears()
-                .min(Calibration::BENDS_GEAR)
-                .into(),
-        ),
+        gamma_gear_bends: whole(bends_gear(spec).into()),
         gamma_gear_settled: whole(spec.calibration.settled_gears().into()),
         gamma_gear_last: whole(structure.calibration.gears().into()),
         gear_periods_last: whole(i64::from(spec.calibration.gear_periods()) - 1),

@@ -140,7 +140,7 @@ impl Loop {
         Ok(this)
     }
 
-    /// Steady phase error, radians, at `rate` turns per sample. 0 for type 2.
+    /// Steady output of the phase detector, the sine of the lag, at `rate` turns per sample. 0 for type 2.
     #[must_use]
     pub fn lag(&self, rate: f64) -> f64 {
         (1.0 - self.pole) * rate / self.ab

@@ -1,9 +1,9 @@
 //! Lock detection and acquisition.
 //!
 //! A level counts good samples up by one and bad ones down by eight. Full: the loop shifts to the next narrower
-//! gear, or is locked in the last one. Empty: lock is lost and acquisition starts again in the widest gear, from
-//! anywhere in the lower half of the level where an attempt failed: after the same number of samples each would come to a
-//! narrower gear at the same place of the period, and fail there again. While it is not locked, an estimate that points
+//! gear, or is locked in the last one. Empty: lock is lost and acquisition starts again in the widest gear, where
+//! it was in a narrower one from anywhere in the lower half of the level: after the same number of samples each attempt would
+//! come to a narrower gear at the same place of the period, and fail there again. (Without rounding that level is no whole number.) While it is not locked, an estimate that points
 //! away from the signal is turned by half a period: the phase detector cannot tell α from α + ½.
 
 use super::detector::within;

@@ -142,13 +142,13 @@ impl Spec {
 impl Calibration {
     /// Periods of travel that parameters are held of which nothing better is known, before the search begins again.
     pub const HELD: u32 = 32;
+    /// The same of those of which something is known, where the design does not say.
+    pub const HELD_KNOWN: u32 = 256;
     /// γ gear from which on bends are searched by sums of squares: the ellipse is nearly found by then, and γ a fourth.
     pub const BENDS_GEAR: u32 = 2;
     /// Periods of travel in the first gear, with bends near their bounds, after which a search that began again with each gives up.
     pub const FAILED: u32 = 31;
-    /// The same of those of which something is known, where the design does not say.
-    pub const HELD_KNOWN: u32 = 256;
-    /// Halvings of the phase's step then, in the final form of five parameters.
+    /// Halvings of the phase's step once γ has settled, in the final form of five parameters.
     pub const PHASE_HALVINGS: u32 = 2;
     /// Bends rest from this rate on, periods per sample: exactly seven samples a period and fewer do not show them, eight do.
     pub const BEND_RATE: f64 = 17.0 / 128.0;
