@@ -32,10 +32,10 @@ pub(crate) fn among(
         if name == best.candidate.name {
             continue;
         }
-        // Far behind, or bought with more parameters and not as probable with them: no rival.
-        let bought = other.freedom > best.freedom + 1 + other.candidate.given()
-            && other.log_p > best.log_p + BEATEN;
-        if other.gain < RIVALS * best.gain || bought {
+        // Far behind, or bought with more parameters: no rival. Of a weak cause one that is as probable with them is.
+        let bought = other.freedom > best.freedom + 1 + other.candidate.given();
+        let as_probable = best.gain < CLEAR && other.log_p < best.log_p + BEATEN;
+        if other.gain < RIVALS * best.gain || (bought && !as_probable) {
             continue;
         }
         let own = (other.gain, other.freedom);

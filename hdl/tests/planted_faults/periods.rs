@@ -68,7 +68,7 @@ pub(crate) fn first_gear_faults() -> Vec<Fault> {
         swap(
             "bends learn from the first gear on",
             &["wire bends_taught_now ="],
-            " & not_bends_rest",
+            " & not_bends_rest_now",
             "",
         ),
         swap(
