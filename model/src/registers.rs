@@ -15,13 +15,12 @@ pub fn format(name: &str, structure: &Structure) -> Option<Format> {
         return parameter(memory, n, structure);
     }
     let (f, c) = (&structure.formats, &structure.calibration);
-    let two_products = structure.method != Method::Two;
     let (format, present) = match name {
         "alpha_hat" => (f.alpha.format, true),
         "count" => (f.count.format, true),
         "alpha_hat_previous" => (f.alpha.format, structure.method == Method::One),
         "rate" => (f.rate.format, structure.method != Method::One),
-        "error_previous" => (f.signal.format, two_products),
+        "error_previous" => (f.signal.format, keeps_error(structure)),
         "lock_level" => (f.level.format, true),
         "loop_gear" => (f.loop_gear.format, structure.loop_gears > 0),
         "gamma_gear" => (f.gamma_gear.format, c.is_on()),
@@ -35,10 +34,18 @@ pub fn format(name: &str, structure: &Structure) -> Option<Format> {
         "null_gradient" | "null_gradient_rate" => {
             (f.alpha_gradient.format, c.completed().is_some())
         }
-        "null_gradient_error" => (f.signal.format, c.completed().is_some() && two_products),
+        "null_gradient_error" => (
+            f.signal.format,
+            c.completed().is_some() && keeps_error(structure),
+        ),
         _ => unreachable!("no register {name}"),
     };
     present.then_some(format)
+}
+
+/// The filter has the error of one sample ago as well.
+fn keeps_error(structure: &Structure) -> bool {
+    structure.method != Method::Two
 }
 
 /// What a register has of which parameter: θ1 is number 0.
@@ -62,13 +69,12 @@ fn parameter(memory: &str, n: usize, structure: &Structure) -> Option<Format> {
         5..8 => c.squares(),
         _ => true,
     };
-    let two_products = structure.method != Method::Two;
     let (format, present) = match memory {
         "theta" => (f.deviation[n].format, true),
         "running" => (f.deviation[n].format, c.waits()),
         "recent" | "proven" => (f.remembered[n].format, c.recalls()),
         "alpha_gradient" | "alpha_gradient_rate" => (f.alpha_gradient.format, c.is_exact()),
-        "alpha_gradient_error" => (f.signal.format, c.is_exact() && two_products),
+        "alpha_gradient_error" => (f.signal.format, c.is_exact() && keeps_error(structure)),
         // That of θ9 is what it moves by, at the end of a period.
         "gathered" if n == 8 => (f.deviation[n].format, true),
         "gathered" => (f.gathered.format, gathered),

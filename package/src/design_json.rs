@@ -180,7 +180,7 @@ impl DesignJson {
         let (spec, b) = (&design.spec, &design.budget);
         let (rate, products) = (spec.adc.sample_rate_hz, design.graph.products());
         let least = rate * clocks as f64;
-        let clock = spec.chip.clock_hz.map_or(least, |clock| clock.max(least));
+        let clock = spec.chip.clock_hz.unwrap_or(least);
         let rom = &design.structure.sine;
         Self {
             schema: "nonius.design/1",

@@ -5,7 +5,7 @@ use nonius_recording::Recording;
 
 use crate::checks::delays::{Delay, Delays, delays};
 use crate::checks::sides::{AROUND, beside, column, is_about, powers};
-use crate::checks::{Checked, NINTH, magnitudes, ninth, repeats};
+use crate::checks::{Checked, NINTH, magnitudes, ninth};
 use crate::context::{against, unwrapped};
 use crate::numerics::correlate::sums;
 use crate::numerics::solve::{dot, weights_of};
@@ -46,16 +46,16 @@ fn single(side: usize, one: usize) -> Vec<f64> {
 }
 
 /// What a step between two samples in the middle adds to a curve of that order through `side` samples on either side: the
-/// weights of the samples that give its size, free of that curve, and of one of the samples.
-fn step_weights(side: usize, order: i32, but: Option<usize>) -> Vec<f64> {
-    let mut curve = powers(2 * side, order);
-    curve.extend(but.map(|one| single(side, one)));
+/// weights of the samples that give its size, free of that curve.
+fn step_weights(side: usize, order: i32) -> Vec<f64> {
+    let curve = powers(2 * side, order);
     let step = column(2 * side, |x| 0.5 * x.signum());
     weights_of(&step, &curve)
 }
 
 /// What a curve does not follow either and what looks like a step in it: corners of a drive, where the speed, the acceleration or
-/// its change is another at once, and a wild sample beside the place, whose neighbours go on as before.
+/// its change is another at once, and a sample beside the place that is off by itself, for it is wild or stands, a repeat of the one before, in
+/// the place of another: its neighbours go on as before.
 struct Alike(Vec<Vec<f64>>);
 
 impl Alike {
@@ -148,7 +148,6 @@ pub(crate) fn angle(recording: &Recording, ellipse: &Ellipse, weight: &[f64]) ->
 struct Look<'a> {
     angle: &'a [f64],
     side: usize,
-    order: i32,
     /// Of the samples about a place: see [`step_weights`].
     weights: Vec<f64>,
     /// How far it jumps before each sample, by those curves.
@@ -157,14 +156,13 @@ struct Look<'a> {
 
 impl<'a> Look<'a> {
     fn new(angle: &'a [f64], side: usize, order: i32) -> Self {
-        let weights = step_weights(side, order, None);
+        let weights = step_weights(side, order);
         let mut sizes = vec![0.0; side];
         sizes.extend(sums(angle, &weights));
         sizes.resize(angle.len(), 0.0);
         Self {
             angle,
             side,
-            order,
             sizes,
             weights,
         }
@@ -218,15 +216,6 @@ impl<'a> Look<'a> {
         (self.sizes[jump.before] - jump.size).abs() < ALIKE * sigma
     }
 
-    /// Whether it is only one sample that is off, this one beside the jump: all others show a step in the curve as well.
-    fn is_one_sample(&self, jump: &Jump, one: usize) -> bool {
-        /// Share of the jump that the others show at least.
-        const OTHERS: f64 = 0.5;
-        let from = jump.before - self.side;
-        let weights = step_weights(self.side, self.order, Some(one - from));
-        dot(self.near(jump), &weights) / jump.size < OTHERS
-    }
-
     /// How many samples are missing where it jumps, if that is a whole number.
     fn missing(&self, jump: &Jump) -> Option<usize> {
         let (k, side) = (jump.before, self.side);
@@ -246,19 +235,11 @@ pub(crate) fn jumps(recording: &Recording, checked: &Checked) -> Vec<(usize, usi
     let reference = recording.reference_rad.clone().map(unwrapped);
     let apart = reference.as_ref().map(|r| against(&angle, r));
     let mut found: Vec<(usize, usize)> = vec![];
-    // A sample that repeats the one before may stand in the place of another: none is missing then.
-    let replaced = |look: &Look, jump: &Jump| {
-        let beside = [jump.before - 1, jump.before];
-        beside
-            .into_iter()
-            .any(|one| repeats(recording, one) && look.is_one_sample(jump, one))
-    };
     // Looks with shorter curves, at the sensor and at its reference.
     let mut shorter: [Vec<Look>; 2] = [vec![], vec![]];
     for (side, order) in sides(angle.len()) {
         let alike = Alike::new(side, order);
-        let other =
-            |look: &Look, j: &Jump| replaced(look, j) || alike.explain(look.near(j), &look.weights);
+        let other = |look: &Look, j: &Jump| alike.explain(look.near(j), &look.weights);
         let look = Look::new(&angle, side, order);
         let far = look.far().into_iter();
         let far = far.filter(|j| !other(&look, j) && !goes_on(reference.as_deref(), j));

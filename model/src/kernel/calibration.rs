@@ -46,15 +46,15 @@ pub struct Gate<S: Signal> {
     pub clear: S::Bool,
     /// Where parameters move at the end of a period: it ends, and what it taught is dropped.
     pub dropped: Option<S::Bool>,
-    /// Where bends are calibrated: this speed shows them.
-    pub bends_shown: Option<S::Bool>,
+    /// Where bends are calibrated: this speed shows them, and they do not rest.
+    pub bends_taught: Option<S::Bool>,
 }
 
 impl<S: Signal> Gate<S> {
     /// A condition as it is for the bends, where there are any: not met while they rest.
     pub fn for_bends(&self, condition: S::Bool, name: &'static str) -> S::Bool {
-        let shown = self.bends_shown;
-        shown.map_or(condition, |shown| condition.and(shown).named(name))
+        let taught = self.bends_taught;
+        taught.map_or(condition, |taught| condition.and(taught).named(name))
     }
 }
 
@@ -115,7 +115,7 @@ pub fn update<S: Signal, const PLAIN: bool>(
         .then(|| gears::settled(state, k, structure));
     let mut gradient = gradient::linear(seen, settled, k, structure);
     let mut bent = (!PLAIN && structure.calibration.has_bend())
-        .then(|| gradient::bent(seen, gate.bends_shown, k, structure));
+        .then(|| gradient::bent(seen, gate.bends_taught, k, structure));
     let solved = starting.map(|_| {
         let solved = start::start(gradient, seen.theta, gate, state, k, structure);
         (this.gathered, this.start_periods) = (solved.gathered, solved.periods);

@@ -133,7 +133,7 @@ pub fn learn<S: Signal, const PLAIN: bool>(
         whole_period: travel.whole_period,
         clear: travel.clear,
         dropped,
-        bends_shown: bend::taught(bends_shown, state, k, structure),
+        bends_taught: bend::taught(bends_shown, state, k, structure),
     };
     let searched = catch_up::searched(dropped, state, structure);
     let mut updated = calibration::update::<S, PLAIN>(&seen, searched, gate, state, k, structure);
