@@ -8,30 +8,23 @@ use crate::checks::repair::Repaired;
 use crate::checks::silent;
 use crate::checks::slips::Looked;
 use crate::checks::{self, Checked, TimeBase};
+use crate::conclude::conclude;
 use crate::context::{Context, ContextError};
 use crate::doubt::codes;
-use crate::doubt::curves;
 use crate::doubt::steps;
-use crate::drifts::channels::Channels;
-use crate::finding::units;
 use crate::finding::{Cause, Finding};
-use crate::model::System;
 use crate::model::exact;
 use crate::motion::calm;
-use crate::noise;
 use crate::noise::flicker::{self, Flicker};
 use crate::numerics::statistics;
 use crate::select::rounds::Rounds;
 use crate::select::score::KINDS;
 use crate::select::select;
-use crate::select::selection::{Accepted, Selection};
+use crate::select::selection::Accepted;
 use crate::select::{choice, speed_anew};
-use crate::shapes::library::Row;
-use crate::simulation::motion::{self, Motion};
-use crate::simulation::{Simulation, simulation};
-use crate::unnamed::left;
+use crate::simulation::Simulation;
+use crate::simulation::motion::Motion;
 use crate::unnamed::unexplained::Unexplained;
-use crate::unnamed::whereabouts::Left;
 
 /// The model with the causes that were found.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -171,7 +164,7 @@ fn beside(mut with: Diagnosis, noise: Option<Flicker>) -> Diagnosis {
 }
 
 /// The one that explains most first.
-fn sort(findings: &mut [Finding]) {
+pub(crate) fn sort(findings: &mut [Finding]) {
     findings.sort_by(|a, b| b.weight.total_cmp(&a.weight));
 }
 
@@ -193,7 +186,7 @@ fn search(
             system.only_white = true;
         }
         let anew = rounds.begin();
-        let mut selection = select(&context, &mut system, &catalogue, carried.clone(), anew);
+        let mut selection = select(&mut system, &catalogue, carried.clone(), anew);
         if selection.again.is_empty() {
             let noise = system.flicker.clone();
             let notes = [
@@ -241,143 +234,4 @@ fn worse((new, known): &(Context, Vec<Accepted>), old: &Context) -> bool {
     const CLEARLY: f64 = 1.5;
     let (new, old) = (left_of(new, known), left_of(old, known));
     !new.is_finite() || new > CLEARLY * CLEARLY * old
-}
-
-/// Findings, gains and positions of a search that has come to its end; the context is its own, and is not kept twice.
-fn conclude(
-    system: &mut System,
-    selection: &Selection,
-    checked: &Checked,
-    repaired: &Repaired,
-) -> impl FnOnce(Context) -> Diagnosis + use<> {
-    let context = system.context;
-    let notes = repaired.recording.notes.clone();
-    let extended = selection.named(system);
-    let all = [selection.base.shapes.as_slice(), &extended.fit.shapes].concat();
-    let halves = system.halves(&all);
-    let system = &*system;
-    let mut findings = checked.findings.clone();
-    let named = extended.findings(system, &halves);
-    let left = system.residual(&selection.fit);
-    // Only what is noise can be noise of a kind.
-    let (mut noisy, mut strange) = if selection.unnamed.is_empty() && selection.coded == 0.0 {
-        noise::findings(system, &left, selection.stepped)
-    } else {
-        (vec![], vec![])
-    };
-    let mut rest = selection.left.as_slice();
-    if noise::is_the_reason(&noisy, rest) {
-        rest = &[];
-    } else if !rest.is_empty() {
-        (noisy, strange) = (vec![], vec![]);
-    }
-    // What looked like it before anything was known may have got a name.
-    let flicker = match &system.flicker {
-        Some(known) if !selection.accepted.is_empty() => known.again(Channels::of(system, &left)),
-        known => known.clone(),
-    };
-    // What is left of an unknown shape can look like anything.
-    let unknown = selection
-        .unnamed
-        .iter()
-        .chain(rest)
-        .map(|u| u.gain)
-        .fold(0.0, f64::max);
-    let flicker =
-        flicker.filter(|f| !f.is_part_of(unknown) && system.size(f.gain) > selection.coded_slowly);
-    let silent = selection.unnamed.is_empty() && rest.is_empty() && noisy.is_empty();
-    if silent && !selection.stepped && strange.is_empty() && flicker.is_none() {
-        strange = left::no_noise(
-            context,
-            &system.residual(&extended.fit).radial,
-            selection.coded,
-        );
-    }
-    let traces = |f: &Flicker| curves::instead_of_noise(system, selection, f.gain);
-    match flicker
-        .as_ref()
-        .map(|f| traces(f).map_or_else(|| f.finding(), Err))
-    {
-        Some(Ok(finding)) => noisy.push(finding),
-        Some(Err(unnamed)) if !selection.stepped => strange.push(unnamed),
-        _ => {}
-    }
-    let unnamed = || selection.unnamed.iter().chain(rest).chain(&strange);
-    let own = selection.base.shapes.len();
-    let (held_before, held_after) = (
-        halves.held_out(&selection.base, own, 0),
-        halves.held_out(&extended.fit, own, 0),
-    );
-    let (position_before, position_after) = (
-        halves.position_error(&selection.base, own, 0),
-        halves.position_error(&extended.fit, own, 0),
-    );
-    for finding in &mut findings {
-        finding.gain = finding.gain.beside(held_before, position_before);
-    }
-    findings.extend(named);
-    for mut finding in noisy {
-        finding.gain = finding.gain.beside(held_after, position_after);
-        findings.push(finding);
-    }
-    sort(&mut findings);
-    let was = system.residual(&selection.base);
-    let left = system.residual(&extended.fit);
-    let mut unexplained = Unexplained::nothing(&findings);
-    let seen = Left {
-        context,
-        radial: &left.radial,
-        tangential: &left.tangential,
-    };
-    let mut told = vec![];
-    for one in unnamed() {
-        let domain = one.domain();
-        if domain.is_some() && told.contains(&domain) {
-            continue;
-        }
-        told.push(domain);
-        unexplained.add(one.log_p, one.sentence(&seen, system.noise()));
-    }
-    let residuals = [(was.radial, was.tangential), (left.radial, left.tangential)];
-    let left_motion = left.motion;
-    let simulation = simulation(
-        &selection.base,
-        system,
-        held_before,
-        halves.rms(&selection.base),
-        position_before,
-        units::of_columns(&repaired.recording),
-    );
-    let model = Extended {
-        residual_rms: halves.rms(&extended.fit),
-        held_out_residual_rms: held_after,
-        position_error_rms_rad: position_after,
-    };
-    // The angle, less what everything that is no motion does to it; what has no name any longer is off the signals, and comes back.
-    let mut amounts = extended.sensor_amounts();
-    amounts.extend(selection.taken_back(&extended));
-    let change = system.samples.sum(&amounts, Row::Tangential, 1);
-    let pairs = context.measured.iter().zip(&change);
-    let mut angle: Vec<f64> = pairs.map(|(measured, change)| measured - change).collect();
-    motion::bridge(context, &mut angle);
-    let own = repaired.place.iter();
-    let positions = own.map(|&k| angle[k] / std::f64::consts::TAU).collect();
-    let motion = Motion::of(context, &angle);
-    let ellipse = exact::ellipse(&context.ellipse, &extended.fit.solution.x);
-    move |mut context| {
-        context.ellipse = ellipse;
-        Diagnosis {
-            simulation,
-            findings,
-            unexplained,
-            extended: model,
-            positions,
-            motion,
-            periods_travelled: context.periods_travelled(),
-            context,
-            residuals,
-            left_motion,
-            notes,
-        }
-    }
 }

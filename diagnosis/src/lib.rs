@@ -11,6 +11,7 @@
 
 mod causes;
 mod checks;
+mod conclude;
 mod context;
 mod diagnose;
 mod doubt;

@@ -123,11 +123,12 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
         of(Cause::EvenNonlinearity, powers(2), "y + k·y²"),
         of(Cause::OddNonlinearity, powers(3), "y + k·y³"),
     ]);
-    for order in 2..=7 {
+    let orders = 2..=7;
+    for order in orders.clone() {
         let adds = waves(order);
         let shapes = shapes(&adds, 4);
         list.push(Candidate {
-            trials: 6.0,
+            trials: orders.clone().count() as f64,
             order: Some(order),
             adds: Some(adds),
             chip: Chip::Corrects,
@@ -163,9 +164,10 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
             ("the lower rail", |r| vec![r[1].plus(&r[3])]),
             (EACH, <[Shape]>::to_vec),
         ];
+        let trials = variants.len() * THRESHOLDS.len();
         for (where_, of) in variants {
             catalogue.candidates.push(Candidate {
-                trials: 4.0 * THRESHOLDS.len() as f64,
+                trials: trials as f64,
                 exact: Some(Exact {
                     make: Rc::new(move |inner, library| of(&self::rails(inner[0], library))),
                     inner: vec![threshold],

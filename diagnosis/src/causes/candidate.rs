@@ -77,7 +77,7 @@ pub(crate) enum Sign {
 /// A cause with one choice of its discrete parameters.
 #[derive(Clone)]
 pub(crate) struct Candidate {
-    /// Name of the contract.
+    /// Its name.
     pub name: Cause,
     /// Domain.
     pub domain: Domain,

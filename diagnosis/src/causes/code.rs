@@ -9,6 +9,9 @@ use crate::finding::{Cause, Parameter};
 use crate::shapes::block::Block;
 use crate::shapes::library::Shape;
 
+/// Highest bits of the code that are looked at.
+const BITS: usize = 8;
+
 pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
     let half = 1i64 << (context.bits.min(40) - 1);
     let span = |which: usize| {
@@ -40,7 +43,7 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
     };
     // The highest bit is the step in the middle of the range.
     let top = context.bits.min(40) - 1;
-    for bit in (0..context.bits.min(40)).rev().take(8) {
+    for bit in (0..context.bits.min(40)).rev().take(BITS) {
         if (1i64 << bit) > reach || (1i64 << bit) < 8 {
             continue;
         }
@@ -54,7 +57,7 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
             })
             .collect();
         catalogue.candidates.push(Candidate {
-            trials: 8.0,
+            trials: BITS as f64,
             parameters: Rc::new(move |e| {
                 vec![
                     Parameter::exact("bit", f64::from(bit), "1"),

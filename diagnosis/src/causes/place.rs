@@ -7,7 +7,7 @@ use nonius_fourier::Complex;
 use nonius_quantity::times;
 
 use super::mirror::unmirrored_order;
-use super::revolution::{harmonic, turns};
+use super::revolution::{REVOLVING, harmonic, revolving, turns};
 use crate::causes::candidate::{Candidate, Domain, Exact, Make, Sign, each};
 use crate::context::Context;
 use crate::finding::{Cause, Chip, Parameter};
@@ -28,7 +28,7 @@ pub(crate) fn candidates(
     residual: &Residual,
     library: &mut Library,
 ) -> Vec<Candidate> {
-    let Some(phi) = context.phi.as_ref().filter(|phi| turns(phi) >= 0.9) else {
+    let Some(phi) = revolving(context) else {
         return vec![];
     };
     // What comes once is no dip at one place of the revolution every time.
@@ -53,7 +53,7 @@ pub(crate) fn weighed(
     weighed: &Weighed,
     library: &mut Library,
 ) -> Vec<Candidate> {
-    let Some(phi) = context.phi.as_ref().filter(|phi| turns(phi) >= 0.9) else {
+    let Some(phi) = revolving(context) else {
         return vec![];
     };
     let both = [&weighed.fast, &weighed.matched[1]];
@@ -109,7 +109,7 @@ pub(crate) fn highest_order(
     /// Orders up to so many times its own are near, and up to so many.
     const NEAR: usize = 4;
     const LEAST: usize = 32;
-    if turns(phi) < 0.9 {
+    if turns(phi) < REVOLVING {
         return None;
     }
     let order = strongest_order(per, phi, values)?;
@@ -126,7 +126,7 @@ pub(crate) fn without_cogging(context: &Context, mut values: Vec<f64>) -> Vec<f6
     const ENOUGH: usize = 20_000;
     /// Samples that are left together.
     const TOGETHER: usize = 1000;
-    let Some(phi) = context.phi.as_ref().filter(|phi| turns(phi) >= 0.9) else {
+    let Some(phi) = revolving(context) else {
         return values;
     };
     let every = (values.len() / ENOUGH).max(1);
@@ -159,7 +159,7 @@ fn cogging(per: u32, order: usize, library: &mut Library) -> Candidate {
 pub(super) fn cogging_with_the_period(context: &Context, library: &mut Library) -> Vec<Candidate> {
     /// Orders of the scale period.
     const ORDERS: usize = 8;
-    let turning = context.phi.as_ref().is_some_and(|phi| turns(phi) >= 0.9);
+    let turning = revolving(context).is_some();
     let per = context
         .periods_per_revolution
         .filter(|per| turning && *per > 1);
@@ -259,7 +259,7 @@ fn contamination(phi: &[f64], residual: &Residual, library: &mut Library) -> Vec
             let centre = (lowest as f64 + 0.5 + shift) / PLACES as f64 * TAU;
             let shapes = dip(&[centre, width], library);
             list.push(Candidate {
-                trials: PLACES as f64 * 5.0,
+                trials: PLACES as f64 * WIDTHS.len() as f64,
                 exact: Some(Exact {
                     make: Rc::new(dip),
                     inner: vec![centre, width],

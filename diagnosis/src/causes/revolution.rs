@@ -44,6 +44,17 @@ pub(crate) fn turns(phi: &[f64]) -> f64 {
     span(phi.iter().copied()) / TAU
 }
 
+/// Revolutions from which on what comes with them is looked for.
+pub(super) const REVOLVING: f64 = 0.9;
+
+/// Angle of the revolution, radians, where the motion goes that far.
+pub(super) fn revolving(context: &Context) -> Option<&Vec<f64>> {
+    context.phi.as_ref().filter(|phi| turns(phi) >= REVOLVING)
+}
+
+/// Orders of the radius, lowest first.
+const RADIAL: std::ops::RangeInclusive<u32> = 1..=3;
+
 pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
     let Some(phi) = &context.phi else { return };
     let against = context.against_reference.is_some();
@@ -55,15 +66,15 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
     );
     let all = (0..2 * ORDERS).flat_map(|i| [place.radial(i), place.tangential(i)]);
     catalogue.generic(Domain::Revolution, all.filter(|s| !s.0.is_empty()));
-    if turns(phi) < 0.9 {
+    if turns(phi) < REVOLVING {
         return;
     }
     let list = &mut catalogue.candidates;
-    for order in 1..=3u32 {
+    for order in RADIAL {
         let first = 2 * order as usize - 2;
         let shapes: Vec<Shape> = [first, first + 1].map(|i| place.radial(i)).into();
         list.push(Candidate {
-            trials: 3.0,
+            trials: f64::from(*RADIAL.end()),
             parameters: harmonic(order, "depth", "1"),
             evidence: Rc::new(move |p| {
                 format!(

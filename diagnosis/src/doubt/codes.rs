@@ -10,7 +10,7 @@ use nonius_recording::AdcSource;
 use crate::causes::candidate::Domain;
 use crate::causes::speed_varies;
 use crate::context::Context;
-use crate::doubt::{SLOW, gain_of, home};
+use crate::doubt::{SLOW_DOMAINS, gain_of, home};
 use crate::finding::{Cause, Finding};
 use crate::model::System;
 use crate::select::selection::Selection;
@@ -176,7 +176,7 @@ pub(crate) fn beside(
         };
         if ordered {
             error.whole
-        } else if SLOW.contains(&candidate.domain) || candidate.domain == Domain::Line {
+        } else if SLOW_DOMAINS.contains(&candidate.domain) || candidate.domain == Domain::Line {
             slow
         } else if many && repeats(i) {
             known.whole.max(error.low)

@@ -7,10 +7,11 @@ use crate::finding::Cause;
 use crate::model::{System, atoms_of};
 use crate::numerics::statistics::log_tail;
 use crate::select::beside::Beside;
+use crate::select::both;
 use crate::select::rivals::NOTHING_NEW;
 use crate::select::score::CLEAR;
+use crate::select::search::SLOW_CAUSES;
 use crate::select::selection::Selection;
-use crate::select::{SLOW, both};
 use crate::shapes::generic;
 use crate::shapes::library::Shape;
 use crate::unnamed::unexplained::Unnamed;
@@ -46,7 +47,7 @@ pub(crate) fn of_drifts(system: &mut System, found: &mut Selection) -> Vec<Unnam
 /// Why slow noise of so much gain in log-likelihood beside something slow has no name: it is so weak that it may be what the model
 /// of that leaves.
 pub(crate) fn instead_of_noise(system: &System, found: &Selection, gain: f64) -> Option<Unnamed> {
-    let slow = |i: &usize| SLOW.contains(&found.accepted[*i].candidate.name);
+    let slow = |i: &usize| SLOW_CAUSES.contains(&found.accepted[*i].candidate.name);
     let also = sure(found, Domain::Speed).into_iter().filter(slow);
     let drifts = sure(found, Domain::Time).into_iter().chain(also);
     let gains = drifts.map(|i| (gain_of(system, found, &[i]), i));

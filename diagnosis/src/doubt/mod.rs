@@ -34,7 +34,7 @@ const ALIKE: f64 = 0.95;
 pub(crate) const APART: f64 = 2.0;
 
 /// Domains that slow noise of the channels is in: all that can be slow.
-pub(crate) const SLOW: [Domain; 3] = [Domain::Speed, Domain::Time, Domain::Revolution];
+pub(crate) const SLOW_DOMAINS: [Domain; 3] = [Domain::Speed, Domain::Time, Domain::Revolution];
 
 /// What depends on the code depends on the angle too.
 pub(crate) fn home(domain: Domain) -> Domain {
@@ -55,7 +55,7 @@ pub(crate) fn doubt(system: &System, catalogue: &Catalogue, found: &mut Selectio
         Domain::Revolution,
     ] {
         // Slow noise has its own name.
-        if system.flicker.is_some() && SLOW.contains(&domain) {
+        if system.flicker.is_some() && SLOW_DOMAINS.contains(&domain) {
             continue;
         }
         let own: Vec<usize> = (0..found.accepted.len())

@@ -11,7 +11,6 @@ use crate::finding::Cause;
 use crate::model::exact::{self, FITTED};
 use crate::model::{Fit, System};
 use crate::numerics::polynomial::DEGREE;
-use crate::numerics::statistics::price;
 use crate::select::beside::Beside;
 use crate::select::both;
 use crate::select::score::{Scored, score};
@@ -36,7 +35,7 @@ pub(crate) fn join(system: &mut System, fit: &Fit, scored: &mut Vec<Scored>, lea
     if !tells(system.context, DEGREE) {
         return;
     }
-    let price = price(system.context.samples() as f64);
+    let price = system.price();
     let mut best: Vec<Polynomial> = vec![];
     for own in scored.iter() {
         let time = own.candidate.domain == Domain::Time && own.candidate.exact.is_none();
@@ -66,7 +65,7 @@ pub(crate) fn join(system: &mut System, fit: &Fit, scored: &mut Vec<Scored>, lea
 
 /// What a candidate explains beside a fit, the numbers of its place paid for, too.
 fn paid(system: &System, fit: &Fit, candidate: Candidate) -> Option<(f64, Scored)> {
-    let price = price(system.context.samples() as f64);
+    let price = system.price();
     let places = candidate.exact.as_ref().map_or(0, |e| e.inner.len());
     let beside = Beside::new(&system.total, &fit.shapes);
     let one = score(&beside, candidate)?;

@@ -5,7 +5,6 @@ use crate::drifts::channels::Channels;
 use crate::drifts::steps::{self, Change};
 use crate::finding::Cause;
 use crate::model::{Fit, System};
-use crate::numerics::statistics::price;
 use crate::select::beside::Beside;
 use crate::select::both;
 use crate::select::held::stand_beside;
@@ -69,7 +68,7 @@ pub(crate) fn instead_of_speed(
     if [Cause::Hysteresis, Cause::AcCoupling].contains(&own.candidate.name) {
         return None;
     }
-    let paid = price(system.context.samples() as f64) * own.freedom as f64;
+    let paid = system.price() * own.freedom as f64;
     explained(system, fit, own, rest, |named| {
         let mut others = named.to_vec();
         others.drain(fit.shapes.len()..fit.shapes.len() + own.candidate.shapes.len());

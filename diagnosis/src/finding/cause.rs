@@ -4,7 +4,7 @@ use std::fmt;
 
 use serde::Serialize;
 
-/// A cause, by the name that the contract's list gives it: programs rely on these words.
+/// A cause, by its name in `docs/diagnosis.md`: programs rely on these words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Cause {
@@ -72,9 +72,9 @@ pub enum Cause {
     Vibration,
     /// Real motion that goes with the revolution.
     Cogging,
-    /// White noise: no cause of the contract's list, but every simulation has it.
+    /// White noise: no cause of the catalogue, but every simulation has it.
     WhiteNoise,
-    /// A gain that follows the acceleration: no cause of the contract's list, so it is never the name of a finding.
+    /// A gain that follows the acceleration: no cause of the catalogue, so it is never the name of a finding.
     AccelerationGain,
 }
 
@@ -90,7 +90,7 @@ impl Cause {
         }
     }
 
-    /// Whether a finding may have this name: the contract lists it.
+    /// Whether a finding may have this name: the catalogue lists it.
     pub(crate) fn is_listed(self) -> bool {
         !matches!(self, Self::WhiteNoise | Self::AccelerationGain)
     }

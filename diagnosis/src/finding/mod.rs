@@ -59,7 +59,7 @@ impl Parameter {
     }
 }
 
-/// What naming a cause gains. What is optional beyond the contract is left out where it says nothing.
+/// What naming a cause gains. What says nothing is left out.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Gain {
     /// Residual on data that was not fitted, without the cause, in fractions of the amplitude.
@@ -175,7 +175,7 @@ pub enum Place {
 /// A cause shown to be in a recording.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Finding {
-    /// Its name, from the contract's list.
+    /// Its name, from the catalogue.
     pub cause: Cause,
     /// Another cause that explains the data as well.
     pub confounded_with: Vec<Cause>,
@@ -217,7 +217,7 @@ impl Finding {
         self.all_as(Cause::plain)
     }
 
-    /// The evidence after the names of the contract.
+    /// The evidence, each after its name in `findings.json`.
     #[must_use]
     pub fn named_evidence(&self) -> String {
         let seen = self

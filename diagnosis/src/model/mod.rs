@@ -23,6 +23,7 @@ use crate::model::whiten::Whitener;
 use crate::noise::flicker::Flicker;
 use crate::noise::flicker::records::Record;
 use crate::numerics::solve::{Normal, Solution};
+use crate::numerics::statistics;
 use crate::select::selection::Accepted;
 use crate::shapes::library::{ROWS, Row, Shape};
 
@@ -125,6 +126,11 @@ impl<'a> System<'a> {
         };
         this.total = this.units(&moments, &atoms, every);
         this
+    }
+
+    /// Log-likelihood that a number has to explain to be worth it.
+    pub(crate) fn price(&self) -> f64 {
+        statistics::price(self.context.samples() as f64)
     }
 
     /// Whether what is left along the circle is the axis more than it is noise.

@@ -29,7 +29,7 @@ pub(crate) fn beyond_uneven_noise(
 /// Slow noise of the channels is in the numbers of what can be slow.
 pub(crate) fn widen_where_slow(system: &mut System, found: &mut Selection, noise: &Records) {
     for one in &mut found.accepted {
-        if !doubt::SLOW.contains(&one.candidate.domain) {
+        if !doubt::SLOW_DOMAINS.contains(&one.candidate.domain) {
             continue;
         }
         let range = one.range();

@@ -1,6 +1,5 @@
 //! The experiment that tells two causes apart: the first of a list to which they answer differently.
 
-use super::words::capital;
 use crate::finding::Cause;
 
 /// An experiment, and what each cause does in it; causes that do not answer stand in none.
@@ -195,9 +194,7 @@ pub(super) fn experiment(cause: Cause, other: Cause) -> String {
             let (cause, other) = (cause.plain(), other.plain());
             format!("{setup}: {cause} {a}; {other} {b}.")
         }
-        None => capital(
-            "record several speeds, both directions and more revolutions, with a reference if there is one.",
-        ),
+        None => "Record several speeds, both directions and more revolutions, with a reference if there is one.".into(),
     }
 }
 

@@ -123,7 +123,7 @@ pub(crate) fn holds(
     };
     let held = gained(system, &named[fit.shapes.len()..]);
     // Slow noise is in all that can be slow.
-    let slow = doubt::SLOW.contains(&domain);
+    let slow = doubt::SLOW_DOMAINS.contains(&domain);
     let noise = slow.then(|| Records::of(system)).flatten();
     let less_noise =
         |system: &mut System, known: &[Shape], shapes: &[Shape], beyond: (f64, usize)| {

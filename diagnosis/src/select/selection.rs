@@ -6,7 +6,7 @@ use crate::causes::candidate::{Candidate, Estimate};
 use crate::finding::{Cause, Finding, Gain, OTHER_ORDER, Parameter};
 use crate::model::exact::Start;
 use crate::model::{Fit, Halves, System, amounts};
-use crate::numerics::statistics::{by_chance, price};
+use crate::numerics::statistics::by_chance;
 use crate::select::score::{KINDS, SHOWN};
 use crate::shapes::generic::HOLDS;
 use crate::shapes::library::Shape;
@@ -260,7 +260,7 @@ impl Selection {
     /// Drops, one after the other, names to which the others leave nothing: first the one that is the least worth its numbers.
     /// What is off the signals already stays.
     pub(crate) fn drop_idle(&mut self, system: &System) {
-        let price = price(system.context.samples() as f64);
+        let price = system.price();
         loop {
             let all = self.accepted.iter().enumerate();
             let idle = all

@@ -11,8 +11,9 @@ use crate::select::beside::Beside;
 use crate::select::choice::best;
 use crate::select::contender::{Contender, contender};
 use crate::select::score::{Scored, score};
+use crate::select::search::{ONCE, starts};
 use crate::select::selection::Accepted;
-use crate::select::{ONCE, begin, both, starts};
+use crate::select::{begin, both};
 
 /// Where the last cause that is carried bends the channels, and one that goes with speed changes with that: what is known of the recording
 /// with another choice of the one that it changes most. `None` where it stays what it was.

@@ -74,9 +74,7 @@ impl Bartlett {
             p_value: kolmogorov(distance * m.sqrt()),
         }
     }
-}
 
-impl Bartlett {
     /// How the spectrum differs from that of white noise, for so many samples per second.
     pub(crate) fn words(&self, rate: f64) -> String {
         let hertz = Quantity::rounded(self.at * rate / 2.0, 2, Unit::Prefixed("Hz"));
