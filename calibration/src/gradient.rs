@@ -110,7 +110,7 @@ impl Search {
 
     /// Levenberg–Marquardt. Gives Θ, the number of faint directions, and whether it came to rest.
     fn run(&self, mut theta: DVector<f64>) -> (DVector<f64>, usize, bool) {
-        let n = self.set.len();
+        let n = self.set.parameters();
         let mut damping = 1e-6;
         let mut now = self.objective(theta.as_slice());
         let mut faint = 0;
@@ -172,7 +172,7 @@ impl Search {
     }
 
     fn covariance(&self, theta: &DVector<f64>) -> Option<DMatrix<f64>> {
-        let n = self.set.len();
+        let n = self.set.parameters();
         let mut sandwich = Sandwich::new(self.directions.ncols());
         let mut slope = DVector::zeros(n);
         for (c, s) in &self.pairs {
@@ -209,9 +209,9 @@ fn physical(set: Set, theta: &[f64]) -> Option<Ellipse> {
 }
 
 fn physical_slopes(set: Set, theta: &DVector<f64>, at: &Ellipse) -> Option<DMatrix<f64>> {
-    let mut by = DMatrix::zeros(5, set.len());
+    let mut by = DMatrix::zeros(5, set.parameters());
     let h = 1e-6;
-    for i in 0..set.len() {
+    for i in 0..set.parameters() {
         let moved = |h: f64| {
             let mut theta = theta.clone();
             theta[i] += h;

@@ -4,6 +4,8 @@
 //! unit, both in the same one. [`cramer_rao`] is what no estimator can beat, [`report()`] the result to be read.
 
 mod calibrate;
+mod check;
+mod clipped;
 pub mod conic;
 pub mod cramer_rao;
 pub mod curve;
@@ -19,15 +21,20 @@ mod residual;
 mod result;
 mod samples;
 mod sandwich;
+mod seen;
 pub mod set;
 pub mod set_bound;
+mod shape;
+mod together;
+mod told;
 pub mod unbiased;
 mod words;
 
 pub use calibrate::{calibrate, undetermined};
 pub use curve::Curve;
 pub use method::{Error, Method, Options};
-pub use noise::Shape;
 pub use nonius_recording::Ellipse;
 pub use report::report;
 pub use result::{Calibration, Correlations, Parameter};
+pub use shape::Shape;
+pub use together::Together;

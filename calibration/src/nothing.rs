@@ -1,10 +1,8 @@
 //! Why samples draw no ellipse, in plain words.
 
-use std::collections::HashMap;
-
 use crate::method::Error;
 use crate::places::seen_from_the_mean;
-use crate::samples::Samples;
+use crate::samples::{Repeated, Samples};
 
 /// The samples as vectors from their mean.
 pub(crate) fn centred(cos: &[f64], sin: &[f64]) -> Vec<nalgebra::Vector2<f64>> {
@@ -25,22 +23,13 @@ fn slimness(centred: &[nalgebra::Vector2<f64>]) -> f64 {
 fn stuck(cos: &[f64], sin: &[f64]) -> Option<([f64; 2], usize)> {
     /// Share of the samples.
     const MANY: f64 = 0.05;
-    let mut counts: HashMap<[u64; 2], usize> = HashMap::new();
-    let pairs = || cos.iter().zip(sin).map(|(c, s)| [*c, *s]);
-    // 0 and -0 are one.
-    let bits = |pair: [f64; 2]| pair.map(|y| (y + 0.0).to_bits());
-    for pair in pairs() {
-        *counts.entry(bits(pair)).or_default() += 1;
-    }
-    let (most, count) = counts
-        .into_iter()
-        .max_by_key(|(bits, count)| (*count, *bits))?;
-    let others = pairs().filter(|pair| bits(*pair) != most);
-    let (cos, sin): (Vec<f64>, Vec<f64>) = others.map(|[c, s]| (c, s)).unzip();
-    let many = count as f64 > MANY * (count + cos.len()) as f64;
-    let drawn =
-        many && cos.len() >= nonius_recording::MIN_SAMPLES && Samples::of(&cos, &sin).is_some();
-    drawn.then(|| (most.map(f64::from_bits), count))
+    let repeated = Repeated::of(cos, sin)?;
+    let many = repeated.count as f64 > MANY * cos.len() as f64;
+    let (others, count) = (&repeated, repeated.count);
+    let drawn = many
+        && others.cos.len() >= nonius_recording::MIN_SAMPLES
+        && Samples::of(&others.cos, &others.sin).is_some();
+    drawn.then_some((repeated.pair, count))
 }
 
 /// Where the samples draw no ellipse at all.

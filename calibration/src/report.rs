@@ -56,7 +56,8 @@ fn statistics(out: &mut String, found: &Calibration, lsb: Option<[f64; 2]>) {
             None if found.noise_ratio_extreme => {
                 format!("{ratio:.3} (sin to cos, estimated, too far from 1 to be measured)")
             }
-            None => format!("{ratio:.3} (sin to cos, not estimated)"),
+            None if found.noise_ratio_assumed => format!("{ratio:.3} (sin to cos, assumed)"),
+            None => format!("{ratio:.3} (sin to cos, given)"),
         };
         line("noise ratio", error);
         if let Some(lsb) = lsb {

@@ -31,7 +31,10 @@ pub(crate) fn collapsed(
     cos: &[f64],
     sin: &[f64],
 ) -> bool {
+    /// Share of the noise.
     const FAR: f64 = 0.3;
+    /// Of the distance of the pairs from each other.
+    const CLOSE: f64 = 0.5;
     let spread = |method: Method, theta: &[f64]| {
         let pairs = cos.iter().zip(sin);
         let corrected = pairs.map(|(c, s)| method.set().correct(theta, *c, *s));
@@ -42,5 +45,5 @@ pub(crate) fn collapsed(
             .sum::<f64>()
     };
     residual(method, theta, cos, sin) < FAR * white(fit)
-        && spread(method, theta) < FAR * FAR * spread(Method::Unbiased, &fit.ellipse.theta())
+        && spread(method, theta) < CLOSE * CLOSE * spread(Method::Unbiased, &fit.ellipse.theta())
 }

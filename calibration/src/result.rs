@@ -5,7 +5,8 @@ use serde::Serialize;
 
 use crate::cramer_rao::Bound;
 use crate::method::Method;
-use crate::noise::Shape;
+use crate::shape::Shape;
+use crate::together::Together;
 
 /// A parameter.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -52,6 +53,10 @@ pub struct Calibration {
     pub noise_ratio_error: Option<f64>,
     /// σ_s/σ_c was estimated and is too far from equal noise to be measured: it says which channel is quiet, not how quiet.
     pub noise_ratio_extreme: bool,
+    /// It could not be told, and equal noise was taken.
+    pub noise_ratio_assumed: bool,
+    /// Noise that both channels have together, where there is such.
+    pub noise_together: Option<Together>,
     /// What repeats with the angle and is no ellipse.
     pub shape: Option<Shape>,
     /// How much further consecutive parts of the recording differ than the error bars of [`Method::Unbiased`] say.

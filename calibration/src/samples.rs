@@ -3,7 +3,7 @@
 //! A glitch or a row of zeros before the ADC began would bend every estimate, so samples far off the ellipse are left
 //! out, for every method alike.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 use nonius_recording::{Ellipse, FitMethod};
 
@@ -32,6 +32,28 @@ pub(crate) struct Samples {
 impl Samples {
     /// `None` where they draw no ellipse.
     pub(crate) fn of(cos: &[f64], sin: &[f64]) -> Option<Self> {
+        Self::without_repeated(cos, sin).or_else(|| Self::of_all(cos, sin))
+    }
+
+    /// Where some samples are one pair to the last digit, far off the ellipse that the others draw: nothing was connected then.
+    fn without_repeated(cos: &[f64], sin: &[f64]) -> Option<Self> {
+        /// Share of the samples, fewer of which are glitches like others.
+        const SOME: f64 = 0.005;
+        /// More of them are no accident of a recording that else is sound.
+        const MANY: f64 = 0.25;
+        let repeated = Repeated::of(cos, sin)?;
+        let share = repeated.count as f64 / cos.len() as f64;
+        if !(SOME..=MANY).contains(&share) || repeated.cos.len() < nonius_recording::MIN_SAMPLES {
+            return None;
+        }
+        let mut others = Self::of_all(&repeated.cos, &repeated.sin)?;
+        let [c, s] = repeated.pair;
+        let limit = limit(&others.start, &others.cos, &others.sin);
+        others.outliers += repeated.count;
+        (others.start.radial_residual(c, s).abs() > limit).then_some(others)
+    }
+
+    fn of_all(cos: &[f64], sin: &[f64]) -> Option<Self> {
         let quick = Ellipse::fit(cos, sin);
         // The quick fit wants half a period; a shorter arc is enough to try.
         let start = if quick.method == FitMethod::Conic {
@@ -53,6 +75,37 @@ impl Samples {
             cos: kept_cos,
             sin: kept_sin,
             start,
+        })
+    }
+}
+
+/// The pair that more samples are to the last digit than any other.
+pub(crate) struct Repeated {
+    pub(crate) pair: [f64; 2],
+    pub(crate) count: usize,
+    /// The other samples.
+    pub(crate) cos: Vec<f64>,
+    pub(crate) sin: Vec<f64>,
+}
+
+impl Repeated {
+    pub(crate) fn of(cos: &[f64], sin: &[f64]) -> Option<Self> {
+        let mut counts: HashMap<[u64; 2], usize> = HashMap::new();
+        let pairs = || cos.iter().zip(sin).map(|(c, s)| [*c, *s]);
+        // 0 and -0 are one.
+        let bits = |pair: [f64; 2]| pair.map(|y| (y + 0.0).to_bits());
+        for pair in pairs() {
+            *counts.entry(bits(pair)).or_default() += 1;
+        }
+        let most = counts.into_iter().max_by_key(|(bits, n)| (*n, *bits));
+        let (most, count) = most?;
+        let others = pairs().filter(|pair| bits(*pair) != most);
+        let (cos, sin) = others.map(|[c, s]| (c, s)).unzip();
+        Some(Self {
+            pair: most.map(f64::from_bits),
+            count,
+            cos,
+            sin,
         })
     }
 }
@@ -126,6 +179,27 @@ mod tests {
         let samples = Samples::of(&cos, &sin).expect("two channels");
         assert_eq!(samples.outliers, 5);
         assert_eq!(samples.cos.len(), 1995);
+    }
+
+    /// Beside offsets of more than an amplitude as beside none; at a place of the ellipse it is a standstill.
+    #[test]
+    fn one_pair_that_is_no_place_of_the_ellipse_is_left_out() {
+        for offset in [0.0, 1.5, 5.0] {
+            for share in [100, 50, 20, 10, 4] {
+                let (mut cos, mut sin) = turning(2000, 3.3);
+                cos.iter_mut().chain(&mut sin).for_each(|y| *y += offset);
+                let zeros = 2000 / share;
+                cos[..zeros].fill(0.0);
+                sin[..zeros].fill(0.0);
+                let samples = Samples::of(&cos, &sin).expect("an ellipse");
+                assert_eq!(samples.outliers, zeros, "{offset}");
+                let place = (cos[1900], sin[1900]);
+                cos[..zeros].fill(place.0);
+                sin[..zeros].fill(place.1);
+                let samples = Samples::of(&cos, &sin).expect("an ellipse");
+                assert_eq!(samples.outliers, 0, "{offset}");
+            }
+        }
     }
 
     #[test]

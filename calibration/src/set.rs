@@ -23,19 +23,13 @@ pub const BLIND: [f64; 8] = [-1.0, 0.0, 1.0, 0.0, 1.0, 0.0, -1.0, 0.0];
 impl Set {
     /// Number of parameters.
     #[must_use]
-    pub fn len(self) -> usize {
+    pub fn parameters(self) -> usize {
         match self {
             Self::Four => 4,
             Self::Five => 5,
             Self::Eight => 8,
             Self::Nine => 9,
         }
-    }
-
-    /// Never.
-    #[must_use]
-    pub fn is_empty(self) -> bool {
-        false
     }
 
     /// Whether channels are bent.
@@ -140,7 +134,7 @@ impl Set {
             Self::Four | Self::Five => [1, 0, 1, 0, 1, 0, 0, 0, 0],
             Self::Eight | Self::Nine => [1, 2, 3, 0, 1, 2, 3, 0, 0],
         };
-        all[..self.len()].to_vec()
+        all[..self.parameters()].to_vec()
     }
 
     /// Θ that does nothing to signals normalised by `frame`, but for the phase.
@@ -156,7 +150,7 @@ impl Set {
 
     /// Orthogonal directions in which to search: all but the blind one.
     pub(crate) fn directions(self) -> DMatrix<f64> {
-        let n = self.len();
+        let n = self.parameters();
         if !self.cubic() {
             return DMatrix::identity(n, n);
         }
@@ -171,7 +165,7 @@ impl Set {
 
     /// Θ of normalised signals as a linear map to Θ of raw ones: u = (y − b)/a put into the polynomials.
     pub(crate) fn to_raw(self, frame: &Ellipse) -> DMatrix<f64> {
-        let n = self.len();
+        let n = self.parameters();
         let mut map = DMatrix::zeros(n, n);
         let channel = |a: f64, b: f64| (1.0 / a, -b / a);
         let (c, s) = (channel(frame.a_c, frame.b_c), channel(frame.a_s, frame.b_s));

@@ -146,7 +146,7 @@ impl At<'_> {
             m: self
                 .set
                 .jacobian(t, u_c, u_s)
-                .columns(0, self.set.len())
+                .columns(0, self.set.parameters())
                 .into_owned(),
             noise: slope * Matrix2::from_diagonal(&white) * slope.transpose(),
             normal: Vector2::new(cos, sin),
@@ -156,7 +156,7 @@ impl At<'_> {
 
     /// Covariance of Θ of normalised signals where every angle is to be found.
     fn of_radius(&self, alpha: impl Iterator<Item = f64>) -> Option<DMatrix<f64>> {
-        let n = self.set.len();
+        let n = self.set.parameters();
         let mut information = DMatrix::zeros(n, n);
         for alpha in alpha {
             let place = self.place(alpha)?;
@@ -172,7 +172,7 @@ impl At<'_> {
 
     /// The same where phase and speed alone are.
     fn of_pair(&self, alpha: impl Iterator<Item = f64>) -> Option<DMatrix<f64>> {
-        let n = self.set.len();
+        let n = self.set.parameters();
         let mut information = DMatrix::zeros(n + 2, n + 2);
         let alpha: Vec<f64> = alpha.collect();
         let middle = alpha.len() as f64 / 2.0;
@@ -198,7 +198,9 @@ impl At<'_> {
         let each = 1.0 / f64::from(POINTS);
         let mean = places
             .iter()
-            .fold(DVector::zeros(self.set.len()), |sum, p| sum + by(p) * each);
+            .fold(DVector::zeros(self.set.parameters()), |sum, p| {
+                sum + by(p) * each
+            });
         let squares = places.iter().map(|p| {
             let by = by(p) - &mean;
             let of_noise = p.tangent.transpose() * p.noise * p.tangent;

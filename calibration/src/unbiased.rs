@@ -10,7 +10,9 @@ use nonius_recording::Ellipse;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use crate::curve::{Curve, Parameters, invert};
-use crate::noise::{self, Residual, Shape};
+use crate::noise::{self, Residual};
+use crate::shape::{Shape, take_shape};
+use crate::together::{Together, together};
 
 /// A fit with what it says about the noise.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,6 +38,8 @@ pub struct Fit {
     pub scatter: Option<f64>,
     /// White noise does not do that.
     pub changes: bool,
+    /// Noise that both channels have together, where there is such.
+    pub together: Option<Together>,
     /// The iteration has come to rest.
     pub converged: bool,
 }
@@ -103,7 +107,7 @@ pub fn fit(cos: &[f64], sin: &[f64], start: &Ellipse, ratio: Option<f64>) -> Fit
         round = Round::of(&pairs, &mut feet, &ellipse, metric);
     }
     let mut residuals = round.residuals.clone();
-    let shape = noise::take_shape(&mut residuals);
+    let shape = take_shape(&mut residuals);
     let white = residuals.iter().map(|r| r.white * r.white).sum::<f64>();
     let white = (white / (pairs.len() as f64 - 5.0).max(1.0)).sqrt();
     let found = noise::variances(&residuals, metric, ellipse.a_s / ellipse.a_c);
@@ -131,6 +135,7 @@ pub fn fit(cos: &[f64], sin: &[f64], start: &Ellipse, ratio: Option<f64>) -> Fit
             rms: rms * (1.0 + metric) / 2.0 / ellipse.amplitude(),
             order,
         }),
+        together: together(&residuals),
         ellipse,
         converged,
     }
@@ -174,6 +179,7 @@ impl Round {
                 alpha: near.alpha,
                 white: near.distance,
                 cos_share: near.cos_share,
+                by_both: near.by_both,
             });
         }
         this.information.fill_upper_triangle_with_lower_triangle();
@@ -196,9 +202,9 @@ impl Round {
     /// σ_s/σ_c from the residuals, and whether it had to be assumed.
     fn ratio(&self, now: f64, gain: f64) -> (f64, bool) {
         let mut residuals = self.residuals.clone();
-        let _ = noise::take_shape(&mut residuals);
+        let _ = take_shape(&mut residuals);
         match noise::variances(&residuals, now, gain) {
-            Some(found) if found.log_ratio_error < VAGUE => ((found.sin / found.cos).sqrt(), false),
+            Some(found) if found.log_ratio_told < VAGUE => ((found.sin / found.cos).sqrt(), false),
             _ => (1.0, true),
         }
     }
@@ -261,6 +267,8 @@ struct Projection {
     half_curvature: f64,
     /// n_c² of the normal in the plane of the signals.
     cos_share: f64,
+    /// 2 n_c n_s of the normal in the metric.
+    by_both: f64,
 }
 
 impl Projection {
@@ -279,6 +287,7 @@ impl Projection {
             by: Parameters::from(ellipse.by_parameters(alpha).map(|v| normal.dot(&white(v)))),
             half_curvature: along.perp(&bend) / (2.0 * speed.powi(3)),
             cos_share: plain.x * plain.x / plain.norm_squared(),
+            by_both: 2.0 * normal.x * normal.y,
         }
     }
 }

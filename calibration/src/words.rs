@@ -1,9 +1,12 @@
 //! What the data cannot tell, and what to know about the numbers, in plain words.
 
+use nonius_quantity::agree;
+
 use crate::curve::{Curve, Parameters};
 use crate::gradient::Minimum;
 use crate::method::Method;
 use crate::noise::TESTED;
+use crate::together::Together;
 use crate::unbiased::Fit;
 
 pub(crate) const NAMES: [&str; 5] = ["a_c", "b_c", "a_s", "b_s", "beta"];
@@ -15,6 +18,21 @@ pub(crate) const GAP: f64 = 0.25;
 const WORSE: f64 = 3.0;
 /// Residual below which it is rounding, in fractions of the amplitude.
 pub(crate) const ROUNDING: f64 = 1e-8;
+
+/// Where the geometric fit did not come to rest.
+pub(crate) const OF_A_CONIC: &str = "a_c, b_c, a_s, b_s, beta: the geometric fit did not come to rest; the values are those of a conic, \
+     without error bars";
+
+/// Samples that were left out.
+pub(crate) fn of_outliers(outliers: usize) -> Option<String> {
+    let lie = agree(outliers, "sample lies", "samples lie");
+    (outliers > 0).then(|| format!("{outliers} {lie} far off the ellipse and left out"))
+}
+
+/// What an ellipse leaves, beside a set that is more than one.
+pub(crate) fn of_an_ellipse(residual: f64) -> String {
+    format!("an ellipse leaves a residual of {residual:.4e} of the amplitude rms")
+}
 
 /// Of extremes that noise pushes outwards; `bars`: their error bars are shown.
 pub(crate) fn of_bias(bias: [f64; 2], bars: bool) -> String {
@@ -121,6 +139,35 @@ pub(crate) fn of_arc(
     out
 }
 
+/// Of noise that is large beside the radius of the curve where that bends most: beyond what is tested.
+pub(crate) fn of_tight_bend(radius: f64) -> Option<String> {
+    /// In standard deviations of the noise; smaller ones were tried, and their error bars held too little.
+    const TESTED: f64 = 5.0;
+    (radius < TESTED).then(|| {
+        format!(
+            "where the curve bends most its radius is only {radius:.1} times the noise ({TESTED} and more are tested): values may be off by \
+             more than their error bars; record with less noise, or more slowly, or take the mean of neighbouring samples"
+        )
+    })
+}
+
+/// Of noise that both channels have together.
+pub(crate) fn of_noise_together(together: Together) -> String {
+    let Together { value, std_error } = together;
+    format!(
+        "the noise of both channels goes together (correlation {value:.2} ± {std_error:.2}: light, supply or ground that they share), and is \
+         taken for their own: the parameters, beta first, are off, the more the larger the noise"
+    )
+}
+
+/// Of samples that stand at an end of a channel.
+pub(crate) fn of_clipped(channel: &str, end: &str, count: usize, value: f64) -> String {
+    format!(
+        "{count} samples of {channel} stand at its {end} value {value}, as where an amplifier or ADC clips: the parameters are those of a \
+         curve that is cut off there; record with less gain"
+    )
+}
+
 /// Of samples that stand at a few places of the period only. Five places lie on an ellipse whatever the signals are, and at eight a third
 /// harmonic and the noise of one channel look alike.
 pub(crate) fn of_places(places: usize) -> Option<String> {
@@ -191,7 +238,7 @@ pub(crate) fn of_residuals(method: Method, fit: &Fit, residual_rms: f64) -> Vec<
     {
         out.push(format!(
             "consecutive parts of the recording differ {scatter:.1} times as much as the error bars say: something \
-             changes in time (drift, a line, amplitude noise), and the error bars are that much too small"
+             changes in time (drift, a line, amplitude noise), and error bars are up to that much too small"
         ));
     }
     out
@@ -320,7 +367,7 @@ pub(crate) fn beside_unbiased(
     }
     (most > 2.0 && most.is_finite()).then(|| {
         format!(
-            "{name} lies {most:.1} standard errors from the estimate of unbiased: noise and distortion bias {}",
+            "{name} lies {most:.1} standard errors of unbiased from what that finds: noise and distortion bias {}",
             method.name()
         )
     })

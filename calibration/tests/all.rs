@@ -1,5 +1,6 @@
 //! The tests of the calibration in one program: one for each file would each be built and linked with all that they share.
 
+mod beyond;
 mod codes;
 mod cubic;
 mod methods;

@@ -296,7 +296,14 @@ fn a_ratio_beyond_the_tested_range_is_said() {
             // Given, it is not contradicted; equal noise is.
             let truth = if swapped { 1.0 / ratio } else { ratio };
             let given = at(ratio, Some(truth), swapped);
-            assert!(given.cannot_tell.is_empty() && given.remarks.is_empty());
+            assert!(given.remarks.is_empty());
+            // The quiet channel makes the curve's end narrow.
+            let narrow = |s: &String| s.starts_with("where the curve bends most");
+            assert!(
+                given.cannot_tell.iter().all(narrow),
+                "{:?}",
+                given.cannot_tell
+            );
             let wrong = at(ratio, Some(1.0), swapped).remarks.join(" ");
             assert!(wrong.contains("the samples say"), "{wrong}");
         }

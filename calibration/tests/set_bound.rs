@@ -67,7 +67,7 @@ fn uniform_motion_shows_the_blind_direction() {
         let of = |motion| of_ellipse(set, &circle, angles(), [0.01; 2], motion).expect("a bound");
         let along = |theta: &nalgebra::DMatrix<f64>| {
             let at = |i: usize| BLIND.get(i).copied().unwrap_or(0.0) / 2.0;
-            let v = nalgebra::DVector::from_fn(set.len(), |i, _| at(i));
+            let v = nalgebra::DVector::from_fn(set.parameters(), |i, _| at(i));
             (v.transpose() * theta * v).x
         };
         assert!(along(&of(Motion::Unknown).theta) < 1e-18);
@@ -127,7 +127,7 @@ fn the_searches_come_near_their_bounds() {
                 bent(y.y, sensor.a_s, sensor.b_s),
             ]
         };
-        let n = method.set().len() + 5;
+        let n = method.set().parameters() + 5;
         let (mut sum, mut square) = (vec![0.0; n], vec![0.0; n]);
         let mut bounds = vec![];
         for seed in 0..SEEDS {

@@ -70,7 +70,13 @@ struct Json<'a> {
     schema: &'static str,
     method: Method,
     samples: usize,
+    /// Of them, far off the curve and left out.
+    left_out: usize,
+    /// Share of the scale period in which there are samples.
+    arc: f64,
     residual_rms: f64,
+    /// What repeats with the angle and is no ellipse; null where none is seen.
+    distortion: Option<Distortion>,
     /// Of the channels, white, in the unit of the columns; null where it cannot be told.
     noise: Option<Noise>,
     parameters: &'a [Parameter],
@@ -79,6 +85,15 @@ struct Json<'a> {
     /// What no unbiased estimator can beat; that of each parameter stands beside it.
     bound: Option<OfAngle>,
     cannot_tell: &'a [String],
+    remarks: &'a [String],
+}
+
+#[derive(Serialize)]
+struct Distortion {
+    /// Of the radius, in fractions of the amplitude.
+    rms: f64,
+    /// The largest, in cycles per scale period.
+    order: usize,
 }
 
 #[derive(Serialize)]
@@ -87,8 +102,13 @@ struct Noise {
     sin_rms: f64,
     /// Of the sine over that of the cosine.
     ratio: f64,
+    /// Where the ratio is from.
+    ratio_source: &'static str,
     /// Null where the ratio was given, assumed, or further from 1 than the samples can tell.
     ratio_std_error: Option<f64>,
+    /// Of the channels' noise with each other; null where none is seen.
+    correlation: Option<f64>,
+    correlation_std_error: Option<f64>,
 }
 
 /// Rows and columns are the parameters of these names; null with one whose error cannot be told, or which is held.
@@ -106,7 +126,8 @@ struct OfAngle {
 }
 
 impl<'a> Json<'a> {
-    fn of(found: &'a Calibration) -> Self {
+    /// `given`: the noise ratio was.
+    fn of(found: &'a Calibration, given: bool) -> Self {
         let (physical, theta) = found.parameters.split_at(5.min(found.parameters.len()));
         let correlated = |of: &'a [Parameter], matrix: &'a Option<Correlations>| {
             Some(Correlated {
@@ -118,12 +139,25 @@ impl<'a> Json<'a> {
             schema: "nonius.calibration/1",
             method: found.method,
             samples: found.samples,
+            left_out: found.outliers,
+            arc: found.arc,
             residual_rms: found.residual_rms,
+            distortion: found.shape.as_ref().map(|shape| Distortion {
+                rms: shape.rms,
+                order: shape.order,
+            }),
             noise: found.noise.map(|[cos_rms, sin_rms]| Noise {
                 cos_rms,
                 sin_rms,
                 ratio: sin_rms / cos_rms,
+                ratio_source: match (given, found.noise_ratio_assumed) {
+                    (true, _) => "given",
+                    (_, true) => "assumed",
+                    _ => "estimated",
+                },
                 ratio_std_error: found.noise_ratio_error,
+                correlation: found.noise_together.map(|t| t.value),
+                correlation_std_error: found.noise_together.map(|t| t.std_error),
             }),
             parameters: &found.parameters,
             correlations: [
@@ -138,6 +172,7 @@ impl<'a> Json<'a> {
                 by_noise_of_a_sample_rad: bound.angle_by_noise,
             }),
             cannot_tell: &found.cannot_tell,
+            remarks: &found.remarks,
         }
     }
 }
@@ -168,7 +203,10 @@ pub(crate) fn run(args: &Calibrate) -> Result<()> {
     };
     if args.json {
         crate::notes(&found.remarks);
-        say!("{}", serde_json::to_string_pretty(&Json::of(&found))?);
+        say!(
+            "{}",
+            serde_json::to_string_pretty(&Json::of(&found, args.noise_ratio.is_some()))?
+        );
     } else {
         let adc = recording.metadata.adc;
         // The rounding of an ADC that was merely assumed is no finding.

@@ -127,7 +127,7 @@ fn a_noise_ratio_is_estimated_or_given() {
     assert!((found - 1.7).abs() < 0.2, "{estimated}");
     assert_eq!(
         ratio(&["--noise-ratio", "1.7"]),
-        "1.700 (sin to cos, not estimated)"
+        "1.700 (sin to cos, given)"
     );
     for wrong in ["-1", "0", "nan", "1e9"] {
         refused(

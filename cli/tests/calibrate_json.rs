@@ -1,22 +1,26 @@
-//! `nonius calibrate --json`: the contract, and what stands beside the parameters.
+//! `nonius calibrate --json`: its keys, and what stands beside the parameters.
 
 use crate::support::calibration::{METHODS, json, recording, sentences};
 use serde_json::Value;
 
 #[test]
-fn the_json_is_the_contract() {
+fn the_json_has_its_keys() {
     let text = recording(4000, 7.3, [0.002; 2]);
     for method in METHODS {
         let json = json(&text, &["--method", method]);
         let mut keys: Vec<&String> = json.as_object().expect("an object").keys().collect();
         keys.sort();
         let expected = [
+            "arc",
             "bound",
             "cannot_tell",
             "correlations",
+            "distortion",
+            "left_out",
             "method",
             "noise",
             "parameters",
+            "remarks",
             "residual_rms",
             "samples",
             "schema",
@@ -63,6 +67,73 @@ fn the_json_is_the_contract() {
             .iter()
             .any(|s| s.contains("changes no radius"));
         assert_eq!(blind, method.starts_with("poly"));
+    }
+}
+
+/// What the text says stands in the JSON: what was left out, the arc, where the noise ratio is from, remarks.
+#[test]
+fn the_json_says_what_the_text_says() {
+    let mut rows = recording(4000, 7.3, [0.002; 2]);
+    rows += &"0,0\n".repeat(200);
+    let found = json(&rows, &[]);
+    assert_eq!(
+        (&found["samples"], &found["left_out"]),
+        (&4200.into(), &200.into())
+    );
+    assert!(
+        found["arc"].as_f64().is_some_and(|arc| arc > 0.98),
+        "{found}"
+    );
+    assert_eq!(found["noise"]["ratio_source"], "estimated");
+    assert!(found["distortion"].is_null() && found["noise"]["correlation"].is_null());
+    let remarks = found["remarks"].as_array().expect("remarks");
+    assert_eq!(
+        remarks,
+        &["200 samples lie far off the ellipse and left out"]
+    );
+    let given = json(&rows, &["--noise-ratio", "1"]);
+    assert_eq!(given["noise"]["ratio_source"], "given");
+    let bent = json(&bent(4000), &[]);
+    assert!(
+        bent["distortion"]["rms"]
+            .as_f64()
+            .is_some_and(|rms| rms > 1e-3),
+        "{bent}"
+    );
+    assert!(bent["distortion"]["order"].is_u64());
+}
+
+/// A channel with an even bend.
+fn bent(samples: u32) -> String {
+    let alpha = |k: u32| 7.3 * std::f64::consts::TAU * f64::from(k) / f64::from(samples);
+    let row = |k: u32| {
+        let (sin, cos) = alpha(k).sin_cos();
+        // So that there is noise, and none is drawn.
+        let wobble = 1e-3 * (f64::from(k) * 2.399).sin();
+        format!("{},{}\n", cos + 0.02 * cos * cos + wobble, sin - wobble)
+    };
+    let rows: String = (0..samples).map(row).collect();
+    format!("# sample_rate_hz: 10000\ncos,sin\n{rows}")
+}
+
+/// A disk that is full is a failure: the result is not there.
+#[test]
+#[cfg(target_os = "linux")]
+fn what_does_not_arrive_is_a_failure() {
+    let dir = tempfile::tempdir().expect("scratch");
+    std::fs::write(dir.path().join("r.csv"), recording(400, 3.3, [0.002; 2])).expect("recording");
+    for arguments in [&["r.csv"][..], &["r.csv", "--json"]] {
+        let full = std::fs::File::options().write(true).open("/dev/full");
+        let output = std::process::Command::new(env!("CARGO_BIN_EXE_nonius"))
+            .arg("calibrate")
+            .args(arguments)
+            .current_dir(dir.path())
+            .stdout(full.expect("a device that is always full"))
+            .output()
+            .expect("the command");
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{said}");
+        assert!(said.contains("error: standard output: "), "{said}");
     }
 }
 

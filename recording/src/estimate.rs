@@ -222,7 +222,7 @@ fn note_clipping(cos: &[f64], sin: &[f64], pair: &AdcPair, notes: &mut Vec<Strin
     if clipped > 0 {
         let range = range(&pair.cos);
         notes.push(format!(
-            "{clipped} values lie outside the range of the ADC ({range}) and are clamped to it"
+            "{clipped} values lie outside the range of the ADC ({range}), which reads its ends for them"
         ));
     }
 }

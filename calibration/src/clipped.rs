@@ -1,0 +1,96 @@
+//! Channels that are cut off at an end.
+
+use crate::samples::code_step;
+use crate::words;
+
+/// Samples at the end that are no accident.
+const LEAST: usize = 8;
+/// So many times as many as at the code beside it. Where a sine turns there are 2.4 times as many.
+const MORE: usize = 4;
+/// Share of its span over which the other channel moves meanwhile: an axis that rests there does not move.
+const MOVES: f64 = 0.2;
+
+/// What to say of each end of each channel that is cut off.
+pub(crate) fn clipped(cos: &[f64], sin: &[f64]) -> Vec<String> {
+    let channels = [("cos", cos, sin), ("sin", sin, cos)];
+    let ends = channels.map(|(name, own, other)| {
+        let negative: Vec<f64> = own.iter().map(|y| -y).collect();
+        let highest = at_top(own, other).map(|(n, y)| words::of_clipped(name, "highest", n, y));
+        let lowest =
+            at_top(&negative, other).map(|(n, y)| words::of_clipped(name, "lowest", n, -y));
+        [highest, lowest]
+    });
+    ends.into_iter().flatten().flatten().collect()
+}
+
+/// Samples at the highest value, and that value, where the channel is cut off there.
+fn at_top(own: &[f64], other: &[f64]) -> Option<(usize, f64)> {
+    let top = own.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    // Half a step beside a code are its neighbours' ends; what has no codes has no neighbours.
+    let step = code_step(own).unwrap_or(0.0);
+    let near = |from: f64, to: f64| {
+        own.iter()
+            .filter(|y| (from..=to).contains(&(top - **y)))
+            .count()
+    };
+    let (count, beside) = (near(0.0, 0.5 * step), near(0.5 * step, 1.5 * step));
+    let beside = if step > 0.0 { beside } else { 0 };
+    if count < LEAST || count < MORE * beside {
+        return None;
+    }
+    let span = |values: &mut dyn Iterator<Item = f64>| {
+        let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), y| {
+            (l.min(y), h.max(y))
+        });
+        high - low
+    };
+    let there = own
+        .iter()
+        .zip(other)
+        .filter(|(y, _)| top - **y <= 0.5 * step);
+    let moved = span(&mut there.map(|(_, y)| *y));
+    (moved > MOVES * span(&mut other.iter().copied())).then_some((count, top))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Codes of an amplitude, cut off at a share of it, at so many samples a period.
+    fn codes(amplitude: f64, limit: f64, samples: f64) -> (Vec<f64>, Vec<f64>) {
+        let code = |y: f64| (amplitude * y.min(limit)).round();
+        let at = |k: i32| f64::from(k) * std::f64::consts::TAU / samples;
+        (0..5000)
+            .map(|k| (code(at(k).cos()), code(at(k).sin())))
+            .unzip()
+    }
+
+    #[test]
+    fn a_channel_that_is_cut_off_is_named_and_one_that_turns_is_not() {
+        for amplitude in [20.0, 200.0, 2000.0, 30_000.0] {
+            for samples in [5.3, 97.7, 1234.5] {
+                let (cos, sin) = codes(amplitude, 1.0, samples);
+                assert_eq!(
+                    clipped(&cos, &sin),
+                    Vec::<String>::new(),
+                    "{amplitude} {samples}"
+                );
+                let (cos, sin) = codes(amplitude, 0.9, samples);
+                let said = clipped(&cos, &sin);
+                assert_eq!(said.len(), 2, "{amplitude} {samples}: {said:?}");
+                assert!(
+                    said[0].contains("of cos stand at its highest value"),
+                    "{said:?}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn an_axis_that_rests_at_the_top_is_not_cut_off() {
+        let (mut cos, mut sin) = codes(200.0, 1.0, 97.7);
+        cos.extend([200.0; 3000]);
+        sin.extend((0..3000).map(|k| f64::from(k % 3)));
+        assert_eq!(clipped(&cos, &sin), Vec::<String>::new());
+    }
+}
