@@ -9,7 +9,7 @@ use anyhow::{Context, Result};
 use nonius_diagnosis::{Cause, Chip, Diagnosis};
 use nonius_model::design::{Design, DesignError};
 use nonius_model::spec::Spec;
-use nonius_quantity::{Quantity, Unit, agree};
+use nonius_quantity::{Quantity, Unit, agree, digits};
 use toml_edit::{ArrayOfTables, DocumentMut, Item, Table, value};
 
 pub(crate) use outcome::Outcome;
@@ -41,7 +41,7 @@ fn narrower(spec: &Spec, found: &Diagnosis) -> Option<f64> {
     // A type 2 loop lags by the acceleration over the square of its bandwidth.
     let lag = TAU * spec.accuracy.rms_periods;
     let needed = (most / lag).sqrt() / TAU;
-    let narrow: f64 = format!("{:.2e}", needed.max(2.0 * usual)).parse().ok()?;
+    let narrow = digits(needed.max(2.0 * usual), 3);
     let now = spec.tracking.bandwidth_hz;
     (spec.tracking.filter_type == 2 && now > 4.0 * usual && narrow < now).then_some(narrow)
 }
@@ -107,7 +107,7 @@ fn correct_skew(text: &str, found: &Diagnosis) -> Result<(String, Vec<Outcome>)>
     if delays.is_empty() {
         return Ok((text.to_owned(), vec![]));
     }
-    let delay: f64 = format!("{:.4e}", delays.iter().sum::<f64>()).parse()?;
+    let delay = digits(delays.iter().sum(), 5);
     let mut document: DocumentMut = text.parse().context("the design is no TOML")?;
     let section = document.entry("correction").or_insert(toml_edit::table());
     section["channel_skew_s"] = value(delay);

@@ -3,16 +3,14 @@
 /// A line on standard output; where nobody reads any more, nobody is told.
 macro_rules! say {
     ($($what:tt)*) => {{
-        use std::io::Write as _;
-        let _ = writeln!(std::io::stdout(), $($what)*);
+        $crate::say::say(format_args!("{}\n", format_args!($($what)*)));
     }};
 }
 
 /// The same without an end of line.
 macro_rules! say_as_it_is {
     ($($what:tt)*) => {{
-        use std::io::Write as _;
-        let _ = write!(std::io::stdout(), $($what)*);
+        $crate::say::say(format_args!($($what)*));
     }};
 }
 
@@ -28,6 +26,7 @@ pub mod play;
 mod progress;
 mod recording_args;
 mod samples;
+mod say;
 mod simulate;
 mod target;
 mod verify;
@@ -87,6 +86,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         Command::Diagnose(args) => diagnose::run(&args),
         Command::Verify(args) => verify::run(&args),
     };
+    let done = done.and_then(|done| say::arrived().map(|()| done));
     match done {
         Ok(true) => 0,
         Ok(false) => 1,

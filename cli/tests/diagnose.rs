@@ -6,7 +6,7 @@ use crate::support::calibration::noise;
 use crate::support::{done, nonius, refused};
 
 #[test]
-fn diagnose_writes_the_contract() {
+fn diagnose_writes_its_files() {
     let dir = tempfile::tempdir().expect("scratch");
     let mut text = String::from("# adc_bits: 14\n# full_scale: 1\ntime_s,cos,sin\n");
     let mut state = 1u64;

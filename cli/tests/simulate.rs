@@ -19,7 +19,7 @@ fn last_row(csv: &str) -> Vec<f64> {
 }
 
 #[test]
-fn simulate_writes_the_contract() {
+fn simulate_writes_its_files() {
     let dir = tempfile::tempdir().expect("scratch");
     fs::write(dir.path().join("r.csv"), recording(4096, 64.0)).expect("recording");
     let design = design();
