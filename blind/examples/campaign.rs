@@ -1,4 +1,4 @@
-//! The blind campaign: fresh seeds on all cores, truths sealed, the table.
+//! The blind campaign: fresh seeds on all cores, truths sealed, a table of what was found.
 //!
 //!     cargo run --release -p nonius-blind --example campaign -- --cases 2000 --seed 1000000 --docs docs
 //!

@@ -133,6 +133,11 @@ impl Choice {
     }
 }
 
+/// SNR of two causes.
+const TWO: [f64; 2] = [60.0, 30.0];
+/// SNR of what the catalogue does not have.
+const STRANGE: f64 = 40.0;
+
 /// Source of everything random of a seed.
 fn source(seed: u64) -> StdRng {
     StdRng::seed_from_u64(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15))
@@ -140,10 +145,11 @@ fn source(seed: u64) -> StdRng {
 
 /// What to hide, and how large. Names go round, so that all come equally often.
 fn plan(seed: u64, kind: Kind, random: &mut StdRng) -> (Vec<Choice>, Vec<f64>) {
-    let place = (seed % 20) as usize;
+    let round = KINDS.len() as u64;
+    let place = (seed % round) as usize;
     let before = KINDS[..place].iter().filter(|k| **k == kind).count();
     let each = KINDS.iter().filter(|k| **k == kind).count();
-    let turn = seed / 20 * each as u64 + before as u64;
+    let turn = seed / round * each as u64 + before as u64;
     let snr = 3.0 * 100f64.powf(random.random());
     match kind {
         Kind::Nothing => (vec![], vec![]),
@@ -160,11 +166,11 @@ fn plan(seed: u64, kind: Kind, random: &mut StdRng) -> (Vec<Choice>, Vec<f64>) {
             let first = (turn % CATALOGUE.len() as u64) as usize;
             let second = (first + random.random_range(1..CATALOGUE.len())) % CATALOGUE.len();
             let known = |which: usize| Choice::Known(&CATALOGUE[which], false);
-            (vec![known(first), known(second)], vec![60.0, 30.0])
+            (vec![known(first), known(second)], vec![TWO[0], TWO[1]])
         }
         Kind::Stranger => {
             let which = (turn % STRANGERS.len() as u64) as usize;
-            (vec![Choice::Stranger(which)], vec![40.0])
+            (vec![Choice::Stranger(which)], vec![STRANGE])
         }
         Kind::Many => many::plan(seed, random)
             .into_iter()

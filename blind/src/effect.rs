@@ -46,7 +46,7 @@ pub(crate) trait Effect: Send + Sync {
         None
     }
 
-    /// Parameters by the contract's words, and whether value over SNR bounds the standard error.
+    /// Parameters by the words of `findings.json`, and whether value over SNR bounds the standard error.
     fn parameters(&self, _m: f64, _world: &World) -> Vec<(&'static str, f64, bool)> {
         vec![]
     }
@@ -152,5 +152,5 @@ pub(crate) struct Twins {
     pub(crate) alike: f64,
 }
 
-/// What depends on the time alone, as a hidden cause with its magnitude.
+/// A hidden cause with its magnitude.
 pub(crate) type Hidden<'a> = (&'a dyn Effect, f64);

@@ -91,7 +91,7 @@ impl Rows {
         self.time.truncate(samples);
     }
 
-    /// The recording, as the contract has it.
+    /// The recording, as `docs/files.md` has it.
     #[must_use]
     pub fn csv(&self, world: &World) -> String {
         let mut text = format!("# adc_bits: {}\n# full_scale: 1\n", world.bits);

@@ -6,6 +6,7 @@ use rand::Rng;
 use rand_distr::{Distribution, StandardNormal};
 
 use crate::effect::{At, Circuit, Effect};
+use crate::effects::statics::shares;
 use crate::effects::{Draw, Law};
 use crate::simulate::SPARE;
 use crate::spectrum;
@@ -32,12 +33,6 @@ pub(crate) const STRANGERS: [Stranger; 14] = [
     ("stepping_gain", stepping),
 ];
 
-/// Two shares of one, in the two channels.
-fn pair(draw: &mut Draw) -> [f64; 2] {
-    let angle = draw.random.random_range(0.0..TAU);
-    [angle.cos(), angle.sin()]
-}
-
 /// Largest speed and acceleration of the drive.
 pub(crate) fn peaks(draw: &Draw) -> (f64, f64) {
     let seconds = draw.world.seconds();
@@ -52,7 +47,7 @@ pub(crate) fn peaks(draw: &Draw) -> (f64, f64) {
 
 /// A head on a soft mount: it tilts with acceleration and the air gap changes one channel more.
 fn tilt(draw: &mut Draw) -> Box<dyn Effect> {
-    let shares = pair(draw);
+    let shares = shares(draw);
     let (_, peak) = peaks(draw);
     Law::new("tilt_with_acceleration", 0.3, move |m, at, u| {
         [0, 1].map(|c| u[c] * (1.0 + m * shares[c] * at.acceleration / peak))
@@ -101,7 +96,7 @@ fn hill(x: f64) -> f64 {
 
 /// A lamp on a dimmer whose frequency wanders: no steady line.
 fn stray_light(draw: &mut Draw) -> Box<dyn Effect> {
-    let shares = pair(draw);
+    let shares = shares(draw);
     let seconds = draw.world.seconds();
     let cycles = draw.random.random_range(30.0..200.0);
     let wander = draw.random.random_range(0.1..0.3);
@@ -118,7 +113,7 @@ fn stray_light(draw: &mut Draw) -> Box<dyn Effect> {
 
 /// A harmonic that dies away while a lens warms up.
 fn fading(draw: &mut Draw) -> Box<dyn Effect> {
-    let shares = pair(draw);
+    let shares = shares(draw);
     let order = f64::from(draw.random.random_range(3..=6));
     let tau = draw.world.seconds() * draw.random.random_range(0.05..0.2);
     let swap = draw.world.seconds() * draw.random.random_range(0.3..0.7);
@@ -132,7 +127,7 @@ fn fading(draw: &mut Draw) -> Box<dyn Effect> {
 
 /// An amplifier whose distortion grows with frequency and changes sign with direction.
 fn speeding(draw: &mut Draw) -> Box<dyn Effect> {
-    let shares = pair(draw);
+    let shares = shares(draw);
     let (peak, _) = peaks(draw);
     let order = f64::from(draw.random.random_range(3..=5));
     Law::new("harmonic_with_speed", 0.3, move |m, at, u| {
@@ -144,7 +139,7 @@ fn speeding(draw: &mut Draw) -> Box<dyn Effect> {
 
 /// A scale whose lines were written two by two: a signal at half the order.
 fn half_order(draw: &mut Draw) -> Box<dyn Effect> {
-    let shares = pair(draw);
+    let shares = shares(draw);
     let phase = draw.random.random_range(0.0..TAU);
     let order = [0.5, 1.5, 2.5][draw.random.random_range(0..3)];
     Law::new("half_order", 0.2, move |m, at, u| {

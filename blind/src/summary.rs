@@ -1,4 +1,4 @@
-//! What a campaign says: counts, by the questions.
+//! What a campaign says: counts, one for each row of its table.
 
 use std::collections::BTreeMap;
 use std::fmt;

@@ -20,7 +20,7 @@ pub enum Kind {
     Many,
 }
 
-/// A parameter of a hidden cause, by the contract's words.
+/// A parameter of a hidden cause, by the words of `findings.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TrueParameter {
     /// Name.

@@ -103,8 +103,8 @@ impl World {
         });
         let far = way(&motion, seconds) / TAU;
         // So that two revolutions and more are seen.
-        let most = ((far / 2.2) as u32).clamp(5, 64);
-        let periods_per_revolution = random.random_range(5.min(most)..=most.min(40));
+        let most = ((far / 2.2) as u32).clamp(5, 40);
+        let periods_per_revolution = random.random_range(5..=most);
         Self {
             samples: wish.samples,
             rate,

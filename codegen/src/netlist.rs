@@ -12,11 +12,7 @@ use crate::writer::{Writer, range};
 pub fn last_use(graph: &Graph, schedule: &Schedule) -> Vec<usize> {
     let mut last = schedule.ready.clone();
     for id in graph.ids() {
-        let at = match graph.node(id).op {
-            Op::Mul(..) => schedule.issue[id.index()].map_or(0, |(_, cycle)| cycle - 1),
-            Op::Lookup { .. } => schedule.ready[id.index()] - 1,
-            _ => schedule.ready[id.index()],
-        };
+        let at = schedule.reads_in(graph, id);
         for operand in graph.node(id).op.operands() {
             last[operand.index()] = last[operand.index()].max(at);
         }
@@ -51,7 +47,7 @@ pub(crate) struct Section {
     pub(crate) lines: Vec<String>,
 }
 
-/// A register: range, name.
+/// A register.
 #[derive(Clone)]
 pub(crate) struct Register {
     pub(crate) range: String,
@@ -68,7 +64,7 @@ pub(crate) struct Netlist {
     pub(crate) state: Vec<Register>,
     /// Register and its next value.
     pub(crate) commits: Vec<(String, String)>,
-    /// Name of the port and of the register that holds it.
+    /// The inputs of a sample, held while it is worked on.
     pub(crate) held: Vec<Register>,
 }
 

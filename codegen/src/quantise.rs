@@ -108,15 +108,13 @@ pub(crate) fn fused(w: &Writer, graph: &Graph, a: NodeId) -> bool {
     let Some(half) = half(&to, node.format.fraction) else {
         return false;
     };
-    let room = |o: NodeId, positive: bool| {
+    let room = |o: NodeId| {
         let entry = graph.node(o);
-        positive
-            && (matches!(entry.op, Op::Constant(_))
-                || node.format.fraction - entry.format.fraction > half)
+        matches!(entry.op, Op::Constant(_)) || node.format.fraction - entry.format.fraction > half
     };
     match node.op {
-        Op::Add(x, y) => room(x, true) || room(y, true),
-        Op::Sub(x, _) => room(x, true),
+        Op::Add(x, y) => room(x) || room(y),
+        Op::Sub(x, _) => room(x),
         _ => false,
     }
 }

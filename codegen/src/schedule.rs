@@ -149,6 +149,16 @@ impl Listed {
 }
 
 impl Schedule {
+    /// The cycle in which a node reads its operands: a product when it is issued, a table a cycle before its value is there.
+    pub(crate) fn reads_in(&self, graph: &Graph, id: NodeId) -> usize {
+        let ready = self.ready[id.index()];
+        match graph.node(id).op {
+            Op::Mul(..) => self.issue[id.index()].map_or(0, |(_, cycle)| cycle - 1),
+            Op::Lookup { .. } => ready - 1,
+            _ => ready,
+        }
+    }
+
     /// A shifter of one value is none that is shared: it is written where the value is.
     fn keep_shared_shifters(&mut self) {
         let shared: Vec<usize> = (0..self.shifters.len())

@@ -9,11 +9,7 @@ use crate::schedule::{Schedule, delay};
 fn first_use(graph: &Graph, schedule: &Schedule) -> Vec<usize> {
     let mut first = vec![schedule.clocks - 1; graph.nodes.len()];
     for id in graph.ids() {
-        let at = match graph.node(id).op {
-            Op::Mul(..) => schedule.issue[id.index()].map_or(0, |(_, cycle)| cycle - 1),
-            Op::Lookup { .. } => schedule.ready[id.index()] - 1,
-            _ => schedule.ready[id.index()],
-        };
+        let at = schedule.reads_in(graph, id);
         for operand in graph.node(id).op.operands() {
             first[operand.index()] = first[operand.index()].min(at);
         }

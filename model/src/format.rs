@@ -192,13 +192,6 @@ impl Quantiser {
         Self::new(format, Rounding::Floor, Overflow::Wrap)
     }
 
-    /// Round to nearest where the range is proven.
-    #[must_use]
-    #[inline(always)]
-    pub const fn proven(format: Format) -> Self {
-        Self::new(format, Rounding::Nearest, Overflow::Never)
-    }
-
     /// Cut off where the range is proven.
     #[must_use]
     #[inline(always)]

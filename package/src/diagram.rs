@@ -20,7 +20,10 @@ pub(crate) struct Diagram {
 impl Diagram {
     pub(crate) fn of(spec: &Spec) -> Self {
         let c = &spec.calibration;
-        let thetas = c.thetas();
+        // What no radius shows has a register only where the gradient is completed.
+        let completed = c.completed().is_some();
+        let shown = |n: &usize| *n < 9 || completed;
+        let thetas: Vec<usize> = c.thetas().iter().copied().filter(shown).collect();
         let bent = thetas.contains(&6);
         let (search, seen) = match c.method {
             CalibrationMethod::Final => ("δΘ = −γ Mᵀ n ρ", "ρ"),
@@ -42,10 +45,10 @@ impl Diagram {
         };
         Self {
             correction: corrected.to_owned() + more,
-            thetas: ranges(thetas),
+            thetas: ranges(&thetas),
             search: (!thetas.is_empty()).then_some(search),
             seen,
-            completion: (bent && c.completion).then_some("θ9: −γᵥ (w − ∇α̂) e"),
+            completion: completed.then_some("θ9: −γᵥ (w − ∇α̂) e"),
         }
     }
 }

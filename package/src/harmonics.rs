@@ -41,7 +41,7 @@ impl HarmonicTable {
         let known = structure.harmonics.as_ref()?;
         let (k, correction) = (design.constants.bits(), &design.spec.correction);
         let bits = structure.formats.sine_phase.format.fraction;
-        let (step, places) = phases(bits);
+        let (exhaustive, places) = phases(bits);
         let (mut largest, mut count) = (0.0f64, 0);
         for phase in places {
             let alpha = (phase as f64 + 0.5) / 2f64.powi(bits as i32) * TAU;
@@ -59,7 +59,7 @@ impl HarmonicTable {
             row_bits: known.table.row_width(),
             bits: known.table.bits(),
             largest_error: largest,
-            exhaustive: step == 1,
+            exhaustive,
             phases: count,
             phase_order: match found.order {
                 Order::Zeroth => 0,

@@ -23,12 +23,12 @@ pub struct SineError {
     pub phases: u64,
 }
 
-/// The phases of so many bits that are tried, and one of how many that is.
-pub(crate) fn phases(bits: u32) -> (u64, impl Iterator<Item = u64>) {
+/// The phases of so many bits that are tried, and whether these are all.
+pub(crate) fn phases(bits: u32) -> (bool, impl Iterator<Item = u64>) {
     let step = 1u64 << bits.saturating_sub(EXHAUSTIVE_BITS);
     // An odd stride reaches every position within a segment.
     let stride = if step == 1 { 1 } else { step + 1 };
-    (step, (0..1u64 << bits).step_by(stride as usize))
+    (step == 1, (0..1u64 << bits).step_by(stride as usize))
 }
 
 /// Sine and cosine against the exact ones, for every phase of the sine unit (each stands for the middle of what it
@@ -37,11 +37,11 @@ pub(crate) fn phases(bits: u32) -> (u64, impl Iterator<Item = u64>) {
 pub fn sine_error(design: &Design) -> SineError {
     let (coefficients, structure) = (design.constants.bits(), &design.structure);
     let bits = structure.formats.sine_phase.format.fraction;
-    let (step, places) = phases(bits);
+    let (exhaustive, places) = phases(bits);
     let mut result = SineError {
         largest: 0.0,
         largest_angle_turns: 0.0,
-        exhaustive: step == 1,
+        exhaustive,
         phases: 0,
     };
     for phase in places {

@@ -139,10 +139,6 @@ fn swap(fresh: &Path, output: &Path, old: &Path) -> io::Result<()> {
 
 /// Copies what is not `ours` from a folder into another, where nothing stands in its place.
 fn keep(from: &Path, to: &Path, ours: &[PathBuf]) -> Result<(), WriteError> {
-    let refuse = |path: &Path| {
-        let path = path.to_owned();
-        move |error| WriteError::Io { path, error }
-    };
     for entry in fs::read_dir(from).map_err(refuse(from))? {
         let (old, name) = {
             let entry = entry.map_err(refuse(from))?;

@@ -10,7 +10,7 @@ use crate::interference::Interference;
 #[serde(tag = "name", rename_all = "snake_case", deny_unknown_fields)]
 #[allow(
     missing_docs,
-    reason = "fields are named as in DESIGN's catalogue, units in their names or above"
+    reason = "fields are named as in docs/diagnosis.md, units in their names or above"
 )]
 pub enum Cause {
     /// y + k y².

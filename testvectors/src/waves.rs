@@ -221,6 +221,32 @@ impl<W: Write> Waves<W> {
     }
 }
 
+/// Outputs beside the position.
+const FLAGS: [&str; 5] = ["speed", "locked", "lock_lost", "signal_lost", "direction"];
+/// What the loop makes of a pair and remembers; all else is calibration.
+const LOOP: [&str; 20] = [
+    "y_c",
+    "y_s",
+    "skew",
+    "harmonic_cos",
+    "harmonic_sin",
+    "c",
+    "s",
+    "cos_hat",
+    "sin_hat",
+    "e",
+    "rho",
+    "in_window",
+    "alpha_hat",
+    "alpha_hat_previous",
+    "count",
+    "rate",
+    "error_previous",
+    "lock_level",
+    "loop_gear",
+    "unlocked_samples",
+];
+
 /// A GTKWave save file, `name`.gtkw, that shows the waves in `name`.vcd beside it sensibly: position and phase as curves, then inputs, outputs,
 /// the signals of the loop, those of the calibration.
 #[must_use]
@@ -271,47 +297,9 @@ pub fn gtkw(name: &str, design: &Design, columns: &[Column], clocks: usize) -> S
         }
         text
     };
-    let flags = ["locked", "lock_lost", "signal_lost", "direction", "speed"];
-    let calibrates = |n: &str| {
-        [
-            "theta",
-            "rho_",
-            "travel",
-            "gamma",
-            "gear_",
-            "null_",
-            "alpha_gradient",
-            "gathered",
-            "recent_",
-            "proven_",
-            "start_",
-        ]
-        .iter()
-        .any(|start| n.starts_with(start))
-            || [
-                "fresh",
-                "whole_period",
-                "disturbed",
-                "rough",
-                "calm",
-                "risen",
-                "held",
-                "astray",
-                "astray_before",
-                "astray_long",
-                "ahead_used",
-                "behind_used",
-                "moving",
-                "returning",
-                "fading",
-                "known",
-                "halfway",
-                "apart",
-            ]
-            .contains(&n)
-    };
-    out += &group("flags and speed", &|n| flags.contains(&n));
-    out += &group("loop", &|n| !flags.contains(&n) && !calibrates(n));
-    out += &group("calibration", &calibrates);
+    let of_calibration = |n: &str| !FLAGS.contains(&n) && !LOOP.contains(&n);
+    out += &group("flags and speed", &|n| FLAGS.contains(&n));
+    out += &group("loop", &|n| LOOP.contains(&n));
+    out += &group("calibration", &of_calibration);
     out
 }

@@ -235,6 +235,41 @@ fn the_save_file_names_signals_that_are_there() {
     }
 }
 
+/// A chip without calibration has the loop's signals, and its parameters; what else another has is calibration.
+#[test]
+fn the_save_file_tells_loop_and_calibration_apart() {
+    let groups = |parameters| {
+        let mut spec = shipped::optical();
+        spec.calibration.parameters = parameters;
+        let design = Design::new(&spec).expect("a design");
+        let files = chip_files(&design);
+        let save = gtkw("sweep", &design, &files.columns, files.clocks);
+        let (_, groups) = save.split_once("-loop\n").expect("a group");
+        let (own, others) = groups.split_once("-calibration\n").expect("another");
+        [own, others].map(|group| -> Vec<String> {
+            let signals = group
+                .lines()
+                .filter_map(|l| l.strip_prefix("chip_tb.chip."));
+            signals
+                .map(|s| s.split('[').next().expect("a name").to_owned())
+                .collect()
+        })
+    };
+    let [own, parameters] = groups(0);
+    assert!(
+        parameters.iter().all(|n| n.starts_with("theta_")),
+        "{parameters:?}"
+    );
+    let [same, calibration] = groups(5);
+    assert_eq!(own, same);
+    for name in ["theta_1_deviation", "held_periods", "running_1", "held"] {
+        assert!(
+            calibration.iter().any(|n| n == name),
+            "{name}: {calibration:?}"
+        );
+    }
+}
+
 /// Every byte of two rows in every other value, of each fifth stimulus: what is read all the same is what stands there.
 #[test]
 fn damaged_vectors_are_refused_by_line() {

@@ -8,7 +8,7 @@ mod lines;
 mod motions;
 mod noises;
 mod slow;
-mod statics;
+pub(crate) mod statics;
 mod turning;
 
 use rand::rngs::StdRng;
@@ -20,7 +20,7 @@ use crate::world::World;
 
 /// How a name of the catalogue is drawn.
 pub(crate) struct Entry {
-    /// The contract's name.
+    /// Its name in `docs/diagnosis.md`.
     pub(crate) name: &'static str,
     /// It needs a reference column.
     pub(crate) reference: bool,

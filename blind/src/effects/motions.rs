@@ -87,7 +87,7 @@ impl Effect for Cogging {
 pub(crate) fn cogging(draw: &mut Draw) -> Box<dyn Effect> {
     let periods = draw.world.periods_per_revolution;
     let mut order = 0;
-    while order % periods == 0 || 2 * order % periods == 0 {
+    while 2 * order % periods == 0 {
         order = draw.random.random_range(periods / 2 + 1..=7 * periods);
     }
     Box::new(Cogging {

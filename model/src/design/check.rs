@@ -173,7 +173,7 @@ fn calibration(spec: &Spec) -> Result<(), DesignError> {
             spec.calibration.gamma_first.into(),
             3.0,
             12.0,
-            "the sum of gamma over the 64 sectors of a period must stay below 8",
+            "the sum of gamma over the 64 sectors of a period must be at most 8",
         ),
         (
             "calibration.gamma_last",

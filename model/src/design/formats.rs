@@ -31,17 +31,18 @@ fn amplitude_shift(spec: &Spec) -> u32 {
     (octaves - lower).round() as u32
 }
 
+/// The loop's bandwidth over the slowest signal that the completion learns from.
+const FASTER: f64 = 5.0;
+
 /// Samples of a period of travel at a fifth of the loop's bandwidth: below that the loop follows what the completion
 /// should see.
 pub(super) fn travel_samples(spec: &Spec) -> u32 {
-    (FIFTH * spec.adc.sample_rate_hz / spec.tracking.bandwidth_hz) as u32
+    (FASTER * spec.adc.sample_rate_hz / spec.tracking.bandwidth_hz) as u32
 }
-
-const FIFTH: f64 = 5.0;
 
 /// The bandwidth of the loop, Hz, below which they are more than a counter holds.
 pub(super) fn slowest_completed_hz(spec: &Spec) -> f64 {
-    FIFTH * spec.adc.sample_rate_hz / f64::from(TRAVEL_SAMPLES_MAX)
+    FASTER * spec.adc.sample_rate_hz / f64::from(TRAVEL_SAMPLES_MAX)
 }
 
 /// Most of them: a counter and one more stay in the container, whose sign is not theirs.

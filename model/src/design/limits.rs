@@ -222,7 +222,7 @@ fn of_followers(words_that_follow: &Followers, words: &Words, spec: &Spec) -> Ve
 }
 
 /// log2 of the largest range of a parameter.
-const WIDEST: i64 = 4;
+const WIDEST_RANGE: i64 = 4;
 
 /// Ranges of the parameters: each holds what the promised sensors need at their worst.
 fn of_ranges(spec: &Spec) -> Vec<Limits> {
@@ -270,7 +270,7 @@ fn of_ranges(spec: &Spec) -> Vec<Limits> {
             key,
             value: r.deviation[of].into(),
             lowest: just(need).into(),
-            highest: WIDEST,
+            highest: WIDEST_RANGE,
             why: format!("{node} {need:.3} where {when}, and no parameter is beyond 16",).into(),
             absent: absent(key, spec),
         })

@@ -26,12 +26,12 @@ pub struct Word {
 }
 
 /// No word has more bits, and no range is further from 1: what is beyond is refused before anything is made of it.
-const WIDEST: i64 = 64;
+const WIDEST_WORD: i64 = 64;
 
 /// What a word of `key` may be whatever the chip.
 fn plausible_ends(key: &str) -> (i64, i64) {
     let range = key.ends_with("_range_log2");
-    (if range { -WIDEST } else { 1 }, WIDEST)
+    (if range { -WIDEST_WORD } else { 1 }, WIDEST_WORD)
 }
 
 fn is_plausible(key: &str, n: i64) -> bool {

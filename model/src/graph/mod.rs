@@ -160,7 +160,7 @@ pub struct Graph {
     pub roms: Vec<crate::rom::Rom>,
     /// Registers and inputs of the chip: name and node.
     pub inputs: Vec<(String, NodeId)>,
-    /// Named results: probes, and the next value of each register under the register's name.
+    /// Named results.
     pub probes: Vec<(String, NodeId)>,
     /// The next value of each register, under the register's name.
     pub next: Vec<(String, NodeId)>,

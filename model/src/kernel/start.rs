@@ -26,7 +26,7 @@ use crate::signal::{Formula, Logic, Signal, Wide};
 /// Periods of travel that are solved.
 pub const PERIODS: u32 = 2;
 /// log2 of the sectors of a period.
-const SECTORS: i32 = SECTOR_BITS as i32;
+const SECTORS_LOG2: i32 = SECTOR_BITS as i32;
 /// Sectors that one sample may stand for.
 const WEIGHT: Quantiser = Quantiser::saturating(Format::unsigned(4, 0));
 
@@ -106,7 +106,7 @@ pub fn polar<S: Signal>(
     let radius = detector::radius(rho, e);
     rho.begin(&POLAR);
     let signal = &structure.formats.signal;
-    let sectors = travel.advance.scale(SECTORS).quantise(&WEIGHT);
+    let sectors = travel.advance.scale(SECTORS_LOG2).quantise(&WEIGHT);
     let weighed = radius.quantise(signal).named("radius_error") * sectors.named("sectors");
     let cos = (cos_hat.widen() - e * sin_hat).quantise(signal);
     let sin = (sin_hat.widen() + e * cos_hat).quantise(signal);
@@ -151,7 +151,7 @@ pub fn start<S: Signal>(
     for ((gradient, gathered), mean) in components.take(linear) {
         let sum = over_a_period(gradient, *gathered, gate, k.zero, structure);
         *gathered = sum.next;
-        *mean = sum.gradient.scale(-SECTORS);
+        *mean = sum.gradient.scale(-SECTORS_LOG2);
     }
     let steps = steps(mean, theta, k, structure);
     let solved = gate.fresh.and(gate.whole_period).and(running(state, k));

@@ -339,7 +339,7 @@ impl Calibration {
             .unwrap_or(if self.is_linear_final() { 4 } else { 3 })
     }
 
-    /// Which of θ1 … θ9 are calibrated.
+    /// Which of θ1 … θ9 the parameter set has. Without completion the third-order bends are one number, and θ9 has no register.
     #[must_use]
     pub fn thetas(&self) -> &'static [usize] {
         match self.parameters {
