@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 use anyhow::{Context, Result};
 use nonius_diagnosis::{Cause, Chip, Diagnosis};
 use nonius_model::design::{Design, DesignError};
-use nonius_model::spec::Spec;
+use nonius_model::spec::{Calibration, Spec};
 use nonius_quantity::{Quantity, Unit, agree, digits};
 use toml_edit::{ArrayOfTables, DocumentMut, Item, Table, value};
 
@@ -28,6 +28,16 @@ fn bends(found: &Diagnosis) -> (Vec<usize>, f64) {
         .filter_map(|(k, f)| Some((k, harmonics::bend(f, beta)?)))
         .unzip();
     (which, amounts.into_iter().fold(0.0, f64::max))
+}
+
+/// Whether the axis of the recording is ever so slow that the chip learns bends.
+fn learns_bends(spec: &Spec, found: &Diagnosis) -> bool {
+    /// Share of the samples.
+    const SOME: f64 = 0.02;
+    let limit = TAU * Calibration::BEND_RATE * spec.adc.sample_rate_hz;
+    let speeds = &found.context.speed;
+    let slow = speeds.iter().filter(|speed| speed.abs() < limit).count();
+    slow as f64 > SOME * speeds.len() as f64
 }
 
 /// A bandwidth behind which the completion sees the bend, where the loop of the design is too wide for that and the
@@ -220,6 +230,14 @@ fn correct_bends(text: &str, found: &Diagnosis) -> Result<(String, Vec<Outcome>)
              period is a revolution, cannot be seen, so the design keeps its parameters"
                 .into(),
         );
+    }
+    if !learns_bends(&spec, found) {
+        let fewest = 1.0 / Calibration::BEND_RATE;
+        let note = format!(
+            "the channels bend, but hardly ever has a scale period {fewest:.1} samples or more at the sample rate of the design, and with fewer the \
+             chip does not learn bends: a slower axis or a faster converter would show them to it"
+        );
+        return Ok((text.to_owned(), vec![Outcome::impossible(note, which)]));
     }
     let mut document: DocumentMut = text.parse().context("the design is no TOML")?;
     document["calibration"]["parameters"] = value(9);

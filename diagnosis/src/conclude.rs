@@ -68,10 +68,11 @@ pub(crate) fn conclude(
         held_out_residual_rms: held_after,
         position_error_rms_rad: position_after,
     };
-    let angle = angle(system, selection, &extended);
+    let motion = Motion::of(system.context, &angle(system, selection, &extended));
+    let sure = extended.sure(system);
+    let angle = angle(system, selection, sure.as_ref().unwrap_or(&extended));
     let own = repaired.place.iter();
     let positions = own.map(|&k| angle[k] / std::f64::consts::TAU).collect();
-    let motion = Motion::of(system.context, &angle);
     let ellipse = exact::ellipse(&system.context.ellipse, &extended.fit.solution.x);
     let notes = repaired.recording.notes.clone();
     let residuals = [(was.radial, was.tangential), (left.radial, left.tangential)];

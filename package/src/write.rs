@@ -62,7 +62,7 @@ fn refuse(path: &Path) -> impl FnOnce(io::Error) -> WriteError {
     move |error| WriteError::Io { path, error }
 }
 
-/// Whether [`write`] would write into the folder `output`: to be asked before work that takes long.
+/// Whether [`write()`] would write into the folder `output`: to be asked before work that takes long.
 ///
 /// # Errors
 /// A folder of somebody else, or the one that the command runs in.

@@ -164,6 +164,7 @@ impl Recording {
             (Some(time), given) => {
                 let rate = time::rate(&time).map_err(refuse)?;
                 notes.extend(given.and_then(|given| time::disagreement(given, rate)));
+                notes.extend(time::uneven(&time, 1.0 / rate));
                 (time, rate)
             }
             (None, Some(rate)) => (

@@ -71,6 +71,27 @@ pub(crate) fn rate(time: &[f64]) -> Result<f64, ErrorKind> {
     })
 }
 
+/// What to say where the time strays from equal steps, and not because it is rounded.
+pub(crate) fn uneven(time: &[f64], interval: f64) -> Option<String> {
+    /// Share of the interval.
+    const STRAYS: f64 = 0.02;
+    /// Rounded times are no more than so many lengths apart.
+    const ROUNDED: usize = 6;
+    let steps = time.windows(2).map(|w| w[1] - w[0]);
+    let regular: Vec<f64> = steps.filter(|s| *s > 0.0 && *s < GAP * interval).collect();
+    let square: f64 = regular.iter().map(|s| (s - interval).powi(2)).sum();
+    let rms = (square / regular.len().max(1) as f64).sqrt();
+    if rms.is_nan() || rms <= STRAYS * interval {
+        return None;
+    }
+    let lengths = regular.iter().map(|s| (s / interval * 1e4).round() as i64);
+    let lengths: std::collections::HashSet<i64> = lengths.collect();
+    let share = 100.0 * rms / interval;
+    (lengths.len() > ROUNDED).then(|| {
+        format!("time_s strays from equal steps by {share:.0} % of a step rms; the samples are taken as equally far apart in time")
+    })
+}
+
 /// What to say where the declared rate is not that of `time_s`.
 pub(crate) fn disagreement(declared: f64, from_time: f64) -> Option<String> {
     let apart = (declared / from_time - 1.0).abs();
@@ -97,6 +118,25 @@ mod tests {
         assert_eq!(
             note,
             "time_s and sample_rate_hz disagree: 120 Hz and 100 Hz; time_s wins"
+        );
+    }
+
+    #[test]
+    fn times_that_stray_are_said_and_rounded_ones_are_not() {
+        let even = |k: i32| f64::from(k) / 1e4;
+        let rounded: Vec<f64> = (0..1000)
+            .map(|k| (even(k) * 2e4 / 3.0).round() * 1.5e-4)
+            .collect();
+        assert_eq!(uneven(&rounded, 1e-4), None);
+        let exact: Vec<f64> = (0..1000).map(even).collect();
+        assert_eq!(uneven(&exact, 1e-4), None);
+        let strays: Vec<f64> = (0..1000)
+            .map(|k| even(k) + 1e-5 * f64::from(k).sin())
+            .collect();
+        let said = uneven(&strays, 1e-4).expect("a note");
+        assert!(
+            said.contains("strays from equal steps by 7 % of a step"),
+            "{said}"
         );
     }
 

@@ -230,6 +230,19 @@ fn a_vibration_between_corners() {
     assert!(own.iter().all(|a| (a - 1.0).abs() < 0.04), "{own:?}");
 }
 
+/// Against a reference the lag of a low pass is seen, and off the positions: the motion is not ahead of it by as much again.
+#[test]
+fn a_low_pass_beside_a_reference() {
+    let low_pass = "name = \"common_bandwidth\"\ntau_s = 6e-5";
+    let (sensor, motion) = (with(&[low_pass]), driven());
+    let mut recording = recording(&sensor, sensor.simulate(&motion, 11));
+    recording.reference_rad = Some(motion.alpha);
+    let ([along, _], _) = replayed(&recording, &[low_pass]);
+    let own = apart(&sensor, &recording, &along);
+    println!("{own:.4?}");
+    assert!(own.iter().all(|a| (a - 1.0).abs() < 0.04), "{own:?}");
+}
+
 /// Largest difference of the motion that a diagnosis finds in some rows of a recording from the true one, radians; rows are
 /// numbers of samples and the times that they are said to have. And how many samples there are along it.
 fn off(rows: &[(usize, f64)]) -> (f64, usize) {

@@ -13,6 +13,21 @@ use crate::unnamed::whereabouts::Left;
 /// Shares of the noise from which on the rounding is seen, and from which on it is seen in how the noise varies.
 const SEEN: [f64; 2] = [0.1, 0.3];
 
+/// Whether a reference whose values are so far apart is one that counts: at a speed that stays as it is, those of any other are equally far
+/// apart, too.
+fn counts(reference: &[f64], step: f64) -> bool {
+    /// Share of the increments that may be others where the reference comes round.
+    const OTHERS: f64 = 0.01;
+    let mut steps: Vec<i64> = reference
+        .windows(2)
+        .map(|w| ((w[1] - w[0]) / step).round() as i64)
+        .collect();
+    let middle = steps.len() / 2;
+    let usual = *steps.select_nth_unstable(middle).1;
+    let others = steps.iter().filter(|s| **s != usual).count();
+    others as f64 > OTHERS * steps.len() as f64
+}
+
 /// Takes back what has no name, stands along the circle and is smaller than the rounding of the reference. A sentence that says so,
 /// where anything was or may be.
 pub(crate) fn beside(
@@ -20,7 +35,8 @@ pub(crate) fn beside(
     found: &mut Selection,
     recording: &Recording,
 ) -> Option<String> {
-    let step = code_step(recording.reference_rad.as_deref()?)?;
+    let reference = recording.reference_rad.as_deref()?;
+    let step = code_step(reference).filter(|step| counts(reference, *step))?;
     let rounding = step / 12f64.sqrt();
     if rounding < SEEN[0] * system.noise() {
         return None;

@@ -14,9 +14,97 @@ pub(super) struct Gain {
     pub(super) change: String,
 }
 
-const ANGLE: &str = "angle error against the reference on held-out data, rms";
-const RESIDUAL: &str = "residual on held-out data, rms";
-const UNCHANGED: &str = "unchanged";
+/// What is left without a cause, and with it.
+pub(super) struct Removed {
+    what: What,
+    before: f64,
+    after: f64,
+}
+
+/// Rms on data that were not fitted.
+enum What {
+    /// Error of the angle against the reference, radians.
+    Angle,
+    /// Residual, in fractions of the amplitude.
+    Residual,
+}
+
+impl Removed {
+    /// By the extended model beside the five parameters.
+    pub(super) fn by_all(found: &Diagnosis) -> Self {
+        let (before, after) = (&found.simulation, &found.extended);
+        Self::of(
+            (before.position_error_rms_rad, after.position_error_rms_rad),
+            (before.held_out_residual_rms, after.held_out_residual_rms),
+        )
+    }
+
+    /// A position error, or where none is known the residual.
+    fn of(position: (Option<f64>, Option<f64>), residual: (f64, f64)) -> Self {
+        let (what, (before, after)) = match position {
+            (Some(before), Some(after)) => (What::Angle, (before, after)),
+            _ => (What::Residual, residual),
+        };
+        Self {
+            what,
+            before,
+            after,
+        }
+    }
+
+    /// More, in per cent.
+    fn change(&self) -> f64 {
+        100.0 * (self.after / self.before.max(f64::MIN_POSITIVE) - 1.0)
+    }
+
+    /// Whether what is told of it is another number.
+    pub(super) fn changes(&self) -> bool {
+        self.change().abs() >= 0.05
+    }
+
+    /// From what to what.
+    pub(super) fn told(&self) -> Gain {
+        let (before, after) = self.written();
+        // Not −0.
+        let change = if self.changes() {
+            let side = if self.change() < 0.0 { "less" } else { "more" };
+            format!("{:.1} % {side}", self.change().abs())
+        } else {
+            "unchanged".into()
+        };
+        self.as_gain(format!("{before} → {after}"), change)
+    }
+
+    /// Where nothing was found: one number.
+    pub(super) fn of_nothing(&self) -> Gain {
+        self.as_gain(self.written().1, "with the five parameters alone".into())
+    }
+
+    fn written(&self) -> (String, String) {
+        match self.what {
+            What::Angle => {
+                let [from, to] = [self.before, self.after].map(f64::to_degrees);
+                before_after(from, to, Unit::Plain("°"))
+            }
+            What::Residual => before_after(self.before, self.after, Unit::Percent),
+        }
+    }
+
+    fn as_gain(&self, value: String, change: String) -> Gain {
+        let (what, of) = match self.what {
+            What::Angle => (
+                "angle error against the reference on held-out data, rms",
+                "",
+            ),
+            What::Residual => ("residual on held-out data, rms", " of the amplitude"),
+        };
+        Gain {
+            what,
+            value: value + of,
+            change,
+        }
+    }
+}
 
 impl Gain {
     /// Of a finding.
@@ -36,80 +124,17 @@ impl Gain {
             g.held_out_residual_rms_before,
             g.held_out_residual_rms_after,
         );
-        let mut gain = removed(position, residual);
         // What changes the radius alone moves no position.
-        if !gain.changes() {
-            gain = removed((None, None), residual);
-        }
-        if finding.chip == Chip::NotASensorError && !gain.changes() {
-            return Self {
+        let all = [position, (None, None)].map(|position| Removed::of(position, residual));
+        match all.iter().find(|one| one.changes()) {
+            Some(one) => one.told(),
+            None if finding.chip == Chip::NotASensorError => Self {
                 what: "gain",
                 value: "none".into(),
                 change: "the position shows real motion, and should".into(),
-            };
+            },
+            None => all[1].told(),
         }
-        gain
-    }
-
-    /// Of the extended model over the five parameters.
-    pub(super) fn of_all(found: &Diagnosis) -> Self {
-        let (before, after) = (&found.simulation, &found.extended);
-        removed(
-            (before.position_error_rms_rad, after.position_error_rms_rad),
-            (before.held_out_residual_rms, after.held_out_residual_rms),
-        )
-    }
-
-    /// The same where nothing was found: one number.
-    pub(super) fn none(all: Self) -> Self {
-        let after = all
-            .value
-            .split_once("→ ")
-            .map(|(_, after)| after.to_owned());
-        Self {
-            value: after.unwrap_or_default(),
-            change: "with the five parameters alone".into(),
-            ..all
-        }
-    }
-
-    pub(super) fn changes(&self) -> bool {
-        self.change != UNCHANGED
-    }
-}
-
-/// A position error, or where none is known the residual.
-fn removed(position: (Option<f64>, Option<f64>), residual: (f64, f64)) -> Gain {
-    let (what, from, to, unit) = match position {
-        (Some(before), Some(after)) => {
-            let (from, to) = (before.to_degrees(), after.to_degrees());
-            (ANGLE, from, to, Unit::Plain("°"))
-        }
-        _ => (RESIDUAL, residual.0, residual.1, Unit::Percent),
-    };
-    let (before, after) = before_after(from, to, unit);
-    Gain {
-        what,
-        value: format!(
-            "{before} → {after}{}",
-            if what == ANGLE {
-                ""
-            } else {
-                " of the amplitude"
-            }
-        ),
-        change: change(from, to),
-    }
-}
-
-fn change(before: f64, after: f64) -> String {
-    let change = 100.0 * (after / before.max(f64::MIN_POSITIVE) - 1.0);
-    // Not −0.
-    if change.abs() < 0.05 {
-        UNCHANGED.into()
-    } else {
-        let side = if change < 0.0 { "less" } else { "more" };
-        format!("{:.1} % {side}", change.abs())
     }
 }
 

@@ -23,7 +23,7 @@ use crate::finding::names::label;
 use crate::finding::{Cause, Finding, Parameter};
 use crate::unnamed::unseen::unseen;
 use experiments::experiment;
-use gain::Gain;
+use gain::{Gain, Removed};
 use residue::Residue;
 
 #[derive(Template)]
@@ -149,12 +149,12 @@ pub fn report(
 /// What the number at the top is of, and the number: of one finding its own; of several, that of all together, or where
 /// they take nothing off the signals that of the first.
 fn gain_of_all(found: &Diagnosis) -> (String, Gain) {
-    let all = Gain::of_all(found);
+    let all = Removed::by_all(found);
     match found.findings.as_slice() {
-        [] => (String::new(), Gain::none(all)),
+        [] => (String::new(), all.of_nothing()),
         [one] => (String::new(), Gain::of(one)),
         [first, ..] if !all.changes() => (words::title(first), Gain::of(first)),
-        several => (format!("{} findings together", several.len()), all),
+        several => (format!("{} findings together", several.len()), all.told()),
     }
 }
 

@@ -65,6 +65,9 @@ fn able(finding: &Finding) -> &'static str {
         (Chip::CannotCorrect, _) if !finding.design.is_empty() => {
             "The chip of this design does not correct it."
         }
+        (Chip::CannotCorrect, Cause::EvenNonlinearity | Cause::OddNonlinearity) => {
+            "The chip corrects bends, but what this one does along the circle the motion hides, and a correction may be the opposite. A reference tells, or a speed at which the motion is smoother than this."
+        }
         (Chip::CannotCorrect, _) => "The chip cannot correct it; mend it in front of the ADC.",
         (Chip::NotASensorError, _) if !finding.confounded_with.is_empty() => {
             "If it is real motion, the position shows it, and should; the chip corrects nothing before that is known."

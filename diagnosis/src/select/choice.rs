@@ -139,12 +139,15 @@ pub(crate) fn best(
     let mut all = all.into_iter();
     let mut best = all.next()?;
     let nearly = all.filter(|other| best.is_hardly_likelier_than(other));
-    let names: Vec<Cause> = nearly
-        .filter_map(|other| Some(other.last()?.name))
+    let names: Vec<(Cause, Option<usize>)> = nearly
+        .filter_map(|other| Some((other.last()?.name, other.last()?.order)))
         .collect();
     if let Some(last) = best.start.carried.last_mut() {
-        for name in names {
-            if name != last.candidate.name && !last.confounded.contains(&name) {
+        let own = last.candidate.name;
+        let alike = names.iter().find(|(name, _)| *name == own);
+        last.other_order = last.other_order.or(alike.and_then(|(_, order)| *order));
+        for (name, _) in names {
+            if name != own && !last.confounded.contains(&name) {
                 last.confounded.push(name);
             }
         }

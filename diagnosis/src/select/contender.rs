@@ -11,7 +11,7 @@ use crate::model::{Fit, Residual, System};
 use crate::select::beside::Beside;
 use crate::select::examined::{Examined, Nameless};
 use crate::select::locked;
-use crate::select::score::{ITSELF, RIVALS, Scored, score};
+use crate::select::score::{CLEAR, ITSELF, RIVALS, Scored, score};
 use crate::select::selection::Accepted;
 use crate::select::{astray, both};
 
@@ -50,10 +50,11 @@ pub(crate) fn contender(
     let mut large = most * system.every() as f64 > large;
     let mut named: Vec<Accepted> = vec![];
     let mut nameless = None;
-    let mut tried: Vec<(Cause, Domain)> = vec![];
+    let mut tried: Vec<(Cause, Domain, Option<usize>)> = vec![];
     let mut stepped = None;
     for (i, best) in scored.iter().enumerate() {
-        let one = (best.candidate.name, best.candidate.domain);
+        let one = &best.candidate;
+        let one = (one.name, one.domain, one.order);
         let near = |s: &&Scored| s.gain >= NEARLY * most;
         let nearly = || scored.iter().filter(near);
         if tried.contains(&one) || !near(&best) || is_a_drift(best, nearly) {
@@ -75,6 +76,8 @@ pub(crate) fn contender(
                 let cause = examined.accepted(system.context);
                 // At a speed that hardly changes most of what it does is in the ellipse, and its second order is not.
                 large |= named.is_empty() && with_speed && beyond(system, fit, &cause);
+                // Which order it is may show once the motion is followed beside each.
+                large |= cause.other_order.is_some() && best.gain > CLEAR;
                 named.push(cause);
                 if !large || named.len() > OTHERS {
                     break;

@@ -16,7 +16,7 @@ use crate::select::both;
 use crate::select::held::{Held, holds};
 use crate::select::locked;
 use crate::select::rivals;
-use crate::select::score::Scored;
+use crate::select::score::{CLEAR, Scored};
 use crate::select::selection::Accepted;
 use crate::shapes::library::Shape;
 use crate::unnamed::unexplained::{Unnamed, What, like};
@@ -49,6 +49,8 @@ pub(crate) struct Examined {
     wider: Option<Cause>,
     /// The harmonic that explains it as well.
     other_order: Option<usize>,
+    /// The motion hides what it does along the circle.
+    hidden: bool,
     held: Held,
     /// Log-likelihood that steps explain in its place, where they do.
     pub(crate) steps: Option<f64>,
@@ -98,7 +100,9 @@ impl Examined {
         let listed = |name: &Cause| name.is_listed();
         let richer = rivals::richer(&beside, &own, rest).filter(listed);
         let wider = rivals::wider(&beside, &own, rest).filter(listed);
-        let other_order = rivals::other_order(&beside, &own, rest);
+        let clear = own.gain > CLEAR && system.context.against_reference.is_none();
+        let other_order = rivals::other_order(&beside, (&own, clear), rest);
+        let hidden = clear && rivals::opposite(&own, rest);
         let mark = system.samples.library.atoms.len();
         let held = holds(system, catalogue, fit, &own, rest);
         let steps = match own.candidate.domain {
@@ -120,6 +124,7 @@ impl Examined {
             richer,
             wider,
             other_order,
+            hidden,
             held,
             steps,
             mark,
@@ -174,6 +179,7 @@ impl Examined {
         Accepted {
             confounded: rivals,
             other_order: self.other_order,
+            hidden: self.hidden,
             ..self.cause
         }
     }

@@ -63,18 +63,40 @@ pub(crate) fn among(
     left.into_iter().map(|(name, _)| name).collect()
 }
 
+/// Share of the gain that tangents of what is large are off by.
+const INEXACT: f64 = 0.01;
+
 /// The order of the scale period that a harmonic may have as well. Of order n, turning backwards, it does to the radius what one of order
-/// n + 2 does that turns forwards: along the circle they are opposite, and the motion may hide that.
-pub(crate) fn other_order(beside: &Beside, best: &Scored, others: &[&Scored]) -> Option<usize> {
+/// n + 2 does that turns forwards: along the circle they are opposite, and the motion may hide that. Of a `clear` one without a reference the
+/// tangents are not as exact as what it explains, and what they prefer is no proof.
+pub(crate) fn other_order(
+    beside: &Beside,
+    (best, clear): (&Scored, bool),
+    others: &[&Scored],
+) -> Option<usize> {
     let own = &best.candidate;
     own.order?;
     let alike = others.iter().filter(|other| {
-        let as_much = other.candidate.order.is_some() && best.gain - other.gain < BEATEN;
+        let less = best.gain - other.gain;
         let known = (other.gain, other.freedom);
-        as_much && adds(beside, own, &other.candidate.shapes, known, NOTHING_NEW).is_some()
+        let adds_nothing =
+            || adds(beside, own, &other.candidate.shapes, known, NOTHING_NEW).is_some();
+        other.candidate.order.is_some()
+            && (less < BEATEN && adds_nothing() || clear && less < INEXACT * best.gain)
     });
     let nearest = alike.max_by(|a, b| a.gain.total_cmp(&b.gain))?;
     nearest.candidate.order
+}
+
+/// Whether harmonics of two orders explain as much as a bend or harmonic: of what that does along the circle nothing shows then.
+pub(crate) fn opposite(best: &Scored, others: &[&Scored]) -> bool {
+    let own = &best.candidate;
+    let all = others.iter().copied().chain([best]);
+    let alike = all.filter(|s| best.gain - s.gain < INEXACT * best.gain);
+    let mut orders: Vec<usize> = alike.filter_map(|s| s.candidate.order).collect();
+    orders.sort_unstable();
+    orders.dedup();
+    own.domain == Domain::Angle && orders.len() > 1
 }
 
 /// How much a cause adds to shapes that explain so much with so many numbers, where that is no less probable than `least`.

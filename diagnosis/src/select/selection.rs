@@ -3,7 +3,7 @@
 use nonius_quantity::ordinal;
 
 use crate::causes::candidate::{Candidate, Estimate};
-use crate::finding::{Cause, Finding, Gain, OTHER_ORDER, Parameter};
+use crate::finding::{Cause, Chip, Finding, Gain, OTHER_ORDER, Parameter};
 use crate::model::exact::Start;
 use crate::model::{Fit, Halves, System, amounts};
 use crate::numerics::statistics::by_chance;
@@ -20,6 +20,8 @@ pub(crate) struct Accepted {
     pub(crate) confounded: Vec<Cause>,
     /// Of a harmonic, the order that it may have as well.
     pub(crate) other_order: Option<usize>,
+    /// The motion hides what it does along the circle.
+    pub(crate) hidden: bool,
     /// The amounts at which its shapes are tangents; what is known of them is off the signals.
     pub(crate) x: Vec<f64>,
     /// Standard errors of inner numbers, where they were fitted.
@@ -55,6 +57,7 @@ impl Accepted {
             first: 0,
             confounded: vec![],
             other_order: None,
+            hidden: false,
             x: vec![0.0; candidate.shapes.len()],
             inner_error: None,
             inflation: 1.0,
@@ -313,6 +316,11 @@ impl Selection {
                     ordinal(order)
                 );
             }
+            let mut chip = accepted.candidate.chip;
+            if accepted.hidden && accepted.other_order.is_none() {
+                seen += "; harmonics that err the other way along the circle explain it as well";
+                chip = Chip::CannotCorrect;
+            }
             let finding = Finding {
                 cause: accepted.candidate.name,
                 confounded_with: accepted.confounded.clone(),
@@ -326,7 +334,7 @@ impl Selection {
                     position_error_rms_after_rad: halves.position_error(fit, own, 0),
                     ..Gain::of(gain)
                 },
-                chip: accepted.candidate.chip,
+                chip,
                 design: vec![],
                 weight: gain,
                 effect: Some(system.effect(fit, range)),
@@ -347,6 +355,13 @@ impl Selection {
         let back = self.accepted.iter().filter(dropped);
         let known = back.flat_map(Accepted::amounts);
         known.map(|(atom, x)| (atom, -x)).collect()
+    }
+
+    /// Without what a position would be twice as wrong by if it were the opposite along the circle, where there is such.
+    pub(crate) fn sure(&self, system: &System) -> Option<Self> {
+        let sure = |a: &&Accepted| a.other_order.is_none() && !a.hidden;
+        let sure: Vec<Accepted> = self.accepted.iter().filter(sure).cloned().collect();
+        (sure.len() < self.accepted.len()).then(|| self.of(sure, system))
     }
 
     /// The five parameters and every accepted cause that is no motion, with what they are beyond what is known.

@@ -89,7 +89,10 @@ fn added_by<'a>(finding: &'a Finding, context: &'a Context) -> impl Fn(usize) ->
         let angle = match (cause, &context.phi) {
             (Cause::Vibration, _) => TAU * frequency * context.time[k],
             (Cause::Cogging, Some(phi)) => order * phi[k],
-            (Cause::CommonBandwidth, _) => return -(tau * context.speed[k]).atan(),
+            // Against a reference it was seen along the circle, and is off the positions.
+            (Cause::CommonBandwidth, _) if context.against_reference.is_none() => {
+                return -(tau * context.speed[k]).atan();
+            }
             _ => return 0.0,
         };
         amplitude * (angle + phase).cos()

@@ -36,11 +36,12 @@ pub fn sensor_toml(found: &Diagnosis, recording: &Recording) -> String {
     let mut out = String::from(
         "# The sensor that a recording shows: equation (4), its noise, its ADC, and the causes that were found.\n\n[signals]\n",
     );
+    let offset = |b: f64, channel: usize| b + taken_off(found, recording, channel);
     for (name, value, note) in [
         ("a_c", e.a_c, "amplitude of cos, in the unit of the columns"),
-        ("b_c", e.b_c, "offset of cos"),
+        ("b_c", offset(e.b_c, 0), "offset of cos"),
         ("a_s", e.a_s, "amplitude of sin"),
-        ("b_s", e.b_s, "offset of sin"),
+        ("b_s", offset(e.b_s, 1), "offset of sin"),
         ("beta", e.beta, "phase error, rad"),
         ("noise_rms", noise, "white, of the amplitude"),
     ] {
@@ -88,6 +89,28 @@ pub fn sensor_toml(found: &Diagnosis, recording: &Recording) -> String {
         }
     }
     out
+}
+
+/// What the codes of a channel that err are less than those that do not, on the average, in the unit of the columns. The fit has it in the offset,
+/// and the simulated converter takes it off again.
+fn taken_off(found: &Diagnosis, recording: &Recording, channel: usize) -> f64 {
+    let adc = recording.metadata.adc;
+    let lsb = [adc.cos.lsb, adc.sin.lsb][channel];
+    let here =
+        |f: &&Finding| matches!(f.place, Some(Place::Code { channel: at, .. }) if at == channel);
+    let codes = found.findings.iter().filter(here).map(|finding| {
+        let value = |name: &str| {
+            let all = parameters(finding, recording);
+            all.iter().find(|p| p.name == name).map_or(0.0, |p| p.value)
+        };
+        match finding.cause {
+            // Half of the codes have it.
+            Cause::StuckBit => (0.5 - value("level")) * value("bit").exp2(),
+            Cause::CoarseQuantisation => (value("step_lsb") - 1.0) / 2.0,
+            _ => 0.0,
+        }
+    });
+    lsb * codes.sum::<f64>()
 }
 
 /// What the simulation needs to know of a finding: its parameters, and what follows from the recording.

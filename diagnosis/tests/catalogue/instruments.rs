@@ -3,9 +3,9 @@
 
 use std::f64::consts::TAU;
 
-use nonius_diagnosis::{Cause, Diagnosis, diagnose};
+use nonius_diagnosis::{Cause, Chip, Diagnosis, Finding, OTHER_ORDER, diagnose, sensor_toml};
 use nonius_kept::every;
-use nonius_recording::{Overrides, Recording};
+use nonius_recording::{Ellipse, Overrides, Recording};
 use rand::{SeedableRng, rngs::StdRng};
 use rand_distr::{Distribution, StandardNormal};
 
@@ -61,8 +61,45 @@ fn served(t: f64) -> f64 {
     TAU * (from + (PLACES[k] - from) * x * x * x * (10.0 - 15.0 * x + 6.0 * x * x))
 }
 
+/// To and fro over 6 periods, and shakes by 2 mrad up to 300 Hz, as a servo does.
+fn shaken(t: f64) -> f64 {
+    let shake = (1..=24).map(|i| {
+        let hertz = 12.7 * f64::from(i);
+        6e-4 * (TAU * hertz * t + f64::from(i * i) * 1.7).sin()
+    });
+    6.0 * TAU * (TAU * 0.9 * t / LENGTH).sin() + shake.sum::<f64>()
+}
+
 impl Instrument {
     fn diagnosed(&self, seed: u64) -> Diagnosis {
+        self.diagnosed_of(&self.recorded(seed))
+    }
+
+    fn diagnosed_of(&self, recording: &Recording) -> Diagnosis {
+        let found = diagnose(recording).expect("an ellipse");
+        crate::words::well_said(&found);
+        found
+    }
+
+    /// Errors of the diagnosis' positions and of those by the nearest ellipse, radians rms.
+    fn position_errors(&self, recording: &Recording, found: &Diagnosis) -> [f64; 2] {
+        let (cos, sin) = (&recording.cos, &recording.sin);
+        let ellipse = Ellipse::fit(cos, sin).ellipse;
+        let near = |turns: f64, k: usize| {
+            let off = turns - (self.axis)(k as f64 / RATE) / TAU;
+            off - off.round()
+        };
+        let by_ellipse = cos.iter().zip(sin).map(|(c, s)| ellipse.angle(*c, *s));
+        let all: [Vec<f64>; 2] = [found.positions.clone(), by_ellipse.collect()];
+        all.map(|turns| {
+            let off: Vec<f64> = turns.iter().enumerate().map(|(k, t)| near(*t, k)).collect();
+            let mean = off.iter().sum::<f64>() / off.len() as f64;
+            let square: f64 = off.iter().map(|o| (o - mean).powi(2)).sum();
+            TAU * (square / off.len() as f64).sqrt()
+        })
+    }
+
+    fn recorded(&self, seed: u64) -> Recording {
         let mut random = StdRng::seed_from_u64(seed);
         let mut noise =
             || -> f64 { self.noise * Distribution::<f64>::sample(&StandardNormal, &mut random) };
@@ -88,10 +125,7 @@ impl Instrument {
             }
             text += "\n";
         }
-        let recording = Recording::read_from(text.as_bytes(), "test", &Overrides::default());
-        let found = diagnose(&recording.expect("a recording")).expect("an ellipse");
-        crate::words::well_said(&found);
-        found
+        Recording::read_from(text.as_bytes(), "test", &Overrides::default()).expect("a recording")
     }
 
     /// Bends of a few per cent are found, as such or as the second harmonic that they are.
@@ -251,4 +285,94 @@ fn an_axis_that_rests_on_a_code() {
     };
     resting.shows(&[]);
     resting.bent();
+}
+
+/// What a third harmonic does to the radius of a slow axis that shakes, a fifth does that turns the other way, and what either does along the
+/// circle the axis may do: the order is not sure, the chip corrects nothing, and positions are those of the ellipse.
+#[test]
+fn a_harmonic_whose_order_the_motion_hides_moves_no_position() {
+    let harmonics: [fn(f64) -> [f64; 2]; 3] = [
+        |a| {
+            [
+                0.0065 * (3.0 * a - 0.66).cos(),
+                0.0104 * (3.0 * a - 2.46).cos(),
+            ]
+        },
+        |a| {
+            [
+                0.0097 * (3.0 * a - 2.03).cos(),
+                0.0110 * (3.0 * a - 2.03).cos(),
+            ]
+        },
+        |a| {
+            [
+                0.0067 * (3.0 * a - 0.88).cos(),
+                0.0071 * (3.0 * a - 2.30).cos(),
+            ]
+        },
+    ];
+    for error in harmonics {
+        let instrument = Instrument {
+            axis: shaken,
+            error,
+            ..PLAIN
+        };
+        let recording = instrument.recorded(5);
+        let found = instrument.diagnosed_of(&recording);
+        let [own, by_ellipse] = instrument.position_errors(&recording, &found);
+        let sure = |f: &Finding| f.chip == Chip::Corrects && f.parameter(OTHER_ORDER).is_none();
+        assert!(!found.findings.iter().any(sure), "{:?}", names(&found));
+        assert!(
+            own < 1.1 * by_ellipse,
+            "{own} of {by_ellipse}: {:?}",
+            names(&found)
+        );
+    }
+}
+
+/// At a speed that stays as it is, a reference that is as fine as can be is equally far further with each sample: no counter.
+#[test]
+fn a_reference_at_constant_speed_is_no_counter() {
+    let steady = Instrument {
+        axis: |t| 171.3 * TAU * t,
+        counts: Some(1e8),
+        ..PLAIN
+    };
+    let found = steady.diagnosed(3);
+    let counts = |note: &String| note.contains("moves in steps");
+    assert!(!found.notes.iter().any(counts), "{:?}", found.notes);
+}
+
+/// What codes lose on the average is in the offset of the fit; the simulated converter loses it again, so its sensor has it not.
+#[test]
+fn codes_that_err_do_not_move_the_offset_of_the_sensor() {
+    let damages: [(Cause, fn(usize, [i64; 2]) -> [i64; 2]); 3] = [
+        (Cause::StuckBit, |_, [c, s]| [c & !8, s]),
+        (Cause::StuckBit, |_, [c, s]| [c | 8, s]),
+        (Cause::CoarseQuantisation, |_, [c, s]| {
+            [c.div_euclid(16) * 16, s]
+        }),
+    ];
+    for (cause, damage) in damages {
+        let instrument = Instrument {
+            damage,
+            header: "# adc_bits: 14\n# full_scale: 8192\n",
+            ..PLAIN
+        };
+        let recording = instrument.recorded(4);
+        let found = instrument.diagnosed_of(&recording);
+        assert!(names(&found).contains(&cause), "{:?}", names(&found));
+        let text = sensor_toml(&found, &recording);
+        let value = |line: &str| {
+            line.split(['=', '#'])
+                .nth(1)
+                .and_then(|v| v.trim().parse::<f64>().ok())
+        };
+        let offset = text.lines().find(|l| l.starts_with("b_c ")).and_then(value);
+        let (offset, truth) = (offset.expect("an offset"), 0.02 * 8192.0);
+        assert!(
+            (offset - truth).abs() < 0.7,
+            "{cause:?}: {offset} of {truth}"
+        );
+    }
 }

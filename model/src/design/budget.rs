@@ -60,9 +60,10 @@ impl Budget {
 }
 
 /// A gradient search of step μ settles with a variance of μ/2 of what disturbs its error, here the radial residual. Step
-/// times mean square of ∂α/∂θ, over all parameters, in units of γ: offsets 1 · 1/2, gains 2 · 1/8, phase 8 · 3/8; in the final form
-/// phase 16 · 3/8 before γ has settled, then 4 · 3/8; with bends the phase 4 · 3/8, even bends 1 · 1/4, the cubic one 1 · 1/2. Where half of each gain's gradient is
-/// taken from the other's, their difference is worth half as much again.
+/// times mean square of ∂α/∂θ, over all parameters, in units of γ, by [`Equaliser`](crate::kernel::step::Equaliser): in the final form
+/// offsets 1 · 1/2, gains 2 · 1/8, phase 16 · 3/8 before γ has settled, then 4 · 3/8; with bends the phase 4 · 3/8, even bends 1 · 1/4, the
+/// cubic one 1 · 1/2. Where half of each gain's gradient is taken from the other's, their difference is worth half as much again. The other searches
+/// move gains and phase less: half or a quarter of that phase is more than they need.
 fn calibration(spec: &Spec, adc_radians: f64) -> f64 {
     let c = &spec.calibration;
     let four = 2.0 * 0.5 + 2.0 * 2.0 / 8.0;

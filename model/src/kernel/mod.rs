@@ -1,6 +1,6 @@
 //! One sample, formula by formula. Every formula of the chip stands here and nowhere else.
 //!
-//! Kernels are generic over [`Signal`]; they branch on the structure of the design (which method, how many
+//! Kernels are generic over [`Signal`](crate::signal::Signal); they branch on the structure of the design (which method, how many
 //! parameters), never on data.
 
 pub mod bend;
