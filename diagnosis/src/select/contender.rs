@@ -52,9 +52,12 @@ pub(crate) fn contender(
     let mut nameless = None;
     let mut tried: Vec<(Cause, Domain, Option<usize>)> = vec![];
     let mut stepped = None;
+    let without_reference = system.context.against_reference.is_none();
     for (i, best) in scored.iter().enumerate() {
         let one = &best.candidate;
-        let one = (one.name, one.domain, one.order);
+        // Against a reference harmonics of two orders are not alike.
+        let order = one.order.filter(|_| without_reference);
+        let one = (one.name, one.domain, order);
         let near = |s: &&Scored| s.gain >= NEARLY * most;
         let nearly = || scored.iter().filter(near);
         if tried.contains(&one) || !near(&best) || is_a_drift(best, nearly) {

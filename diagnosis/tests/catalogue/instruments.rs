@@ -15,6 +15,9 @@ const SAMPLES: usize = 16_000;
 const RATE: f64 = 20e3;
 const LENGTH: f64 = SAMPLES as f64 / RATE;
 
+/// What becomes of the codes of sample `k`.
+type Damage = fn(k: usize, codes: [i64; 2]) -> [i64; 2];
+
 /// How a recording is made.
 struct Instrument {
     /// Radians after a time in seconds.
@@ -26,7 +29,7 @@ struct Instrument {
     /// Of the ADC, whose range is about a fourth more than the signals have.
     bits: i32,
     /// What becomes of the codes of cos and sin.
-    damage: fn(k: usize, codes: [i64; 2]) -> [i64; 2],
+    damage: Damage,
     /// What stands before the columns.
     header: &'static str,
     /// What one code is.
@@ -346,7 +349,7 @@ fn a_reference_at_constant_speed_is_no_counter() {
 /// What codes lose on the average is in the offset of the fit; the simulated converter loses it again, so its sensor has it not.
 #[test]
 fn codes_that_err_do_not_move_the_offset_of_the_sensor() {
-    let damages: [(Cause, fn(usize, [i64; 2]) -> [i64; 2]); 3] = [
+    let damages: [(Cause, Damage); 3] = [
         (Cause::StuckBit, |_, [c, s]| [c & !8, s]),
         (Cause::StuckBit, |_, [c, s]| [c | 8, s]),
         (Cause::CoarseQuantisation, |_, [c, s]| {
