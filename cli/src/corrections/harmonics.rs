@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use nonius_diagnosis::{Cause, Diagnosis, Finding, OTHER_ORDER};
+use nonius_diagnosis::{Cause, Chip, Diagnosis, Finding, OTHER_ORDER};
 use nonius_model::design::ORDER_MAX;
 use nonius_model::spec::Harmonic;
 use nonius_quantity::ordinal;
@@ -29,7 +29,7 @@ type Wave = (f64, f64);
 /// harmonic of order 2 or 3 is one where its phase is that of the channel's power: the chip mends both alike.
 pub(super) fn bend(finding: &Finding, beta: f64) -> Option<f64> {
     let of = |name: &str| finding.parameter(name);
-    if of(OTHER_ORDER).is_some() {
+    if of(OTHER_ORDER).is_some() || finding.chip == Chip::CannotCorrect {
         return None;
     }
     let largest = |a: Option<f64>, b: Option<f64>| Some(a?.abs().max(b?.abs()));
@@ -129,7 +129,8 @@ pub(super) fn table(found: &Diagnosis, bends: bool) -> Harmonics {
     let mut findings = vec![];
     for (k, finding) in found.findings.iter().enumerate() {
         let waves = waves(finding, beta, whole);
-        if waves.is_empty() || (bends && bend(finding, beta).is_some()) {
+        let mended = bends && bend(finding, beta).is_some();
+        if waves.is_empty() || mended || finding.chip == Chip::CannotCorrect {
             continue;
         }
         // By the wrong one the angle would be twice as wrong.
@@ -147,7 +148,7 @@ pub(super) fn table(found: &Diagnosis, bends: bool) -> Harmonics {
                 "the {} is not in the table of harmonics: its standard error is more than a third of it",
                 finding.plain_name()
             );
-            left_out.push(Outcome::said(why, vec![k]));
+            left_out.push(Outcome::impossible(why, vec![k]));
             continue;
         }
         findings.push(k);
