@@ -190,8 +190,11 @@ fn leftovers(
     domain: Domain,
     own: &[usize],
 ) -> Option<Unnamed> {
+    // A latency turns the pair by the speed, and its model leaves nothing else: beside it the others are what they are.
+    let late = |i: &usize| found.accepted[*i].candidate.name == Cause::Latency;
+    let own: Vec<usize> = own.iter().copied().filter(|i| !late(i)).collect();
     let everything = found.of(found.accepted.clone(), system);
-    let all = all_gain_of(system, &everything, own);
+    let all = all_gain_of(system, &everything, &own);
     // A harmonic holds all that a bend does, which is nothing beside it; errors of speed hold a part of each other.
     let strength: Vec<f64> = match domain {
         Domain::Speed => own
