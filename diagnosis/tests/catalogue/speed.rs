@@ -35,6 +35,34 @@ fn late<const MICROSECONDS: u32>() -> Case {
     }
 }
 
+/// A latency that is ten times as strong as what goes with the speed beside it hides nothing of that.
+#[test]
+fn what_goes_with_speed_shows_beside_a_latency() {
+    let skew = Case {
+        seen: |a, v| (a - 5e-5 * v, a - 5.3e-5 * v),
+        ..late::<50>()
+    };
+    let found = diagnosed(&skew, 7);
+    assert_eq!(names(&found), [Cause::Latency, Cause::ChannelSkew]);
+    of_cause(&found, Cause::ChannelSkew, "delay_s", -3e-6);
+    assert!(
+        !found.unexplained.significant,
+        "{}",
+        found.unexplained.signature
+    );
+    let hysteresis = Case {
+        seen: |a, v| (a - 5e-5 * v, a - 5e-5 * v),
+        reference: true,
+        ..turning::<3, -4>()
+    };
+    let found = diagnosed(&hysteresis, 7);
+    assert!(
+        names(&found).contains(&Cause::Hysteresis),
+        "{:?}",
+        names(&found)
+    );
+}
+
 /// Without a reference a delay is the motion a little later, whatever its size.
 #[test]
 fn no_latency_without_a_reference() {
