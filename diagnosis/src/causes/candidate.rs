@@ -91,6 +91,8 @@ pub(crate) struct Candidate {
     pub id: usize,
     /// Of a harmonic of the scale period, its order.
     pub order: Option<usize>,
+    /// Order of the revolution, of cogging.
+    pub of_revolution: Option<usize>,
     /// The shapes are real motion: they do not come from the sensor.
     pub motion: bool,
     /// What the amounts can be.
@@ -128,6 +130,7 @@ impl Candidate {
             shapes,
             id: 0,
             order: None,
+            of_revolution: None,
             motion: false,
             sign: Sign::Any,
             as_drift: false,

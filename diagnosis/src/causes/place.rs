@@ -192,10 +192,12 @@ fn of_order(order: usize, (per, trials): (u32, f64), library: &mut Library) -> C
         let place = library.add(2, Use::Motion, wave_of_order(order, per as usize));
         [0, 1].map(|i| place.tangential(i)).into()
     });
+    let of_revolution = Some(order);
     let order = order as u32;
     let shapes = make(&[], library);
     Candidate {
         trials,
+        of_revolution,
         motion: true,
         exact: Some(Exact {
             make,

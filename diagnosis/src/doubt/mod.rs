@@ -13,7 +13,7 @@ use crate::finding::Cause;
 use crate::model::System;
 use crate::select::beside::Beside;
 use crate::select::held::share;
-use crate::select::selection::Selection;
+use crate::select::selection::{Accepted, Selection};
 use crate::shapes::generic::HOLDS;
 use crate::shapes::library::Shape;
 use crate::unnamed::unexplained::{Unnamed, What, explains_only, like};
@@ -76,9 +76,39 @@ pub(crate) fn doubt(system: &System, catalogue: &Catalogue, found: &mut Selectio
             closed.push(domain);
         }
     }
+    if let Some(unnamed) = moves_with_the_period(system, found) {
+        found.unnamed.push(unnamed);
+        closed.push(Domain::Angle);
+    }
     let traces = traces(system, found);
     found.unnamed.extend(traces);
     closed
+}
+
+/// Takes cogging at an order of the scale period back beside a harmonic that changes the radius at the same order: a harmonic that the catalogue does
+/// not have, of an order above its last, does both, and one name for each half of it is none.
+fn moves_with_the_period(system: &System, found: &mut Selection) -> Option<Unnamed> {
+    let per = system.context.periods_per_revolution? as usize;
+    let order_of = |a: &Accepted| a.candidate.order;
+    let harmonics: Vec<(usize, usize)> = (0..found.accepted.len())
+        .filter_map(|i| Some((i, order_of(&found.accepted[i])?)))
+        .collect();
+    let cogging = |i: &usize| found.accepted[*i].candidate.name == Cause::Cogging;
+    let (i, beside) = (0..found.accepted.len()).filter(cogging).find_map(|i| {
+        let of_revolution = found.accepted[i].candidate.of_revolution?;
+        let order = of_revolution
+            .is_multiple_of(per)
+            .then_some(of_revolution / per)?;
+        let same = |n: usize| n + 1 == order || n == order + 1;
+        let beside = harmonics.iter().find(|(_, n)| same(*n))?;
+        Some((i, beside.0))
+    })?;
+    let gain = gain_of(system, found, &[i, beside]);
+    for one in [i, beside] {
+        found.accepted[one].doubted = true;
+    }
+    let but = "the axis would have to move in step with it, as a harmonic of a higher order does by itself";
+    Some(unnamed(Domain::Angle, Cause::SpatialHarmonic, gain, but))
 }
 
 /// Weak names of any kind beside an error of the sensor that is ten times as large, and any beside one that is a hundred times as

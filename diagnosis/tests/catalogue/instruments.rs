@@ -379,3 +379,21 @@ fn codes_that_err_do_not_move_the_offset_of_the_sensor() {
         );
     }
 }
+
+/// A ninth harmonic is beyond the catalogue. What it does along the circle is no cogging of the axis at eight times the scale period.
+#[test]
+fn a_harmonic_beyond_the_catalogue_is_no_motion() {
+    let ninth = Instrument {
+        error: |a| [0.006 * (9.0 * a + 0.7).cos(), 0.005 * (9.0 * a - 1.9).cos()],
+        header: "# periods_per_revolution: 16\n",
+        ..PLAIN
+    };
+    let found = ninth.diagnosed(6);
+    assert_eq!(names(&found), []);
+    assert!(found.unexplained.significant);
+    let signature = &found.unexplained.signature;
+    assert!(
+        signature.contains("repeats with the scale period"),
+        "{signature}"
+    );
+}
