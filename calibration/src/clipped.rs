@@ -25,16 +25,18 @@ pub(crate) fn clipped(cos: &[f64], sin: &[f64]) -> Vec<String> {
 
 /// Samples at the highest value, and that value, where the channel is cut off there.
 fn at_top(own: &[f64], other: &[f64]) -> Option<(usize, f64)> {
-    let top = own.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    // Fewer beyond it are glitches.
+    let mut sorted = own.to_vec();
+    let (_, top, _) = sorted.select_nth_unstable_by(own.len().checked_sub(LEAST)?, f64::total_cmp);
+    let top = *top;
     // Half a step beside a code are its neighbours' ends; what has no codes has no neighbours.
     let step = code_step(own).unwrap_or(0.0);
-    let near = |from: f64, to: f64| {
-        own.iter()
-            .filter(|y| (from..=to).contains(&(top - **y)))
-            .count()
-    };
-    let (count, beside) = (near(0.0, 0.5 * step), near(0.5 * step, 1.5 * step));
-    let beside = if step > 0.0 { beside } else { 0 };
+    let near = |y: &&f64| (top - **y).abs() <= 0.5 * step;
+    let next = |y: &&f64| (top - step - **y).abs() < 0.5 * step;
+    let (count, beside) = (
+        own.iter().filter(near).count(),
+        own.iter().filter(next).count(),
+    );
     if count < LEAST || count < MORE * beside {
         return None;
     }
@@ -84,6 +86,13 @@ mod tests {
                 );
             }
         }
+    }
+
+    #[test]
+    fn a_glitch_beyond_the_end_hides_nothing() {
+        let (mut cos, sin) = codes(2000.0, 0.9, 97.7);
+        (cos[17], cos[900]) = (2600.0, 2047.0);
+        assert!(clipped(&cos, &sin)[0].contains("of cos stand at its highest value 1800"));
     }
 
     #[test]

@@ -22,7 +22,9 @@ pub(crate) struct Residual {
     pub(crate) white: f64,
     /// n_c² of the plain normal; n_s² is the rest.
     pub(crate) cos_share: f64,
-    /// 2 n_c n_s of the normal in the metric of the noise: how its square grows with the correlation of the channels' noise.
+    /// n_c² of the normal in the metric of the noise; n_s² is the rest.
+    pub(crate) white_cos: f64,
+    /// 2 n_c n_s of the same: how the square grows with the correlation of the channels' noise.
     pub(crate) by_both: f64,
 }
 
@@ -188,6 +190,7 @@ mod tests {
                     alpha: at(k),
                     white: cos * draw() + sin * ratio * draw() + other(k, at(k)),
                     cos_share: cos * cos,
+                    white_cos: cos * cos,
                     by_both: 2.0 * cos * sin,
                 }
             })

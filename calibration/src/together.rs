@@ -28,8 +28,8 @@ pub(crate) fn together(residuals: &[Residual]) -> Option<Together> {
         return None;
     }
     let mean = residuals.iter().map(|r| r.white * r.white).sum::<f64>() / n as f64;
-    // Beside the correlation, the squares may have another size, and go with one channel more than the other.
-    let row = |r: &Residual| Vector3::new(1.0, 2.0 * r.cos_share - 1.0, r.by_both);
+    // In the metric, mean and half the difference of both variances, and the covariance.
+    let row = |r: &Residual| Vector3::new(1.0, 2.0 * r.white_cos - 1.0, r.by_both);
     let (mut gram, mut sum) = (Matrix3::zeros(), Vector3::zeros());
     for r in residuals {
         let row = row(r);
@@ -44,8 +44,19 @@ pub(crate) fn together(residuals: &[Residual]) -> Option<Together> {
         let off = r.white * r.white / mean - row.dot(&found);
         scatter += row * row.transpose() * (off * off);
     }
-    let (value, variance) = (found[2], (inverse * scatter * inverse)[(2, 2)]);
-    let std_error = variance.sqrt();
+    let covariance = inverse * scatter * inverse;
+    let product = found[0] * found[0] - found[1] * found[1];
+    if product.is_nan() || product <= 0.0 {
+        return None;
+    }
+    let both = product.sqrt();
+    let value = found[2] / both;
+    let by = Vector3::new(
+        -value * found[0] / product,
+        value * found[1] / product,
+        1.0 / both,
+    );
+    let std_error = by.dot(&(covariance * by)).sqrt();
     let there = value.abs() > BEYOND * std_error && value.abs() > LEAST;
     there.then_some(Together { value, std_error })
 }

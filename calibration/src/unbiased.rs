@@ -179,6 +179,7 @@ impl Round {
                 alpha: near.alpha,
                 white: near.distance,
                 cos_share: near.cos_share,
+                white_cos: near.white_cos,
                 by_both: near.by_both,
             });
         }
@@ -267,7 +268,8 @@ struct Projection {
     half_curvature: f64,
     /// n_c² of the normal in the plane of the signals.
     cos_share: f64,
-    /// 2 n_c n_s of the normal in the metric.
+    /// n_c² of the normal in the metric, and 2 n_c n_s.
+    white_cos: f64,
     by_both: f64,
 }
 
@@ -287,6 +289,7 @@ impl Projection {
             by: Parameters::from(ellipse.by_parameters(alpha).map(|v| normal.dot(&white(v)))),
             half_curvature: along.perp(&bend) / (2.0 * speed.powi(3)),
             cos_share: plain.x * plain.x / plain.norm_squared(),
+            white_cos: normal.x * normal.x,
             by_both: 2.0 * normal.x * normal.y,
         }
     }

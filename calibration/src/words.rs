@@ -26,7 +26,8 @@ pub(crate) const OF_A_CONIC: &str = "a_c, b_c, a_s, b_s, beta: the geometric fit
 /// Samples that were left out.
 pub(crate) fn of_outliers(outliers: usize) -> Option<String> {
     let lie = agree(outliers, "sample lies", "samples lie");
-    (outliers > 0).then(|| format!("{outliers} {lie} far off the ellipse and left out"))
+    let are = agree(outliers, "is", "are");
+    (outliers > 0).then(|| format!("{outliers} {lie} far off the ellipse and {are} left out"))
 }
 
 /// What an ellipse leaves, beside a set that is more than one.
@@ -142,11 +143,11 @@ pub(crate) fn of_arc(
 /// Of noise that is large beside the radius of the curve where that bends most: beyond what is tested.
 pub(crate) fn of_tight_bend(radius: f64) -> Option<String> {
     /// In standard deviations of the noise; smaller ones were tried, and their error bars held too little.
-    const TESTED: f64 = 5.0;
-    (radius < TESTED).then(|| {
+    const TIGHTEST: f64 = 5.0;
+    (radius < TIGHTEST).then(|| {
         format!(
-            "where the curve bends most its radius is only {radius:.1} times the noise ({TESTED} and more are tested): values may be off by \
-             more than their error bars; record with less noise, or more slowly, or take the mean of neighbouring samples"
+            "where the curve bends most its radius is only {radius:.1} times the noise ({TIGHTEST} and more are tested): values may be off by \
+             more than their error bars; record with less noise, or take the mean of neighbouring samples of a slow scale"
         )
     })
 }
@@ -163,8 +164,8 @@ pub(crate) fn of_noise_together(together: Together) -> String {
 /// Of samples that stand at an end of a channel.
 pub(crate) fn of_clipped(channel: &str, end: &str, count: usize, value: f64) -> String {
     format!(
-        "{count} samples of {channel} stand at its {end} value {value}, as where an amplifier or ADC clips: the parameters are those of a \
-         curve that is cut off there; record with less gain"
+        "{count} samples of {channel} stand at its {end} value {value}, as where an amplifier or ADC clips: what they should be is \
+         not known, and those that were not left out pull at the parameters; record with less gain"
     )
 }
 

@@ -65,14 +65,25 @@ fn noise_beside_a_tight_bend_is_named() {
 /// A light that flickers behind both channels: the estimator takes the noise for their own.
 #[test]
 fn noise_that_both_channels_have_is_named() {
-    for (sign, size) in [(1.0, 0.01), (-1.0, 0.01), (1.0, 0.05)] {
-        for seed in 0..10 {
+    let skewed = |beta_deg: f64| Ellipse {
+        beta: beta_deg.to_radians(),
+        ..SENSOR
+    };
+    for (sign, size, beta) in [
+        (1.0, 0.01, 5.0),
+        (-1.0, 0.01, 5.0),
+        (1.0, 0.05, 5.0),
+        (-1.0, 0.01, 45.0),
+        (1.0, 0.01, -45.0),
+    ] {
+        let sensor = skewed(beta);
+        for seed in 0..8 {
             let shared = |draw: &mut dyn FnMut() -> f64, _: &mut StdRng| {
                 let both = 0.8f64.sqrt() * draw();
                 let mut own = || 0.2f64.sqrt() * draw();
                 (size * (both + own()), size * (sign * both + own()))
             };
-            let found = recorded(&SENSOR, seed, shared, None);
+            let found = recorded(&sensor, seed, shared, None);
             let together = found.noise_together.expect("it is there");
             let off = (together.value - 0.8 * sign) / together.std_error;
             assert!(off.abs() < 4.5, "{together:?}");
@@ -80,12 +91,14 @@ fn noise_that_both_channels_have_is_named() {
         }
     }
     let alone = |draw: &mut dyn FnMut() -> f64, _: &mut StdRng| (0.01 * draw(), 0.017 * draw());
-    let seen = (0..200).filter(|seed| {
-        recorded(&SENSOR, *seed, alone, None)
+    let seen = |sensor: &Ellipse, ratio: Option<f64>, seed: u64| {
+        recorded(sensor, seed, alone, ratio)
             .noise_together
             .is_some()
-    });
-    assert_eq!(seen.count(), 0);
+    };
+    assert!(!(0..150).any(|seed| seen(&SENSOR, None, seed)));
+    // Nor where the ratio that is given is another.
+    assert!(!(0..20).any(|seed| seen(&skewed(45.0), Some(5.0), seed)));
 }
 
 /// Of noise with long tails the squares scatter more, and so does the ratio that is made of them.

@@ -233,16 +233,15 @@ fn correct_bends(text: &str, found: &Diagnosis) -> Result<(String, Vec<Outcome>)
     }
     if !learns_bends(&spec, found) {
         let fewest = 1.0 / Calibration::BEND_RATE;
-        let note = format!(
+        return unchanged(format!(
             "the channels bend, but hardly ever has a scale period {fewest:.1} samples or more at the sample rate of the design, and with fewer the \
-             chip does not learn bends: a slower axis or a faster converter would show them to it"
-        );
-        return Ok((text.to_owned(), vec![Outcome::impossible(note, which)]));
+             chip does not learn bends, so the design keeps its parameters"
+        ));
     }
     let mut document: DocumentMut = text.parse().context("the design is no TOML")?;
     document["calibration"]["parameters"] = value(9);
     let bend_max = (ROOM * bend).clamp(0.02, 0.2);
-    document["sensor"]["bend_max"] = value(format!("{bend_max:.2e}").parse::<f64>()?);
+    document["sensor"]["bend_max"] = value(digits(bend_max, 3));
     let mut narrowed = vec![];
     if let Some(bandwidth) = narrower(&spec, found) {
         document["loop"]["bandwidth_hz"] = value(bandwidth);

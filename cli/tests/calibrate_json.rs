@@ -89,7 +89,7 @@ fn the_json_says_what_the_text_says() {
     let remarks = found["remarks"].as_array().expect("remarks");
     assert_eq!(
         remarks,
-        &["200 samples lie far off the ellipse and left out"]
+        &["200 samples lie far off the ellipse and are left out"]
     );
     let given = json(&rows, &["--noise-ratio", "1"]);
     assert_eq!(given["noise"]["ratio_source"], "given");

@@ -50,7 +50,7 @@ pub struct Diagnosis {
     pub extended: Extended,
     /// Positions in periods by the extended model, one per sample, continuous.
     pub positions: Vec<f64>,
-    /// The same as a spline.
+    /// Where the axis is by all of the extended model, as a spline.
     pub(crate) motion: Motion,
     /// Scale periods travelled, to and fro.
     pub periods_travelled: f64,

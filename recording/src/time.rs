@@ -81,7 +81,9 @@ pub(crate) fn uneven(time: &[f64], interval: f64) -> Option<String> {
     let regular: Vec<f64> = steps.filter(|s| *s > 0.0 && *s < GAP * interval).collect();
     let square: f64 = regular.iter().map(|s| (s - interval).powi(2)).sum();
     let rms = (square / regular.len().max(1) as f64).sqrt();
-    if rms.is_nan() || rms <= STRAYS * interval {
+    // Single precision rounds late times more coarsely than early ones.
+    let coarse = time.iter().fold(0.0f64, |m, t| m.max(t.abs())) * f64::from(f32::EPSILON);
+    if rms.is_nan() || rms <= (STRAYS * interval).max(coarse) {
         return None;
     }
     let lengths = regular.iter().map(|s| (s / interval * 1e4).round() as i64);
@@ -128,6 +130,11 @@ mod tests {
             .map(|k| (even(k) * 2e4 / 3.0).round() * 1.5e-4)
             .collect();
         assert_eq!(uneven(&rounded, 1e-4), None);
+        let single: Vec<f64> = (0..2_500_000)
+            .step_by(25)
+            .map(|k| f64::from((f64::from(k) / 25e3) as f32))
+            .collect();
+        assert_eq!(uneven(&single, 1e-3), None);
         let exact: Vec<f64> = (0..1000).map(even).collect();
         assert_eq!(uneven(&exact, 1e-4), None);
         let strays: Vec<f64> = (0..1000)

@@ -12,6 +12,8 @@ use crate::shapes::block::Block;
 use crate::shapes::library::{Library, Shape, Use};
 use crate::shapes::trig::{Trig, normalised, raw};
 
+/// Orders of the scale period that have a name.
+pub(crate) const HARMONICS: std::ops::RangeInclusive<usize> = 2..=7;
 const THRESHOLDS: [f64; 7] = [0.5, 0.6, 0.7, 0.8, 0.85, 0.9, 0.95];
 
 /// How far a threshold may be off its grid.
@@ -123,12 +125,11 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
         of(Cause::EvenNonlinearity, powers(2), "y + k·y²"),
         of(Cause::OddNonlinearity, powers(3), "y + k·y³"),
     ]);
-    let orders = 2..=7;
-    for order in orders.clone() {
+    for order in HARMONICS {
         let adds = waves(order);
         let shapes = shapes(&adds, 4);
         list.push(Candidate {
-            trials: orders.clone().count() as f64,
+            trials: HARMONICS.count() as f64,
             order: Some(order),
             adds: Some(adds),
             chip: Chip::Corrects,

@@ -8,6 +8,7 @@ pub(crate) mod simpler;
 pub(crate) mod steps;
 
 use crate::causes::Catalogue;
+use crate::causes::angle::HARMONICS;
 use crate::causes::candidate::Domain;
 use crate::finding::Cause;
 use crate::model::System;
@@ -85,8 +86,8 @@ pub(crate) fn doubt(system: &System, catalogue: &Catalogue, found: &mut Selectio
     closed
 }
 
-/// Takes cogging at an order of the scale period back beside a harmonic that changes the radius at the same order: a harmonic that the catalogue does
-/// not have, of an order above its last, does both, and one name for each half of it is none.
+/// Takes cogging at an order of the scale period back beside a harmonic that changes the radius at the same order, where the next harmonic that does
+/// both is of an order above the last of the catalogue: one name for each half of it is none.
 fn moves_with_the_period(system: &System, found: &mut Selection) -> Option<Unnamed> {
     let per = system.context.periods_per_revolution? as usize;
     let order_of = |a: &Accepted| a.candidate.order;
@@ -99,7 +100,7 @@ fn moves_with_the_period(system: &System, found: &mut Selection) -> Option<Unnam
         let order = of_revolution
             .is_multiple_of(per)
             .then_some(of_revolution / per)?;
-        let same = |n: usize| n + 1 == order || n == order + 1;
+        let same = |n: usize| n + 1 == order && !HARMONICS.contains(&(n + 2));
         let beside = harmonics.iter().find(|(_, n)| same(*n))?;
         Some((i, beside.0))
     })?;

@@ -344,6 +344,14 @@ fn a_reference_at_constant_speed_is_no_counter() {
     let found = steady.diagnosed(3);
     let counts = |note: &String| note.contains("moves in steps");
     assert!(!found.notes.iter().any(counts), "{:?}", found.notes);
+    // One that stands most of the time is one.
+    let slow = Instrument {
+        axis: |t| 0.4 * TAU * t,
+        counts: Some(400.0),
+        ..PLAIN
+    };
+    let found = slow.diagnosed(3);
+    assert!(found.notes.iter().any(counts), "{:?}", found.notes);
 }
 
 /// What codes lose on the average is in the offset of the fit; the simulated converter loses it again, so its sensor has it not.
