@@ -166,7 +166,7 @@ fn plan(seed: u64, kind: Kind, random: &mut StdRng) -> (Vec<Choice>, Vec<f64>) {
             let first = (turn % CATALOGUE.len() as u64) as usize;
             let second = (first + random.random_range(1..CATALOGUE.len())) % CATALOGUE.len();
             let known = |which: usize| Choice::Known(&CATALOGUE[which], false);
-            (vec![known(first), known(second)], vec![TWO[0], TWO[1]])
+            (vec![known(first), known(second)], TWO.to_vec())
         }
         Kind::Stranger => {
             let which = (turn % STRANGERS.len() as u64) as usize;

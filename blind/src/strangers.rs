@@ -6,8 +6,7 @@ use rand::Rng;
 use rand_distr::{Distribution, StandardNormal};
 
 use crate::effect::{At, Circuit, Effect};
-use crate::effects::statics::shares;
-use crate::effects::{Draw, Law};
+use crate::effects::{Draw, Law, shares};
 use crate::simulate::SPARE;
 use crate::spectrum;
 use crate::strange_circuits::{dielectric, kickback, memory, slew, spread_clock};

@@ -7,7 +7,7 @@ use crate::clipped::clipped;
 use crate::curve::{Curve, dynamic};
 use crate::method::{Error, Method, Options};
 use crate::residual::residual;
-use crate::result::Calibration;
+use crate::result::{Calibration, RatioSource};
 use crate::samples::Samples;
 use crate::seen::Seen;
 use crate::set::Set;
@@ -37,7 +37,12 @@ pub fn calibrate(
         _ => Told::of(method, seen.untold()),
     };
     let noise_ratio_error = fit.log_ratio_error * fit.noise[1] / fit.noise[0];
-    let ratio_is_measured = options.noise_ratio.is_none() && seen.ratio_is_estimated();
+    let noise_ratio_source = match options.noise_ratio {
+        Some(_) => RatioSource::Given,
+        None if fit.ratio_assumed => RatioSource::Assumed,
+        None => RatioSource::Estimated,
+    };
+    let ratio_is_measured = noise_ratio_source == RatioSource::Estimated && !fit.ratio_extreme;
     let bound = cramer_rao::bound(&fit.ellipse, &seen.radians(), fit.noise);
     let bound = bound.filter(|_| !rounding);
     let estimate = seen.estimate;
@@ -71,7 +76,7 @@ pub fn calibrate(
         noise_ratio_error: Some(noise_ratio_error)
             .filter(|e| !rounding && ratio_is_measured && e.is_finite()),
         noise_ratio_extreme: fit.ratio_extreme && !rounding,
-        noise_ratio_assumed: fit.ratio_assumed && options.noise_ratio.is_none(),
+        noise_ratio_source,
         noise_together: fit.together.filter(|_| !rounding),
         shape: shape.filter(|_| seen.own_residual > words::ROUNDING),
         scatter: fit.scatter.filter(|_| !rounding),
@@ -117,7 +122,7 @@ pub fn undetermined(method: Method, cos: &[f64], sin: &[f64], why: &Error) -> Ca
         noise: None,
         noise_ratio_error: None,
         noise_ratio_extreme: false,
-        noise_ratio_assumed: false,
+        noise_ratio_source: RatioSource::Assumed,
         noise_together: None,
         shape: None,
         scatter: None,

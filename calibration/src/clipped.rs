@@ -1,5 +1,6 @@
 //! Channels that are cut off at an end.
 
+use crate::extremes::ends;
 use crate::samples::code_step;
 use crate::words;
 
@@ -33,25 +34,17 @@ fn at_top(own: &[f64], other: &[f64]) -> Option<(usize, f64)> {
     let step = code_step(own).unwrap_or(0.0);
     let near = |y: &&f64| (top - **y).abs() <= 0.5 * step;
     let next = |y: &&f64| (top - step - **y).abs() < 0.5 * step;
-    let (count, beside) = (
-        own.iter().filter(near).count(),
-        own.iter().filter(next).count(),
-    );
+    let pairs = own.iter().zip(other);
+    let meanwhile: Vec<f64> = pairs.filter(|(y, _)| near(y)).map(|(_, y)| *y).collect();
+    let (count, beside) = (meanwhile.len(), own.iter().filter(next).count());
     if count < LEAST || count < MORE * beside {
         return None;
     }
-    let span = |values: &mut dyn Iterator<Item = f64>| {
-        let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), y| {
-            (l.min(y), h.max(y))
-        });
+    let span = |values: &[f64]| {
+        let (low, high) = ends(values);
         high - low
     };
-    let there = own
-        .iter()
-        .zip(other)
-        .filter(|(y, _)| top - **y <= 0.5 * step);
-    let moved = span(&mut there.map(|(_, y)| *y));
-    (moved > MOVES * span(&mut other.iter().copied())).then_some((count, top))
+    (span(&meanwhile) > MOVES * span(other)).then_some((count, top))
 }
 
 #[cfg(test)]

@@ -7,15 +7,18 @@ use rand_distr::{Distribution, StandardNormal};
 use crate::curve::{Curve, Parameters};
 use nalgebra::SMatrix;
 
+/// Lowest and highest value.
+pub(crate) fn ends(values: &[f64]) -> (f64, f64) {
+    let all = values.iter();
+    all.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
+        (low.min(*x), high.max(*x))
+    })
+}
+
 /// Half the difference and half the sum of the extremes; β = 0. `None` where a channel does not move.
 #[must_use]
 pub fn extremes(cos: &[f64], sin: &[f64]) -> Option<Ellipse> {
-    let [(c0, c1), (s0, s1)] = [cos, sin].map(|v| {
-        v.iter()
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
-                (low.min(*x), high.max(*x))
-            })
-    });
+    let [(c0, c1), (s0, s1)] = [cos, sin].map(ends);
     let ellipse = Ellipse {
         a_c: (c1 - c0) / 2.0,
         b_c: c0 + (c1 - c0) / 2.0,

@@ -35,6 +35,6 @@ pub use curve::Curve;
 pub use method::{Error, Method, Options};
 pub use nonius_recording::Ellipse;
 pub use report::report;
-pub use result::{Calibration, Correlations, Parameter};
+pub use result::{Calibration, Correlations, Parameter, RatioSource};
 pub use shape::Shape;
 pub use together::Together;

@@ -14,6 +14,11 @@ pub(crate) fn gaps(mut turns: Vec<f64>) -> impl Iterator<Item = f64> {
     between.into_iter().chain([across])
 }
 
+/// The largest of them.
+pub(crate) fn widest_gap(turns: &[f64]) -> f64 {
+    gaps(turns.to_vec()).fold(0.0, f64::max)
+}
+
 /// Gaps that part two places.
 fn apart(turns: Vec<f64>) -> Vec<f64> {
     gaps(turns).filter(|gap| *gap > APART).collect()
@@ -42,4 +47,19 @@ pub(crate) fn on_the_curve(turns: Vec<f64>) -> Option<usize> {
     let filled = 1.0 - gaps.iter().sum::<f64>();
     let narrow = filled < NARROW && samples >= EACH * gaps.len();
     (samples >= MANY || narrow).then_some(gaps.len().max(1))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_widest_gap_is_the_arc_without_samples() {
+        let turning = |turns: f64| -> Vec<f64> {
+            let at = (0..4000).map(|k| turns * f64::from(k) / 4000.0);
+            at.map(|a| a - a.round()).collect()
+        };
+        assert!((widest_gap(&turning(0.75)) - 0.25).abs() < 0.005);
+        assert!(widest_gap(&turning(3.0)) < 0.002);
+    }
 }

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use crate::result::{Calibration, Correlations, Parameter};
+use crate::result::{Calibration, Correlations, Parameter, RatioSource};
 
 /// Correlations below this are not worth a line.
 const CORRELATED: f64 = 0.1;
@@ -56,8 +56,10 @@ fn statistics(out: &mut String, found: &Calibration, lsb: Option<[f64; 2]>) {
             None if found.noise_ratio_extreme => {
                 format!("{ratio:.3} (sin to cos, estimated, too far from 1 to be measured)")
             }
-            None if found.noise_ratio_assumed => format!("{ratio:.3} (sin to cos, assumed)"),
-            None => format!("{ratio:.3} (sin to cos, given)"),
+            None if found.noise_ratio_source == RatioSource::Given => {
+                format!("{ratio:.3} (sin to cos, given)")
+            }
+            None => format!("{ratio:.3} (sin to cos, assumed)"),
         };
         line("noise ratio", error);
         if let Some(lsb) = lsb {

@@ -26,6 +26,18 @@ pub struct Parameter {
 /// Row by row; `None` with a parameter whose error cannot be told, or which the method holds fixed.
 pub type Correlations = Vec<Vec<Option<f64>>>;
 
+/// Where the ratio of the channels' noise is from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RatioSource {
+    /// The residuals.
+    Estimated,
+    /// [`Options`](crate::Options).
+    Given,
+    /// The residuals do not tell it, and equal noise was taken.
+    Assumed,
+}
+
 /// A calibration.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Calibration {
@@ -53,8 +65,8 @@ pub struct Calibration {
     pub noise_ratio_error: Option<f64>,
     /// σ_s/σ_c was estimated and is too far from equal noise to be measured: it says which channel is quiet, not how quiet.
     pub noise_ratio_extreme: bool,
-    /// It could not be told, and equal noise was taken.
-    pub noise_ratio_assumed: bool,
+    /// Where the ratio is from.
+    pub noise_ratio_source: RatioSource,
     /// Noise that both channels have together, where there is such.
     pub noise_together: Option<Together>,
     /// What repeats with the angle and is no ellipse.

@@ -8,7 +8,6 @@ use std::collections::{HashMap, HashSet};
 use nonius_recording::{Ellipse, FitMethod};
 
 use crate::curve::Curve;
-use crate::places;
 
 /// Residual, in robust standard deviations, from which a sample is far off. White noise gets there once in 5·10⁸.
 const FAR: f64 = 6.0;
@@ -132,13 +131,6 @@ fn median(values: &mut [f64]) -> f64 {
     *values.select_nth_unstable_by(middle, f64::total_cmp).1
 }
 
-/// Largest arc, in turns, in which there is no sample, as the ellipse sees it.
-pub(crate) fn gap(ellipse: &Ellipse, cos: &[f64], sin: &[f64]) -> f64 {
-    let pairs = cos.iter().zip(sin);
-    let turns = pairs.map(|(c, s)| ellipse.angle(*c, *s)).collect();
-    places::gaps(turns).fold(0.0, f64::max)
-}
-
 /// The step of the codes that the values are; `None` where they are none, or so fine that few values are alike.
 pub(crate) fn code_step(values: &[f64]) -> Option<f64> {
     /// Values of each code.
@@ -219,13 +211,5 @@ mod tests {
         let mut cloud = || -> f64 { (0..12).map(|_| random.random_range(-0.5..0.5)).sum() };
         let (cos, sin): (Vec<f64>, Vec<f64>) = (0..4000).map(|_| (cloud(), cloud())).unzip();
         assert!(Samples::of(&cos, &sin).is_none());
-    }
-
-    #[test]
-    fn the_gap_is_the_arc_without_samples() {
-        let (cos, sin) = turning(4000, 0.75);
-        assert!((gap(&SENSOR, &cos, &sin) - 0.25).abs() < 0.005);
-        let (cos, sin) = turning(4000, 3.0);
-        assert!(gap(&SENSOR, &cos, &sin) < 0.002);
     }
 }

@@ -21,6 +21,8 @@ pub(crate) struct Seen<'a> {
     pub(crate) fit: Fit,
     /// Rms of its radius less one.
     pub(crate) own_residual: f64,
+    /// Angles of the samples on it, turns.
+    turns: Vec<f64>,
     /// Longest part of the period without a sample, 0 to 1.
     pub(crate) gap: f64,
     /// What the method says.
@@ -37,7 +39,9 @@ impl<'a> Seen<'a> {
         if !fit.converged {
             fit.ellipse = samples.start;
         }
-        let gap = samples::gap(&fit.ellipse, c, s);
+        let pairs = c.iter().zip(s);
+        let turns: Vec<f64> = pairs.map(|(c, s)| fit.ellipse.angle(*c, *s)).collect();
+        let gap = places::widest_gap(&turns);
         if !fit.converged && gap > words::GAP {
             return None;
         }
@@ -57,6 +61,7 @@ impl<'a> Seen<'a> {
             given_ratio: options.noise_ratio,
             fit,
             own_residual,
+            turns,
             gap,
             estimate,
             residual_rms,
@@ -73,20 +78,9 @@ impl<'a> Seen<'a> {
         self.least() < words::ROUNDING
     }
 
-    /// The noise of each channel is known from the samples.
-    pub(crate) fn ratio_is_estimated(&self) -> bool {
-        !self.fit.ratio_assumed && !self.fit.ratio_extreme
-    }
-
-    /// Angles of the samples, turns.
-    fn turns(&self) -> Vec<f64> {
-        let pairs = self.samples.cos.iter().zip(&self.samples.sin);
-        pairs.map(|(c, s)| self.fit.ellipse.angle(*c, *s)).collect()
-    }
-
-    /// The same in radians.
+    /// Angles of the samples, radians.
     pub(crate) fn radians(&self) -> Vec<f64> {
-        let turns = self.turns().into_iter();
+        let turns = self.turns.iter();
         turns.map(|a| a * std::f64::consts::TAU).collect()
     }
 
@@ -160,8 +154,8 @@ impl<'a> Seen<'a> {
             told.extend(words::of_tight_bend(self.tightest_bend()));
             told.extend(fit.together.map(words::of_noise_together));
         }
-        told.extend(places::on_the_curve(self.turns()).and_then(words::of_places));
-        if !rounding && self.ratio_is_estimated() {
+        told.extend(places::on_the_curve(self.turns.clone()).and_then(words::of_places));
+        if !(rounding || fit.ratio_extreme || fit.ratio_assumed) {
             let steps = [&self.samples.cos, &self.samples.sin].map(|y| samples::code_step(y));
             told.extend(words::of_rounding(fit.noise, steps));
         }

@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use anyhow::{Result, bail};
 use clap::{Args, ValueEnum};
 use nonius_calibration::{
-    Calibration, Correlations, Method, Options, Parameter, calibrate, report, undetermined,
+    Calibration, Correlations, Method, Options, Parameter, RatioSource, calibrate, report,
+    undetermined,
 };
 use nonius_recording::{AdcSource, Recording};
 use serde::Serialize;
@@ -103,7 +104,7 @@ struct Noise {
     /// Of the sine over that of the cosine.
     ratio: f64,
     /// Where the ratio is from.
-    ratio_source: &'static str,
+    ratio_source: RatioSource,
     /// Null where the ratio was given, assumed, or further from 1 than the samples can tell.
     ratio_std_error: Option<f64>,
     /// Of the channels' noise with each other; null where none is seen.
@@ -126,8 +127,7 @@ struct OfAngle {
 }
 
 impl<'a> Json<'a> {
-    /// `given`: the noise ratio was.
-    fn of(found: &'a Calibration, given: bool) -> Self {
+    fn of(found: &'a Calibration) -> Self {
         let (physical, theta) = found.parameters.split_at(5.min(found.parameters.len()));
         let correlated = |of: &'a [Parameter], matrix: &'a Option<Correlations>| {
             Some(Correlated {
@@ -150,11 +150,7 @@ impl<'a> Json<'a> {
                 cos_rms,
                 sin_rms,
                 ratio: sin_rms / cos_rms,
-                ratio_source: match (given, found.noise_ratio_assumed) {
-                    (true, _) => "given",
-                    (_, true) => "assumed",
-                    _ => "estimated",
-                },
+                ratio_source: found.noise_ratio_source,
                 ratio_std_error: found.noise_ratio_error,
                 correlation: found.noise_together.map(|t| t.value),
                 correlation_std_error: found.noise_together.map(|t| t.std_error),
@@ -203,10 +199,7 @@ pub(crate) fn run(args: &Calibrate) -> Result<()> {
     };
     if args.json {
         crate::notes(&found.remarks);
-        say!(
-            "{}",
-            serde_json::to_string_pretty(&Json::of(&found, args.noise_ratio.is_some()))?
-        );
+        say!("{}", serde_json::to_string_pretty(&Json::of(&found))?);
     } else {
         let adc = recording.metadata.adc;
         // The rounding of an ADC that was merely assumed is no finding.

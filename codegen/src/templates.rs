@@ -3,6 +3,7 @@
 use askama::Template;
 use nonius_model::design::Design;
 use nonius_model::graph::{Graph, Kind, NodeId};
+use nonius_model::registers::STATUS;
 
 use crate::layout;
 use crate::netlist::{Netlist, Register, Section, meaning, width};
@@ -130,7 +131,7 @@ pub(crate) fn has_port(name: &str) -> bool {
     let parameter = name
         .strip_prefix("theta_")
         .is_some_and(|n| n.chars().all(|c| c.is_ascii_digit()));
-    parameter || ["speed", "locked", "lock_lost", "signal_lost", "direction"].contains(&name)
+    parameter || STATUS.contains(&name)
 }
 
 /// Format and variables of some columns.

@@ -102,6 +102,9 @@ pub fn flag(name: &str, structure: &Structure) -> bool {
     }
 }
 
+/// What has a port of its own beside the position and the parameters.
+pub const STATUS: [&str; 5] = ["speed", "locked", "lock_lost", "signal_lost", "direction"];
+
 /// Numbers and flags that this structure remembers.
 #[must_use]
 pub fn registers(structure: &Structure) -> (Vec<&'static str>, Vec<&'static str>) {

@@ -20,10 +20,7 @@ pub(crate) struct Diagram {
 impl Diagram {
     pub(crate) fn of(spec: &Spec) -> Self {
         let c = &spec.calibration;
-        // What no radius shows has a register only where the gradient is completed.
-        let completed = c.completed().is_some();
-        let shown = |n: &usize| *n < 9 || completed;
-        let thetas: Vec<usize> = c.thetas().iter().copied().filter(shown).collect();
+        let thetas = c.moving_thetas();
         let bent = thetas.contains(&6);
         let (search, seen) = match c.method {
             CalibrationMethod::Final => ("δΘ = −γ Mᵀ n ρ", "ρ"),
@@ -48,7 +45,7 @@ impl Diagram {
             thetas: ranges(&thetas),
             search: (!thetas.is_empty()).then_some(search),
             seen,
-            completion: completed.then_some("θ9: −γᵥ (w − ∇α̂) e"),
+            completion: c.completed().map(|_| "θ9: −γᵥ (w − ∇α̂) e"),
         }
     }
 }

@@ -13,6 +13,7 @@ use nonius_model::chip::Chip;
 use nonius_model::design::Design;
 use nonius_model::graph::{Kind, NodeId};
 use nonius_model::kernel::Probes;
+use nonius_model::registers::STATUS;
 use vcd::{IdCode, ReferenceIndex, TimescaleUnit, Value, VarType};
 
 use crate::stimulus::Sample;
@@ -221,8 +222,6 @@ impl<W: Write> Waves<W> {
     }
 }
 
-/// Outputs beside the position.
-const FLAGS: [&str; 5] = ["speed", "locked", "lock_lost", "signal_lost", "direction"];
 /// What the loop makes of a pair and remembers; all else is calibration.
 const LOOP: [&str; 20] = [
     "y_c",
@@ -297,8 +296,8 @@ pub fn gtkw(name: &str, design: &Design, columns: &[Column], clocks: usize) -> S
         }
         text
     };
-    let of_calibration = |n: &str| !FLAGS.contains(&n) && !LOOP.contains(&n);
-    out += &group("flags and speed", &|n| FLAGS.contains(&n));
+    let of_calibration = |n: &str| !STATUS.contains(&n) && !LOOP.contains(&n);
+    out += &group("flags and speed", &|n| STATUS.contains(&n));
     out += &group("loop", &|n| LOOP.contains(&n));
     out += &group("calibration", &of_calibration);
     out

@@ -8,12 +8,13 @@ mod lines;
 mod motions;
 mod noises;
 mod slow;
-pub(crate) mod statics;
+mod statics;
 mod turning;
 
 use rand::rngs::StdRng;
 
 pub(crate) use law::Law;
+pub(crate) use statics::shares;
 
 use crate::effect::Effect;
 use crate::world::World;

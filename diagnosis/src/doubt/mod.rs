@@ -9,12 +9,12 @@ pub(crate) mod steps;
 
 use crate::causes::Catalogue;
 use crate::causes::angle::HARMONICS;
-use crate::causes::candidate::Domain;
+use crate::causes::candidate::{Candidate, Domain};
 use crate::finding::Cause;
 use crate::model::System;
 use crate::select::beside::Beside;
 use crate::select::held::share;
-use crate::select::selection::{Accepted, Selection};
+use crate::select::selection::Selection;
 use crate::shapes::generic::HOLDS;
 use crate::shapes::library::Shape;
 use crate::unnamed::unexplained::{Unnamed, What, explains_only, like};
@@ -90,19 +90,13 @@ pub(crate) fn doubt(system: &System, catalogue: &Catalogue, found: &mut Selectio
 /// both is of an order above the last of the catalogue: one name for each half of it is none.
 fn moves_with_the_period(system: &System, found: &mut Selection) -> Option<Unnamed> {
     let per = system.context.periods_per_revolution? as usize;
-    let order_of = |a: &Accepted| a.candidate.order;
-    let harmonics: Vec<(usize, usize)> = (0..found.accepted.len())
-        .filter_map(|i| Some((i, order_of(&found.accepted[i])?)))
-        .collect();
-    let cogging = |i: &usize| found.accepted[*i].candidate.name == Cause::Cogging;
-    let (i, beside) = (0..found.accepted.len()).filter(cogging).find_map(|i| {
-        let of_revolution = found.accepted[i].candidate.of_revolution?;
-        let order = of_revolution
-            .is_multiple_of(per)
-            .then_some(of_revolution / per)?;
-        let same = |n: usize| n + 1 == order && !HARMONICS.contains(&(n + 2));
-        let beside = harmonics.iter().find(|(_, n)| same(*n))?;
-        Some((i, beside.0))
+    let all = found.accepted.iter().map(|a| &a.candidate);
+    let position = |is: &dyn Fn(&Candidate) -> bool| all.clone().position(is);
+    let with_period = |c: &Candidate| c.of_revolution.filter(|order| order.is_multiple_of(per));
+    let (i, beside) = (all.clone().enumerate()).find_map(|(i, cogging)| {
+        let order = with_period(cogging)? / per;
+        let half = |n: usize| n + 1 == order && !HARMONICS.contains(&(n + 2));
+        Some((i, position(&|c| c.order.is_some_and(half))?))
     })?;
     let gain = gain_of(system, found, &[i, beside]);
     for one in [i, beside] {

@@ -11,6 +11,7 @@ use crate::model::{Fit, Residual, System};
 use crate::select::beside::Beside;
 use crate::select::examined::{Examined, Nameless};
 use crate::select::locked;
+use crate::select::rivals::INEXACT;
 use crate::select::score::{CLEAR, ITSELF, RIVALS, Scored, score};
 use crate::select::selection::Accepted;
 use crate::select::{astray, both};
@@ -160,12 +161,10 @@ fn off_the_grid(system: &mut System, fit: &Fit, scored: &mut [Scored]) {
 fn fewer_first(scored: &mut [Scored]) {
     /// So many fewer.
     const FEWER: usize = 3;
-    /// Share of what the best explains.
-    const AS_MUCH: f64 = 0.99;
     let Some(best) = scored.first() else { return };
     let (name, gain, freedom) = (best.candidate.name, best.gain, best.freedom);
     let other = |s: &Scored| {
-        s.candidate.name != name && s.gain > AS_MUCH * gain && s.freedom + FEWER <= freedom
+        s.candidate.name != name && s.gain > (1.0 - INEXACT) * gain && s.freedom + FEWER <= freedom
     };
     let others = (0..scored.len()).filter(|i| other(&scored[*i]));
     if let Some(at) = others.min_by_key(|i| scored[*i].freedom) {

@@ -49,7 +49,7 @@ pub(crate) struct Examined {
     wider: Option<Cause>,
     /// The harmonic that explains it as well.
     other_order: Option<usize>,
-    /// The motion hides what it does along the circle.
+    /// Of a bend, the motion hides what it does along the circle.
     hidden: bool,
     held: Held,
     /// Log-likelihood that steps explain in its place, where they do.

@@ -64,7 +64,7 @@ pub(crate) fn among(
 }
 
 /// Share of the gain that tangents of what is large are off by.
-const INEXACT: f64 = 0.01;
+pub(crate) const INEXACT: f64 = 0.01;
 
 /// The order of the scale period that a harmonic may have as well. Of order n, turning backwards, it does to the radius what one of order
 /// n + 2 does that turns forwards: along the circle they are opposite, and the motion may hide that. Of a `clear` one without a reference the
@@ -88,15 +88,17 @@ pub(crate) fn other_order(
     nearest.candidate.order
 }
 
-/// Whether harmonics of two orders explain as much as a bend or harmonic: of what that does along the circle nothing shows then.
+/// Whether harmonics of two orders explain as much as a bend: of what that does along the circle nothing shows then. A harmonic has
+/// its [`other_order`].
 pub(crate) fn opposite(best: &Scored, others: &[&Scored]) -> bool {
     let own = &best.candidate;
-    let all = others.iter().copied().chain([best]);
-    let alike = all.filter(|s| best.gain - s.gain < INEXACT * best.gain);
+    let alike = others
+        .iter()
+        .filter(|s| best.gain - s.gain < INEXACT * best.gain);
     let mut orders: Vec<usize> = alike.filter_map(|s| s.candidate.order).collect();
     orders.sort_unstable();
     orders.dedup();
-    own.domain == Domain::Angle && orders.len() > 1
+    own.domain == Domain::Angle && own.order.is_none() && orders.len() > 1
 }
 
 /// How much a cause adds to shapes that explain so much with so many numbers, where that is no less probable than `least`.

@@ -20,7 +20,7 @@ pub(crate) struct Accepted {
     pub(crate) confounded: Vec<Cause>,
     /// Of a harmonic, the order that it may have as well.
     pub(crate) other_order: Option<usize>,
-    /// The motion hides what it does along the circle.
+    /// Of a bend, the motion hides what it does along the circle.
     pub(crate) hidden: bool,
     /// The amounts at which its shapes are tangents; what is known of them is off the signals.
     pub(crate) x: Vec<f64>,
@@ -317,7 +317,7 @@ impl Selection {
                 );
             }
             let mut chip = accepted.candidate.chip;
-            if accepted.hidden && accepted.other_order.is_none() {
+            if accepted.hidden {
                 seen += "; harmonics that err the other way along the circle explain it as well";
                 chip = Chip::CannotCorrect;
             }

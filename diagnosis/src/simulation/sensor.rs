@@ -99,10 +99,8 @@ fn taken_off(found: &Diagnosis, recording: &Recording, channel: usize) -> f64 {
     let here =
         |f: &&Finding| matches!(f.place, Some(Place::Code { channel: at, .. }) if at == channel);
     let codes = found.findings.iter().filter(here).map(|finding| {
-        let value = |name: &str| {
-            let all = parameters(finding, recording);
-            all.iter().find(|p| p.name == name).map_or(0.0, |p| p.value)
-        };
+        let all = parameters(finding, recording);
+        let value = |name: &str| all.iter().find(|p| p.name == name).map_or(0.0, |p| p.value);
         match finding.cause {
             // Half of the codes have it.
             Cause::StuckBit => (0.5 - value("level")) * value("bit").exp2(),

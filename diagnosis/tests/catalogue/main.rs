@@ -6,6 +6,7 @@
 mod codes;
 mod data;
 mod harness;
+mod instrument;
 mod instruments;
 mod lengths;
 mod long;

@@ -339,7 +339,7 @@ impl Calibration {
             .unwrap_or(if self.is_linear_final() { 4 } else { 3 })
     }
 
-    /// Which of θ1 … θ9 the parameter set has. Without completion the third-order bends are one number, and θ9 has no register.
+    /// Which of θ1 … θ9 the parameter set has. Without completion the third-order bends are one number, see [`Self::moving_thetas`].
     #[must_use]
     pub fn thetas(&self) -> &'static [usize] {
         match self.parameters {
@@ -349,6 +349,13 @@ impl Calibration {
             8 => &[1, 2, 3, 4, 6, 7, 8, 9],
             _ => &[1, 2, 3, 4, 5, 6, 7, 8, 9],
         }
+    }
+
+    /// Which of them have a register: what no radius shows has one only where the gradient is completed.
+    #[must_use]
+    pub fn moving_thetas(&self) -> Vec<usize> {
+        let moves = |n: &usize| *n < 9 || self.completed().is_some();
+        self.thetas().iter().copied().filter(moves).collect()
     }
 }
 
