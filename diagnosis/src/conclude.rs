@@ -12,6 +12,7 @@ use crate::model::exact;
 use crate::model::{Fit, Residual, System};
 use crate::noise;
 use crate::noise::flicker::Flicker;
+use crate::select::FEWEST;
 use crate::select::selection::Selection;
 use crate::shapes::library::Row;
 use crate::simulation::motion::{self, Motion};
@@ -54,7 +55,12 @@ pub(crate) fn conclude(
     sort(&mut findings);
     let was = system.residual(&selection.base);
     let left = system.residual(&extended.fit);
-    let unexplained = nameless.unexplained(system, &left, Unexplained::nothing(&findings));
+    let nothing = if system.context.samples() < FEWEST {
+        Unexplained::not_looked_for()
+    } else {
+        Unexplained::nothing(&findings)
+    };
+    let unexplained = nameless.unexplained(system, &left, nothing);
     let simulation = simulation(
         &selection.base,
         system,
@@ -118,6 +124,12 @@ struct Nameless {
 impl Nameless {
     /// What a selection leaves; `extended` has those of its causes that keep their names.
     fn of(system: &System, selection: &Selection, extended: &Selection) -> Self {
+        if system.context.samples() < FEWEST {
+            return Self {
+                noise: vec![],
+                unnamed: vec![],
+            };
+        }
         let residual = system.residual(&selection.fit);
         // Only what is noise can be noise of a kind.
         let (mut noise, mut strange) = if selection.unnamed.is_empty() && selection.coded == 0.0 {

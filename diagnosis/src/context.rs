@@ -7,12 +7,14 @@ use nonius_calibration::Ellipse;
 use nonius_recording::{AdcPair, Recording};
 
 use crate::checks::first;
+use crate::clipped::Clipped;
 use crate::model::known::Known;
 use crate::motion::in_step;
 use crate::motion::knots::{self, Told};
 use crate::motion::spline::Spline;
 use crate::numerics::slopes::{around, fine_gradient, gradient};
 use crate::numerics::solve::dot;
+use crate::numerics::spread::standardised;
 use crate::shapes::trig::Trig;
 
 /// From so many bad samples in a row on, their own angle tells how far the scale moves meanwhile.
@@ -64,6 +66,8 @@ pub struct Context {
     pub against_reference: Option<Vec<f64>>,
     /// 1 where a sample counts, 0 where it is left out.
     pub weight: Vec<f64>,
+    /// Samples that are left out because one channel is clipped.
+    pub(crate) clipped: Vec<Clipped>,
     /// ADC codes.
     pub codes: [Vec<i64>; 2],
     /// Bits of the ADC.
@@ -116,11 +120,15 @@ pub(crate) fn against(angle: &[f64], reference: &[f64]) -> Vec<f64> {
 }
 
 impl Context {
-    /// Looks at a recording; `weight` is 0 for samples that are known to be bad.
+    /// Looks at a recording; `weight` is 0 for samples that are known to be bad, those too of which one channel is `clipped`.
     ///
     /// # Errors
     /// Where no ellipse can be fitted.
-    pub fn new(recording: &Recording, weight: Vec<f64>) -> Result<Self, ContextError> {
+    pub(crate) fn new(
+        recording: &Recording,
+        weight: Vec<f64>,
+        clipped: Vec<Clipped>,
+    ) -> Result<Self, ContextError> {
         let ellipse = first::ellipse(recording, &weight)?;
         let first = recording.time_s.first().copied().unwrap_or_default();
         let codes: (Vec<i64>, Vec<i64>) = recording.codes().unzip();
@@ -147,6 +155,7 @@ impl Context {
             temperature,
             against_reference: None,
             weight,
+            clipped,
             codes: [codes.0, codes.1],
             bits: recording.metadata.adc.cos.bits,
             adc: recording.metadata.adc,
@@ -199,15 +208,20 @@ impl Context {
     }
 
     /// Takes another corrected pair, and follows its angle.
-    pub fn set_pair(&mut self, c: Vec<f64>, s: Vec<f64>, reference: Option<&[f64]>) {
+    pub fn set_pair(&mut self, mut c: Vec<f64>, mut s: Vec<f64>, reference: Option<&[f64]>) {
         let n = c.len();
+        for clipped in &self.clipped {
+            let k = clipped.sample;
+            [c[k], s[k]] = clipped.pair([c[k], s[k]], self.ellipse.beta);
+        }
+        let tells = self.tells();
         let mut angle: Vec<f64> = c.iter().zip(&s).map(|(c, s)| s.atan2(*c)).collect();
         // Bad samples take their neighbour's angle, but for many in a row: those were filled along the ellipse, and periods pass
         // in them.
         let mut bad = 0;
         for k in 1..n {
-            bad = if self.weight[k] == 0.0 { bad + 1 } else { 0 };
-            let ends = k + 1 == n || self.weight[k + 1] > 0.0;
+            bad = if tells[k] == 0.0 { bad + 1 } else { 0 };
+            let ends = k + 1 == n || tells[k + 1] > 0.0;
             if bad > 0 && ends && bad < MANY {
                 (k + 1 - bad..=k).for_each(|k| angle[k] = angle[k - 1]);
             }
@@ -235,7 +249,10 @@ impl Context {
         self.shaking = self.shown_by_reference();
         if let Some(spline) = self.finer.as_ref().or(self.spline.as_ref()) {
             let slow: Vec<f64> = self.slow();
-            let fit = spline.fit(&slow, &self.weight);
+            let there =
+                (!self.clipped.is_empty()).then(|| Spline::new(n, spline.spacing(), &tells));
+            let spline = there.as_ref().unwrap_or(spline);
+            let fit = spline.fit(&slow, &tells);
             let rate = self.rate;
             let fast: Vec<f64> = self.fast_motion().collect();
             let smooth = spline.values(&fit).into_iter().zip(&fast);
@@ -315,6 +332,13 @@ impl Context {
         }
     }
 
+    /// 1 where a sample tells the angle: one of which a single channel is clipped does.
+    pub(crate) fn tells(&self) -> Vec<f64> {
+        let mut tells = self.weight.clone();
+        self.clipped.iter().for_each(|one| tells[one.sample] = 1.0);
+        tells
+    }
+
     /// The angle of the pair without known fast motion, radians.
     fn slow(&self) -> Vec<f64> {
         let pairs = self.measured.iter().zip(self.fast_motion());
@@ -369,13 +393,4 @@ impl Context {
         self.fast = known.fast;
         self.set_pair(c, s, reference);
     }
-}
-
-/// Centred, of unit spread; `None` if it does not change.
-fn standardised(values: &[f64]) -> Option<Vec<f64>> {
-    let n = values.len() as f64;
-    let mean = values.iter().sum::<f64>() / n;
-    let spread = (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / n).sqrt();
-    let finite = spread.is_finite() && spread > 1e-9;
-    finite.then(|| values.iter().map(|v| (v - mean) / spread).collect())
 }

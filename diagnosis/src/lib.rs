@@ -11,6 +11,7 @@
 
 mod causes;
 mod checks;
+mod clipped;
 mod conclude;
 mod context;
 mod diagnose;

@@ -22,6 +22,7 @@ use std::cell::OnceCell;
 use nonius_calibration::Ellipse;
 use nonius_recording::{AdcSource, Recording};
 
+use crate::clipped::Clipped;
 use crate::finding::units;
 use crate::finding::{Cause, Finding, Parameter, Place};
 
@@ -36,6 +37,8 @@ pub(crate) struct Checked {
     pub(crate) repeated: Vec<usize>,
     /// Those of them that were put in: what follows is late by one each.
     pub(crate) extra: Vec<usize>,
+    /// Samples at which one channel is clipped.
+    pub(crate) clipped: Vec<Clipped>,
     /// The ellipse of all samples, where one can be fitted; made when it is asked for.
     ellipse: OnceCell<Option<Ellipse>>,
 }
@@ -71,14 +74,14 @@ pub(crate) fn check(recording: &Recording, weight: Vec<f64>, time_base: TimeBase
         gaps: vec![],
         repeated: vec![],
         extra: vec![],
+        clipped: vec![],
         ellipse: OnceCell::new(),
     };
     if time_base == TimeBase::Searched {
         timebase::repeated(recording, &mut checked);
     }
     glitches::find(recording, &mut checked);
-    let clipped = rail::rails(recording, &mut checked.weight);
-    checked.findings.extend(clipped);
+    rail::rails(recording, &mut checked);
     // A sample that is wrong holds any code.
     let weight = &checked.weight;
     let sound = || recording.codes().zip(weight).filter(|(_, w)| **w > 0.0);

@@ -1,11 +1,12 @@
 //! Channels that are clipped: at the end of the ADC's range, or where an amplifier's output goes no further. Their highest or
 //! lowest code comes far more often than the ones beside it, every time that the signal passes there. What is clipped says
-//! nothing but where the rail is: it is left out, and the rest of the signals is as it was.
+//! nothing but where the rail is: it is left out, the angle is the other channel's there, and the rest of the signals is as it was.
 
 use nonius_quantity::{agree, counted};
 use nonius_recording::{Adc, Recording};
 
-use crate::checks::first;
+use crate::checks::{Checked, first};
+use crate::clipped::Clipped;
 use crate::finding::{Cause, Finding, Parameter, Place};
 use crate::numerics::ends::{ends, span};
 
@@ -98,24 +99,31 @@ fn rail(
 }
 
 /// Leaves out what is clipped, by the other channel, so that noise has no say in it: the samples there, and those beside them.
-fn leave_out(recording: &Recording, rail: &Rail, weight: &mut [f64]) {
+fn leave_out(recording: &Recording, rail: &Rail, weight: &mut [f64]) -> Vec<Clipped> {
     let own = [&recording.cos, &recording.sin][rail.channel];
     let other = [&recording.sin, &recording.cos][rail.channel];
     let mut values: Vec<f64> = rail.clipped.iter().map(|k| other[*k]).collect();
     values.sort_unstable_by(f64::total_cmp);
     let (Some(low), Some(high)) = (values.first(), values.last()) else {
-        return;
+        return vec![];
     };
     let wider = WIDER * (high - low);
     let range = low - wider..=high + wider;
     let sound: Vec<usize> = (0..weight.len()).filter(|k| weight[*k] > 0.0).collect();
     let [low, high] = ends(sound.iter().map(|k| own[*k]));
     let middle = (low + high) / 2.0;
+    let mut clipped = vec![];
     for k in sound {
         if range.contains(&other[k]) && (own[k] < middle) == rail.lower {
             weight[k] = 0.0;
+            clipped.push(Clipped {
+                sample: k,
+                channel: rail.channel,
+                lower: rail.lower,
+            });
         }
     }
+    clipped
 }
 
 /// What is said of a rail; `offset` and `amplitude` are those of its channel.
@@ -162,8 +170,9 @@ fn finding(rail: &Rail, adc: &Adc, offset: f64, amplitude: f64, left_out: usize)
         .repairing(left_out)
 }
 
-/// The rails of a recording, and what is clipped left out; nothing where too little would be left.
-pub(crate) fn rails(recording: &Recording, weight: &mut Vec<f64>) -> Vec<Finding> {
+/// Finds the rails of a recording and leaves out what is clipped; nothing where too little would be left.
+pub(super) fn rails(recording: &Recording, checked: &mut Checked) {
+    let weight = &checked.weight;
     let sound: Vec<usize> = (0..weight.len()).filter(|k| weight[*k] > 0.0).collect();
     let codes: (Vec<i64>, Vec<i64>) = recording.codes().unzip();
     let others = [&recording.sin, &recording.cos];
@@ -185,28 +194,26 @@ pub(crate) fn rails(recording: &Recording, weight: &mut Vec<f64>) -> Vec<Finding
         }
     }
     let mut without = weight.clone();
-    let mut left_out = vec![];
-    for rail in &found {
-        let before: f64 = without.iter().sum();
-        leave_out(recording, rail, &mut without);
-        left_out.push((before - without.iter().sum::<f64>()) as usize);
-    }
+    let each: Vec<Vec<Clipped>> = (found.iter())
+        .map(|rail| leave_out(recording, rail, &mut without))
+        .collect();
     let left = without.iter().filter(|w| **w > 0.0).count();
     if found.is_empty() || (left as f64) < (1.0 - MOST) * sound.len() as f64 {
-        return vec![];
+        return;
     }
     let Ok(e) = first::ellipse(recording, &without) else {
-        return vec![];
+        return;
     };
-    *weight = without;
+    checked.weight = without;
     let adc = recording.metadata.adc;
-    let said = |(rail, left_out): (&Rail, usize)| {
+    for (rail, left_out) in found.iter().zip(each) {
         let (adc, offset, amplitude) = if rail.channel == 0 {
             (&adc.cos, e.b_c, e.a_c)
         } else {
             (&adc.sin, e.b_s, e.a_s)
         };
-        finding(rail, adc, offset, amplitude, left_out)
-    };
-    found.iter().zip(left_out).map(said).collect()
+        let finding = finding(rail, adc, offset, amplitude, left_out.len());
+        checked.findings.push(finding);
+        checked.clipped.extend(left_out);
+    }
 }

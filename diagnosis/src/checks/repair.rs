@@ -3,12 +3,15 @@
 use nonius_recording::Recording;
 
 use crate::checks::Checked;
+use crate::clipped::Clipped;
 use crate::context::{Context, ContextError};
 
 /// A recording on a regular time base, and where the samples of the original stand in it.
 pub(crate) struct Repaired {
     pub(crate) recording: Recording,
     pub(crate) weight: Vec<f64>,
+    /// Samples at which one channel is clipped.
+    pub(crate) clipped: Vec<Clipped>,
     /// One per sample of the original.
     pub(crate) place: Vec<usize>,
 }
@@ -16,7 +19,7 @@ pub(crate) struct Repaired {
 impl Repaired {
     /// Its motion, and what is left of the signals.
     pub(crate) fn context(&self) -> Result<Context, ContextError> {
-        Context::new(&self.recording, self.weight.clone())
+        Context::new(&self.recording, self.weight.clone(), self.clipped.clone())
     }
 }
 
@@ -67,9 +70,14 @@ pub(crate) fn repair(recording: &Recording, checked: &Checked) -> Repaired {
     repaired.reference_rad = recording.reference_rad.as_deref().map(filled);
     repaired.temperature_c = recording.temperature_c.as_deref().map(filled);
     repaired.other.clear();
+    let clipped = checked.clipped.iter().map(|one| Clipped {
+        sample: places[one.sample],
+        ..*one
+    });
     Repaired {
         recording: repaired,
         weight,
+        clipped: clipped.collect(),
         place: places,
     }
 }

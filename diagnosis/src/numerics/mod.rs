@@ -9,4 +9,5 @@ pub(crate) mod polynomial;
 pub(crate) mod repeated;
 pub(crate) mod slopes;
 pub(crate) mod solve;
+pub(crate) mod spread;
 pub(crate) mod statistics;

@@ -103,10 +103,7 @@ pub fn report(
         .map(|(i, finding)| section(i + 1, finding, found, recording))
         .collect();
     let headline = match sections.first() {
-        None if found.unexplained.significant => {
-            "No cause can be named, but something is left".to_owned()
-        }
-        None => "Nothing but the five parameters and white noise was found".to_owned(),
+        None => words::capital(found.nothing_named()),
         Some(first) => first.evidence.clone(),
     };
     let others = sections.iter().skip(1).map(|s| s.evidence.clone());

@@ -56,7 +56,7 @@ impl Motion {
 pub(crate) fn bridge(context: &Context, angle: &mut [f64]) {
     let n = angle.len();
     let mut from = 0;
-    for run in context.weight.chunk_by(|a, b| (*a == 0.0) == (*b == 0.0)) {
+    for run in context.tells().chunk_by(|a, b| (*a == 0.0) == (*b == 0.0)) {
         let to = from + run.len();
         if run.first() == Some(&0.0) && run.len() < MANY && run.len() < n {
             let before = from.checked_sub(1).map(|k| angle[k]);
@@ -74,8 +74,8 @@ pub(crate) fn bridge(context: &Context, angle: &mut [f64]) {
 }
 
 fn weights(context: &Context) -> Vec<f64> {
-    let weights = context.weight.iter();
-    weights.map(|w| w.max(LEFT_OUT)).collect()
+    let tells = context.tells().into_iter();
+    tells.map(|w| w.max(LEFT_OUT)).collect()
 }
 
 /// What the simulation of a finding adds to the angle at each sample, radians, and the positions hold yet: real motion, and the lag of a

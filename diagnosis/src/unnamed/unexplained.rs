@@ -35,6 +35,15 @@ impl Unexplained {
         } else {
             "nothing significant is left: the residue is noise"
         };
+        Self::not_significant(signature)
+    }
+
+    /// Not looked for: there are too few samples.
+    pub(crate) fn not_looked_for() -> Self {
+        Self::not_significant("what is left was not looked at: there are too few samples")
+    }
+
+    fn not_significant(signature: &str) -> Self {
         Self {
             significant: false,
             p_value: 1.0,

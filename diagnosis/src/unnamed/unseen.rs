@@ -8,6 +8,7 @@ use nonius_recording::AdcSource;
 use crate::causes::revolution::turns;
 use crate::causes::speed_varies;
 use crate::context::Context;
+use crate::select::FEWEST;
 
 /// Share of the largest speed below which the scale stands.
 const STANDS: f64 = 0.02;
@@ -24,6 +25,12 @@ const DRIFTS: f64 = 3.0;
 pub fn unseen(context: &Context) -> Vec<String> {
     let mut list: Vec<String> = vec![];
     let mut tell = |sentence: &str| list.push(sentence.into());
+    let samples = context.samples();
+    if samples < FEWEST {
+        tell(&format!(
+            "of {samples} samples, fewer than {FEWEST}, no cause is named but what the codes themselves show; record more"
+        ));
+    }
     let travelled = context.periods_travelled();
     let seen = parts_seen(context);
     if seen < ALL_BUT_A_FEW {

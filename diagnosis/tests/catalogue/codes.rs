@@ -54,7 +54,7 @@ fn reversing(t: f64) -> f64 {
     2.5 * (TAU * 2.7 * t + 0.3).sin() + 3.0 * t
 }
 
-fn diagnosed(seen: &Seen, seed: u64) -> Diagnosis {
+fn recorded(seen: &Seen, seed: u64) -> Recording {
     let mut random = StdRng::seed_from_u64(seed);
     let mut normal = || -> f64 { StandardNormal.sample(&mut random) };
     let half = 2f64.powi(seen.bits as i32 - 1);
@@ -74,7 +74,11 @@ fn diagnosed(seen: &Seen, seed: u64) -> Diagnosis {
         text += &format!("{t:.6},{c},{s}\n");
     }
     let read = Recording::read_from(text.as_bytes(), "test", &Overrides::default());
-    let found = diagnose(&read.expect("a recording")).expect("signals that draw an ellipse");
+    read.expect("a recording")
+}
+
+fn diagnosed(seen: &Seen, seed: u64) -> Diagnosis {
+    let found = diagnose(&recorded(seen, seed)).expect("signals that draw an ellipse");
     crate::words::well_said(&found);
     found
 }
@@ -239,4 +243,41 @@ fn a_channel_clipped_at_a_rail() {
     let threshold = (6500.0 / 8192.0 - 0.011) / AMPLITUDES[0];
     let found = rail.parameter("threshold").expect("a threshold");
     assert!((found - threshold).abs() < 1e-3, "{found}");
+}
+
+/// Where a channel is clipped the other one tells the angle, also while the axis stands there: the positions are as good as elsewhere,
+/// and the axis never had another speed.
+#[test]
+fn positions_where_a_channel_is_clipped() {
+    // On to the middle of what is clipped, and a rest there.
+    fn stopping(t: f64) -> f64 {
+        let (stop, on) = ((t / 0.1).floor(), (t % 0.1 / 0.06).min(1.0));
+        20.0 * (stop + on * on * (3.0 - 2.0 * on))
+    }
+    let clipped = Seen {
+        periods: stopping,
+        code: |code, which| if which == 0 { code.min(6500) } else { code },
+        ..PLAIN
+    };
+    is_named(&clipped, &[Cause::Saturation]);
+    let recording = recorded(&clipped, 0);
+    let found = diagnosed(&clipped, 0);
+    let truth = recording.time_s.iter().map(|t| stopping(*t));
+    let errors = found.positions.iter().zip(truth).map(|(p, t)| p - t);
+    let errors: Vec<f64> = errors.map(|e| e - e.round()).collect();
+    let at_rail = |k: &usize| recording.cos[*k] >= 6500.0 / 8192.0;
+    let rms = |of: &dyn Fn(&usize) -> bool| {
+        let squares = (0..errors.len()).filter(of).map(|k| errors[k].powi(2));
+        let (sum, count) = squares.fold((0.0, 0), |(sum, n), square| (sum + square, n + 1));
+        assert!(count > 1000);
+        (sum / f64::from(count)).sqrt()
+    };
+    let (inside, outside) = (rms(&at_rail), rms(&|k| !at_rail(k)));
+    assert!(inside < 1.2 * outside, "{inside} {outside}");
+    let sensor = nonius_diagnosis::sensor_toml(&found, &recording);
+    let fastest = sensor
+        .lines()
+        .find_map(|line| line.strip_prefix("speed_max_periods_per_s = "));
+    let fastest: f64 = fastest.and_then(|v| v.parse().ok()).expect("a speed");
+    assert!((fastest / 500.0 - 1.0).abs() < 0.02, "{fastest}");
 }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use nonius_diagnosis::{Cause, diagnose};
+use nonius_diagnosis::{Cause, diagnose, unseen};
 use nonius_kept::every;
 use nonius_recording::{Overrides, Recording};
 use rand::{Rng, SeedableRng, rngs::StdRng};
@@ -141,4 +141,30 @@ fn the_rounding_of_calculated_numbers_is_nothing() {
             found.unexplained.signature
         );
     }
+}
+
+/// Of fewer than 150 samples motion, five parameters and noise leave too little to tell a cause by: none is looked for, and that is
+/// said. One more, and a large one is found.
+#[test]
+fn too_few_samples_name_no_cause() {
+    let bent = |samples: usize| {
+        let plain = plain(samples, 6.0, 0.0, 3);
+        let bend = |values: &[f64]| values.iter().map(|v| v + 0.05 * v * v).collect();
+        let (cos, sin) = (bend(&plain.cos), bend(&plain.sin));
+        let recording = Recording::from_samples(plain.time_s, cos, sin, &Overrides::default());
+        diagnose(&recording.expect("a recording")).expect("an ellipse")
+    };
+    let found = bent(149);
+    assert_eq!(names(&found), []);
+    assert!(!found.unexplained.significant);
+    assert!(found.unexplained.signature.contains("too few samples"));
+    assert!(found.nothing_named().contains("too few samples"));
+    assert!(unseen(&found.context)[0].contains("of 149 samples"));
+    let found = bent(150);
+    assert_eq!(names(&found), [Cause::EvenNonlinearity]);
+    assert!(
+        !unseen(&found.context)
+            .iter()
+            .any(|s| s.contains("of 150 samples"))
+    );
 }
