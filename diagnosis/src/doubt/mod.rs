@@ -2,6 +2,7 @@
 //! in which too much is left is one that its names do not explain, and what a strong error of the channel leaves is no
 //! error of its own: no model holds to the last per cent.
 
+mod bends;
 pub(crate) mod codes;
 pub(crate) mod curves;
 pub(crate) mod simpler;
@@ -14,7 +15,8 @@ use crate::finding::Cause;
 use crate::model::System;
 use crate::select::beside::Beside;
 use crate::select::held::share;
-use crate::select::selection::Selection;
+use crate::select::locked::is_at_an_order;
+use crate::select::selection::{Accepted, Selection};
 use crate::shapes::generic::HOLDS;
 use crate::shapes::library::Shape;
 use crate::unnamed::unexplained::{Unnamed, What, explains_only, like};
@@ -81,9 +83,24 @@ pub(crate) fn doubt(system: &System, catalogue: &Catalogue, found: &mut Selectio
         found.unnamed.push(unnamed);
         closed.push(Domain::Angle);
     }
+    if let Some(unnamed) = bends::of_no_one_kind(system, found) {
+        found.unnamed.push(unnamed);
+        closed.push(Domain::Angle);
+    }
     let traces = traces(system, found);
     found.unnamed.extend(traces);
     closed
+}
+
+/// Takes lines back that stand at an order of the scale period, where what goes with the angle has no name: they are part of it.
+pub(crate) fn lines_at_orders(system: &System, found: &mut Selection) {
+    let of_angle = |one: &Unnamed| one.domain().map(home) == Some(Domain::Angle);
+    if !found.unnamed.iter().chain(&found.left).any(of_angle) {
+        return;
+    }
+    let is_part = |one: &&mut Accepted| is_at_an_order(system.context, &one.candidate);
+    let lines = found.accepted.iter_mut().filter(is_part);
+    lines.for_each(|line| line.doubted = true);
 }
 
 /// Takes cogging at an order of the scale period back beside a harmonic that changes the radius at the same order, where the next harmonic that does
@@ -181,6 +198,15 @@ fn all_gain_of(system: &System, found: &Selection, own: &[usize]) -> f64 {
     found.fit.solution.gain() - without.solution.gain()
 }
 
+/// What each of some causes explains of what they all explain, where the others do not stand beside it.
+fn alone(system: &System, found: &Selection, own: &[usize]) -> impl Iterator<Item = f64> {
+    let all = all_gain_of(system, found, own);
+    own.iter().map(move |i| {
+        let others: Vec<usize> = own.iter().copied().filter(|o| o != i).collect();
+        all - all_gain_of(system, found, &others)
+    })
+}
+
 /// What is taken back, and why; `gain` is what its name explained.
 pub(crate) fn unnamed(domain: Domain, nearest: Cause, gain: f64, but: &str) -> Unnamed {
     Unnamed {
@@ -226,13 +252,7 @@ fn leftovers(
             .iter()
             .map(|i| all_gain_of(system, &everything, &[*i]))
             .collect(),
-        _ => own
-            .iter()
-            .map(|i| {
-                let others: Vec<usize> = own.iter().copied().filter(|o| o != i).collect();
-                all - all_gain_of(system, &everything, &others)
-            })
-            .collect(),
+        _ => alone(system, &everything, &own).collect(),
     };
     let most = strength.iter().copied().fold(0.0, f64::max);
     // A wider one that holds the strongest was found after it.

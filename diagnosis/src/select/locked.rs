@@ -42,15 +42,15 @@ pub(super) fn why(context: &Context, own: &Scored) -> Option<&'static str> {
     if goes_with_angle(context, candidate) {
         return Some(WITH_ANGLE);
     }
-    // Vibration is of the axis, and no error.
-    let hertz = candidate
-        .inner()
-        .filter(|_| candidate.domain == Domain::Line)?;
     let near = (KNOWN / (2.0 * own.gain).sqrt()).clamp(LEAST, NEAR);
     let orders = BEYOND.map(|m| (0.0, f64::from(m)));
     if stands_at(context, candidate, near, orders) {
         return Some(WITH_ANGLE);
     }
+    // Vibration is of the axis, and goes with its revolution and its motion.
+    let hertz = candidate
+        .inner()
+        .filter(|_| candidate.domain == Domain::Line)?;
     let per = context.periods_per_revolution.map(f64::from);
     let turns = per.map_or(0.0, |per| context.periods_travelled() / per);
     if let Some(per) = per.filter(|per| *per > 1.0 && turns > APART * near) {
@@ -98,6 +98,12 @@ fn goes_with_angle(context: &Context, candidate: &Candidate) -> bool {
     let halves = (1..2 * TOP).step_by(2).map(|m| (0.0, 0.5 * f64::from(m)));
     let beside_rate = (-TOP..=TOP).flat_map(|m| [0.25, 0.5].map(|share| (share, f64::from(m))));
     stands_at(context, candidate, NEAR, halves.chain(beside_rate))
+}
+
+/// Whether a line stands, at a speed that hardly changes, at a whole order of the scale period.
+pub(crate) fn is_at_an_order(context: &Context, candidate: &Candidate) -> bool {
+    let orders = (1..=*BEYOND.end()).map(|m| (0.0, f64::from(m)));
+    stands_at(context, candidate, LEAST, orders)
 }
 
 /// Whether, at a speed that hardly changes, a line with its harmonics stands where harmonics of the scale period do: together they look

@@ -6,7 +6,7 @@ pub(crate) mod choice;
 pub(crate) mod contender;
 mod examined;
 pub(crate) mod held;
-mod locked;
+pub(crate) mod locked;
 pub(crate) mod rivals;
 pub(crate) mod rounds;
 pub(crate) mod score;

@@ -5,7 +5,7 @@ use crate::causes::candidate::{Candidate, Domain};
 use crate::causes::{self, Catalogue};
 use crate::doubt::curves;
 use crate::doubt::simpler::simpler;
-use crate::doubt::{self, doubt};
+use crate::doubt::{self, doubt, lines_at_orders};
 use crate::drifts::channels::Channels;
 use crate::finding::Cause;
 use crate::model::exact::{self, Start};
@@ -316,6 +316,7 @@ fn look_over(
     }
     widen_where_uneven(system, found);
     found.left = leftover(system, catalogue, &found.fit, &closed);
+    lines_at_orders(system, found);
 }
 
 /// Whether what is slow is flicker noise, which goes to the system then.

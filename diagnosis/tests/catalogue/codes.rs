@@ -281,3 +281,26 @@ fn positions_where_a_channel_is_clipped() {
     let fastest: f64 = fastest.and_then(|v| v.parse().ok()).expect("a speed");
     assert!((fastest / 500.0 - 1.0).abs() < 0.02, "{fastest}");
 }
+
+/// A converter that errs smoothly over its codes: several bends together follow it, none of them does, and at one speed its high
+/// orders are no vibration.
+#[test]
+fn a_smooth_error_of_a_converter_is_neither_bends_nor_a_vibration() {
+    let smooth = Seen {
+        bits: 12,
+        periods: reversing,
+        code: |code, _| code + (4.0 * (TAU * 6.0 * code as f64 / 4096.0).sin()).round() as i64,
+        ..PLAIN
+    };
+    let even = Seen {
+        periods: |t| 97.3 * t,
+        ..smooth
+    };
+    for seed in 0..3 {
+        for seen in [&smooth, &even] {
+            let found = diagnosed(seen, seed);
+            assert_eq!(names(&found), []);
+            assert!(found.unexplained.significant);
+        }
+    }
+}
