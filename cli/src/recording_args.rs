@@ -25,6 +25,9 @@ pub(crate) struct RecordingArgs {
     /// Name of the column to read in place of `sin`.
     #[arg(long, value_name = "COLUMN")]
     sin: Option<String>,
+    /// Name of the column to read in place of `time_s`, in the unit that it says: `Time (ms)`.
+    #[arg(long, value_name = "COLUMN")]
+    time: Option<String>,
 }
 
 impl RecordingArgs {
@@ -37,6 +40,7 @@ impl RecordingArgs {
             periods_per_revolution: self.periods_per_revolution,
             cos_column: self.cos.clone(),
             sin_column: self.sin.clone(),
+            time_column: self.time.clone(),
         }
     }
 }

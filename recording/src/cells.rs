@@ -23,7 +23,7 @@ pub(crate) struct Cells<'a> {
 }
 
 impl<'a> Cells<'a> {
-    /// `separator` is one of the ASCII characters `,` and `;`.
+    /// `separator` is an ASCII character: `,`, `;` or a tab.
     pub(crate) fn new(line: &'a str, separator: char) -> Self {
         Self {
             line,

@@ -22,6 +22,7 @@ pub(crate) enum Role {
 /// The header.
 #[derive(Debug)]
 pub(crate) struct Header {
+    /// `,`, `;` or a tab.
     pub(crate) separator: char,
     pub(crate) names: Vec<String>,
     pub(crate) roles: Vec<Role>,
@@ -44,7 +45,7 @@ impl Header {
             }
             names.push(name);
         }
-        let is_number = |n: &String| number(n, separator == ';').is_some();
+        let is_number = |n: &String| number(n, separator != ',').is_some();
         if names.iter().filter(|n| !n.is_empty()).all(is_number) {
             return Err(lines.error(0, ErrorKind::NoHeader));
         }
@@ -55,6 +56,17 @@ impl Header {
             names,
             roles,
         })
+    }
+
+    /// Whether numbers may have a decimal comma.
+    pub(crate) fn has_decimal_comma(&self) -> bool {
+        self.separator != ','
+    }
+
+    /// The name of the first column that has a role.
+    pub(crate) fn name(&self, role: Role) -> Option<&str> {
+        let at = self.roles.iter().position(|r| *r == role)?;
+        Some(&self.names[at])
     }
 
     /// Names of the columns that are kept and ignored.
@@ -88,18 +100,31 @@ fn separator(line: &str) -> Result<char, (usize, ErrorKind)> {
         return Ok(',');
     }
     let ends = line.len() - line.trim_start().len()..line.trim_end().len();
-    for (mark, found) in [('\t', "tabs"), ('|', "`|`"), (' ', "spaces")] {
-        if let Some(at) = outside.iter().find(|(i, c)| *c == mark && ends.contains(i)) {
+    let inside = |mark: char| outside.iter().find(|(i, c)| *c == mark && ends.contains(i));
+    if inside('\t').is_some() {
+        return Ok('\t');
+    }
+    for (mark, found) in [('|', "`|`"), (' ', "spaces")] {
+        if let Some(at) = inside(mark) {
             return Err((at.0, ErrorKind::UnknownSeparator { found }));
         }
     }
     Ok(',')
 }
 
+/// Name of the column of times, in seconds.
+pub(crate) const USUAL_TIME: &str = "time_s";
+
 fn roles(names: &[String], overrides: &Overrides, place: &Place) -> Result<Vec<Role>, Error> {
     let refuse = |kind| Err(Error::new(place.clone(), kind));
     let mut roles = vec![Role::Nameless; names.len()];
-    let time = find(names, "time_s", place)?;
+    let time = match overrides.time_column.as_deref() {
+        None => find(names, USUAL_TIME, place)?,
+        Some(wanted) => match find(names, wanted.trim(), place)? {
+            None => return refuse(missing(wanted.trim(), "--time", names)),
+            found => found,
+        },
+    };
     let reference = find(names, "reference_rad", place)?;
     let temperature = find(names, "temperature_c", place)?;
     let fixed = [
@@ -271,8 +296,7 @@ mod tests {
     fn twins_strange_separators_and_bare_numbers_are_refused() {
         assert!(message("cos,sin,cos").starts_with("f:1:9: the column 'cos' is there twice"));
         assert!(message("COS,Cos,sin").contains("twice"));
-        assert!(message("cos\tsin").starts_with("f:1:4: the columns seem to be separated by tabs"));
-        assert!(message("cos|sin").contains("`|`"));
+        assert!(message("cos|sin").starts_with("f:1:4: the columns seem to be separated by `|`"));
         assert!(message("time_s cos sin").contains("spaces"));
         assert!(message("0.1,0.2").contains("numbers where the header"));
         assert!(message("cos,\"sin").starts_with("f:1:5: the quote"));

@@ -35,6 +35,9 @@ pub struct Overrides {
     pub cos_column: Option<String>,
     /// `--sin`: name of the column in place of `sin`.
     pub sin_column: Option<String>,
+    /// `--time`: name of the column in place of `time_s`; its unit is that of its name, as in `Time (ms)`, or of a row of
+    /// units below the header, else seconds.
+    pub time_column: Option<String>,
 }
 
 /// What is known about a recording as a whole.

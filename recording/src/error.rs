@@ -93,7 +93,7 @@ pub enum ErrorKind {
     #[error("the quote that opens here is not closed on this line; close or remove it")]
     UnclosedQuote,
     #[error(
-        "the columns seem to be separated by {found}; expected `,` or `;`: convert the separators"
+        "the columns seem to be separated by {found}; expected `,`, `;` or tabs: convert the separators"
     )]
     UnknownSeparator { found: &'static str },
     #[error(
@@ -133,10 +133,14 @@ pub enum ErrorKind {
         "'{cell}' in the column '{column}' is beyond 1e30; expected volts, ADC counts, seconds or radians: check the column and its unit"
     )]
     TooLarge { column: String, cell: String },
+    #[error(
+        "the signals have the units '{first}' and '{second}'; expected one: record or write both in the same"
+    )]
+    TwoUnits { first: String, second: String },
     #[error("a line with `#` after the header; such lines may only come first: move or remove it")]
     CommentInData,
     #[error(
-        "neither a column time_s nor a sample rate; add the line `# sample_rate_hz: RATE` or give --sample-rate RATE"
+        "neither a column time_s nor a sample rate; name the column of times with --time COLUMN, or give --sample-rate RATE or the line `# sample_rate_hz: RATE`"
     )]
     NoRate,
     #[error("time_s runs back from {previous} to {time}; {hint}")]

@@ -26,6 +26,7 @@ mod step;
 mod survey;
 mod table;
 mod time;
+mod units;
 
 pub use adc::{Adc, AdcPair, AdcSource};
 pub use declared::{Metadata, Overrides};

@@ -5,6 +5,7 @@ use crate::columns::{Header, Role};
 use crate::error::{ErrorKind, shorten};
 use crate::recording::{Columns, OtherColumn};
 use crate::time::Clock;
+use crate::units::Units;
 
 /// Magnitude beyond which a number is no measurement.
 pub(crate) const LARGEST: f64 = 1e30;
@@ -15,6 +16,10 @@ pub(crate) struct Table {
     clock: Clock,
     row: Vec<f64>,
     previous: Vec<f64>,
+    /// Seconds in the unit of the times.
+    seconds: f64,
+    /// A row may have no cells in columns that are only kept: such a header names what one row alone has.
+    may_be_short: bool,
     /// Line read last.
     line: u64,
     /// The first blank line, and the same once a row stands behind it.
@@ -23,14 +28,10 @@ pub(crate) struct Table {
 }
 
 impl Table {
-    /// `line` is the line of the header.
-    pub(crate) fn new(header: &Header, line: u64) -> Self {
+    /// `line` is the line of the header, `seconds` the unit of the times.
+    pub(crate) fn new(header: &Header, line: u64, seconds: f64) -> Self {
         let column = |role| header.roles.contains(&role).then(Vec::new);
-        let name = |role| {
-            let mut named = header.names.iter().zip(&header.roles);
-            let found = named.find(|(_, r)| **r == role);
-            found.map_or_else(String::new, |(n, _)| n.clone())
-        };
+        let name = |role| header.name(role).unwrap_or_default().to_owned();
         let other = |n: &str| OtherColumn {
             name: n.to_owned(),
             values: Vec::new(),
@@ -47,6 +48,8 @@ impl Table {
         Self {
             columns,
             clock: Clock::default(),
+            seconds,
+            may_be_short: false,
             line,
             row: Vec::new(),
             previous: Vec::new(),
@@ -55,11 +58,20 @@ impl Table {
         }
     }
 
+    /// Takes the row of units below the header.
+    pub(crate) fn take_units(&mut self, units: &Units) {
+        self.line += 1;
+        self.seconds = units.seconds.unwrap_or(self.seconds);
+        self.may_be_short = true;
+    }
+
     /// Takes the next line; an error comes with its byte in the line.
     pub(crate) fn take(&mut self, line: &str, header: &Header) -> Result<(), (usize, ErrorKind)> {
         self.line += 1;
         if is_blank(line) {
-            self.blank.get_or_insert(self.line);
+            if !self.columns.cos.is_empty() {
+                self.blank.get_or_insert(self.line);
+            }
             return Ok(());
         }
         if line.trim_start().starts_with('#') {
@@ -79,9 +91,13 @@ impl Table {
             let value = self.value(&cell, *role, header)?;
             self.row.push(value);
         }
-        if self.row.len() < header.roles.len() {
+        let missing = header.roles.get(self.row.len()..).unwrap_or_default();
+        let kept = |role: &Role| matches!(role, Role::Other(_) | Role::Nameless);
+        let complete = missing.is_empty() || self.may_be_short && missing.iter().all(kept);
+        if !complete {
             return Err((line.len(), ragged(line, header)));
         }
+        self.row.resize(header.roles.len(), f64::NAN);
         self.push(header).map_err(|kind| (time_at, kind))?;
         std::mem::swap(&mut self.row, &mut self.previous);
         Ok(())
@@ -93,7 +109,7 @@ impl Table {
         role: Role,
         header: &Header,
     ) -> Result<f64, (usize, ErrorKind)> {
-        let comma = header.separator == ';';
+        let comma = header.has_decimal_comma();
         let value = number(&cell.text, comma);
         match role {
             Role::Cos => self.columns.cos_digits.see(&cell.text),
@@ -114,7 +130,12 @@ impl Table {
                 },
             ));
         };
-        in_range(value, names).map_err(|kind| (cell.at, kind))
+        let value = in_range(value, names).map_err(|kind| (cell.at, kind))?;
+        Ok(if role == Role::Time {
+            value * self.seconds
+        } else {
+            value
+        })
     }
 
     /// Checks the time and appends the row to the columns.

@@ -2,6 +2,7 @@
 
 mod adc;
 mod fuzz;
+mod instruments;
 mod reader;
 mod refusals;
 mod shared_recordings;

@@ -136,7 +136,7 @@ fn files() {
         "save",
     );
     assert_refused(b"\xFF\xFEt\0", "r.csv:1:1: the text is UTF-16", "save");
-    assert_refused("time_s\tcos\tsin\n", "r.csv:1:7: the columns seem", "tabs");
+    assert_refused("time_s|cos|sin\n", "r.csv:1:7: the columns seem", "`|`");
     assert_refused(
         "0,1,2\n",
         "r.csv:1:1: numbers where the header",

@@ -1,0 +1,119 @@
+//! Units as instruments write them: in a row of their own below the header, or in the name of a column.
+
+use crate::cells::{Cells, number};
+use crate::columns::{Header, Role};
+use crate::error::ErrorKind;
+
+/// Units of time, and their lengths in seconds.
+const TIMES: [(&[&str], f64); 4] = [
+    (&["s", "sec", "second", "seconds"], 1.0),
+    (&["ms", "msec", "millisecond", "milliseconds"], 1e-3),
+    (
+        &["us", "µs", "μs", "usec", "microsecond", "microseconds"],
+        1e-6,
+    ),
+    (&["ns", "nsec", "nanosecond", "nanoseconds"], 1e-9),
+];
+/// Units of a signal. A converter's codes have one, too.
+const SIGNALS: [&str; 18] = [
+    "v",
+    "volt",
+    "volts",
+    "mv",
+    "millivolt",
+    "millivolts",
+    "uv",
+    "µv",
+    "μv",
+    "kv",
+    "value",
+    "ampl",
+    "amplitude",
+    "lsb",
+    "code",
+    "codes",
+    "count",
+    "counts",
+];
+
+/// A unit without the brackets around it, in small letters.
+fn plain(text: &str) -> String {
+    let inside = text.trim().trim_start_matches(['(', '[']);
+    inside.trim_end_matches([')', ']']).trim().to_lowercase()
+}
+
+/// Seconds in a unit of time.
+fn seconds(unit: &str) -> Option<f64> {
+    let unit = plain(unit);
+    let known = TIMES.iter().find(|(names, _)| names.contains(&&*unit));
+    known.map(|(_, seconds)| *seconds)
+}
+
+/// Seconds in the unit that the name of a column ends with: `Time (ms)`, `Time [s]`, `time_us`.
+pub(crate) fn of_name(name: &str) -> Option<f64> {
+    let last = name.rsplit(['_', ' ', '(', '[']).next()?;
+    seconds(last).filter(|_| last.len() < name.len())
+}
+
+/// What a row of units says.
+pub(crate) struct Units {
+    /// Seconds in the unit of time, where there is a column of times.
+    pub(crate) seconds: Option<f64>,
+}
+
+impl Units {
+    /// Reads a line as a row of units; nothing where it is none.
+    ///
+    /// # Errors
+    /// Where the signals have different ones, with the byte of the second.
+    pub(crate) fn of(line: &str, header: &Header) -> Result<Option<Self>, (usize, ErrorKind)> {
+        let (mut time, mut signals) = (None, vec![]);
+        for (cell, role) in Cells::new(line, header.separator).zip(&header.roles) {
+            let Ok(cell) = cell else { return Ok(None) };
+            let is_number = number(&cell.text, header.has_decimal_comma()).is_some();
+            let unit = plain(&cell.text);
+            match role {
+                _ if is_number && !matches!(role, Role::Other(_) | Role::Nameless) => {
+                    return Ok(None);
+                }
+                Role::Time => time = seconds(&unit),
+                Role::Cos | Role::Sin if SIGNALS.contains(&&*unit) => {
+                    signals.push((cell.at, unit));
+                }
+                _ => {}
+            }
+        }
+        let [(_, first), (at, second)] = &signals[..] else {
+            return Ok(None);
+        };
+        if header.roles.contains(&Role::Time) && time.is_none() {
+            return Ok(None);
+        }
+        if first != second {
+            let (first, second) = (first.clone(), second.clone());
+            return Err((*at, ErrorKind::TwoUnits { first, second }));
+        }
+        Ok(Some(Self { seconds: time }))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::of_name;
+
+    #[test]
+    fn a_name_ends_with_its_unit() {
+        for (name, seconds) in [
+            ("Time (ms)", Some(1e-3)),
+            ("Time [s]", Some(1.0)),
+            ("time_us", Some(1e-6)),
+            ("t [µs]", Some(1e-6)),
+            ("time", None),
+            ("s", None),
+            ("ms", None),
+            ("in1", None),
+        ] {
+            assert_eq!(of_name(name), seconds, "{name}");
+        }
+    }
+}
