@@ -69,8 +69,16 @@ pub(crate) fn run(args: &Diagnose) -> Result<bool> {
     drop(busy);
     crate::notes(&found.notes);
     let design = match design {
-        Some((_, text)) => Ok(text),
-        None => crate::new::fitted_text("fitted", &args.recording, &recording),
+        Some((design, text)) => {
+            crate::play::compare(&design.spec, &recording);
+            Ok(text)
+        }
+        None => crate::new::fitted_text("fitted", &args.recording, &recording).map(
+            |(text, not_held)| {
+                crate::notes(&not_held);
+                text
+            },
+        ),
     };
     let (design, outcomes) = match design {
         Ok(text) => {

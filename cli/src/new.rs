@@ -69,11 +69,7 @@ pub(crate) fn run(args: &New) -> Result<()> {
         design.budget.total(),
         periods_per_second(draft.speed_max.0)
     );
-    for (key, promise) in draft.promises() {
-        if let Some(why) = promise.missed() {
-            eprintln!("note: sensor.{key} does not hold what the recording shows: {why}");
-        }
-    }
+    crate::notes(&not_held(&draft));
     let pull_in = pull_in(&design, &BOTH_WAYS);
     if let Some(missed) = pull_in.missed() {
         eprintln!("note: {missed}; {}", pull_in.advice());
@@ -82,14 +78,27 @@ pub(crate) fn run(args: &New) -> Result<()> {
     Ok(())
 }
 
-/// The text of a design fitted to a recording.
+/// The text of a design fitted to a recording, and what it cannot promise of what the recording shows.
 ///
 /// # Errors
 /// No design can follow the recording.
-pub fn fitted_text(name: &str, file: &Path, recording: &Recording) -> Result<String> {
+pub(crate) fn fitted_text(
+    name: &str,
+    file: &Path,
+    recording: &Recording,
+) -> Result<(String, Vec<String>)> {
     let mut draft = fitted(name, file, recording, &Survey::of(recording))?;
     settle(&mut draft)?;
-    Ok(draft.toml())
+    Ok((draft.toml(), not_held(&draft)))
+}
+
+/// A sentence for each promise that does not hold what was measured.
+fn not_held(draft: &Draft) -> Vec<String> {
+    let promises = draft.promises().into_iter();
+    let said = |(key, why)| format!("sensor.{key} does not hold what the recording shows: {why}");
+    promises
+        .filter_map(|(key, promise)| Some(said((key, promise.missed()?))))
+        .collect()
 }
 
 /// The finest accuracy that the rest of the draft allows and that the bit-true chip reaches, with a tenth to spare.

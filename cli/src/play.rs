@@ -146,7 +146,9 @@ fn joins(recording: &Recording, path: &Path) -> Result<()> {
 }
 
 /// Says where recording and design do not fit each other.
-fn compare(spec: &Spec, recording: &Recording) {
+pub(crate) fn compare(spec: &Spec, recording: &Recording) {
+    /// Share of the ADC's range below which the signals are those of another unit.
+    const SMALL: f64 = 0.1;
     let (designed, recorded) = (spec.adc.sample_rate_hz, recording.metadata.sample_rate_hz);
     if (recorded / designed - 1.0).abs() > 0.01 {
         eprintln!(
@@ -165,6 +167,19 @@ fn compare(spec: &Spec, recording: &Recording) {
             "note: {clipped} of {} samples lie outside the design's ADC range {} … {} and are held at its ends; \
              `nonius new NAME --from RECORDING.csv` fits a range",
             recording.samples(),
+            spec.adc.middle - spec.adc.full_scale,
+            spec.adc.middle + spec.adc.full_scale
+        );
+        return;
+    }
+    let of_range = |v: &f64| (v - spec.adc.middle).abs() / spec.adc.full_scale;
+    let both = recording.cos.iter().chain(&recording.sin);
+    let most = both.map(of_range).fold(0.0, f64::max);
+    if most < SMALL {
+        eprintln!(
+            "note: the signals take {:.1} % of the design's ADC range {} … {}: are they in its unit? `nonius new NAME \
+             --from RECORDING.csv` fits a range",
+            100.0 * most,
             spec.adc.middle - spec.adc.full_scale,
             spec.adc.middle + spec.adc.full_scale
         );

@@ -214,3 +214,37 @@ fn a_standstill_is_refused() {
     );
     assert!(!dir.path().join("out").exists(), "half-written");
 }
+
+/// A design with another converter runs on these signals only in another unit, or not at all, and that is said.
+#[test]
+fn a_design_of_another_converter_is_told() {
+    let dir = tempfile::tempdir().expect("scratch");
+    done(dir.path(), &["new", "d"]);
+    let mut noise = noise();
+    for (scale, said) in [
+        (
+            8000.0,
+            "4000 of 4000 samples lie outside the design's ADC range -1 … 1",
+        ),
+        (
+            0.004,
+            "the signals take 0.4 % of the design's ADC range -1 … 1",
+        ),
+        (0.8, ""),
+    ] {
+        let mut text = String::from("time_s,cos,sin\n");
+        for k in 0..4000 {
+            let t = f64::from(k) * 1e-6;
+            let alpha = 3e4 * t;
+            let [c, s] = [alpha.cos(), alpha.sin()].map(|v| scale * (v + 0.001 * noise()));
+            text += &format!("{t:.6},{c:.7},{s:.7}\n");
+        }
+        fs::write(dir.path().join("r.csv"), text).expect("recording");
+        let call = ["diagnose", "r.csv", "-o", "o", "--design", "d.toml"];
+        let output = nonius(dir.path(), &call);
+        assert!(output.status.success());
+        let stderr = String::from_utf8_lossy(&output.stderr);
+        assert!(stderr.contains(said), "{stderr}");
+        assert_eq!(stderr.contains("ADC range"), !said.is_empty(), "{stderr}");
+    }
+}

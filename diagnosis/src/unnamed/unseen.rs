@@ -60,6 +60,11 @@ pub fn unseen(context: &Context) -> Vec<String> {
             "at this constant speed, channel_skew, bandwidth_mismatch, common_bandwidth and delayed_crosstalk look like phase and gain errors, harmonics like lines, and amplitude_noise and clock_jitter like white noise; record several speeds",
         );
     }
+    if !speed_varies(context) && context.against_reference.is_some() {
+        tell(
+            "at this constant speed, a latency looks like the angle between the sensor and its reference; record several speeds",
+        );
+    }
     if !(moves(1.0) && moves(-1.0)) {
         tell("in one direction, hysteresis looks like an offset; reverse");
     }

@@ -2,7 +2,7 @@
 
 use nonius_diagnosis::{Cause, Diagnosis, unseen};
 
-use crate::harness::{Case, NOISE, PLAIN, arc, damaged, diagnosed, finds};
+use crate::harness::{Case, NOISE, PLAIN, arc, damaged, diagnosed, evenly, finds};
 
 /// Numbers have units and prefixes, nouns agree with them, causes are written as people do, and no sentence ends.
 pub(crate) fn well_said(found: &Diagnosis) {
@@ -138,4 +138,11 @@ fn what_cannot_be_seen_is_true() {
         !moving.contains("clock_jitter") && !moving.contains("hysteresis"),
         "{moving}"
     );
+    let beside = Case {
+        reference: true,
+        ..PLAIN
+    };
+    let late = "a latency looks like the angle between";
+    assert!(said(&evenly(&beside, 40.0, 1)).contains(late));
+    assert!(!said(&diagnosed(&beside, 1)).contains(late));
 }
