@@ -69,7 +69,7 @@ pub(crate) fn run(args: &New) -> Result<()> {
         design.budget.total(),
         periods_per_second(draft.speed_max.0)
     );
-    crate::notes(&not_held(&draft));
+    crate::notes(not_held(&draft));
     let pull_in = pull_in(&design, &BOTH_WAYS);
     if let Some(missed) = pull_in.missed() {
         eprintln!("note: {missed}; {}", pull_in.advice());
