@@ -66,7 +66,7 @@ pub struct Context {
     pub against_reference: Option<Vec<f64>>,
     /// 1 where a sample counts, 0 where it is left out.
     pub weight: Vec<f64>,
-    /// Samples that are left out because one channel is clipped.
+    /// Samples that are left out where a channel is clipped.
     pub(crate) clipped: Vec<Clipped>,
     /// ADC codes.
     pub codes: [Vec<i64>; 2],
@@ -168,7 +168,9 @@ impl Context {
             top_speed: f64::MIN_POSITIVE,
         };
         let pairs = recording.cos.iter().zip(&recording.sin);
-        let (c, s) = pairs.map(|(c, s)| this.ellipse.corrected(*c, *s)).unzip();
+        let pairs = pairs.map(|(c, s)| this.ellipse.corrected(*c, *s));
+        let (mut c, mut s): (Vec<f64>, Vec<f64>) = pairs.unzip();
+        this.complete(&mut c, &mut s, &[]);
         this.set_pair(c, s, recording.reference_rad.as_deref());
         Ok(this)
     }
@@ -208,12 +210,8 @@ impl Context {
     }
 
     /// Takes another corrected pair, and follows its angle.
-    pub fn set_pair(&mut self, mut c: Vec<f64>, mut s: Vec<f64>, reference: Option<&[f64]>) {
+    pub fn set_pair(&mut self, c: Vec<f64>, s: Vec<f64>, reference: Option<&[f64]>) {
         let n = c.len();
-        for clipped in &self.clipped {
-            let k = clipped.sample;
-            [c[k], s[k]] = clipped.pair([c[k], s[k]], self.ellipse.beta);
-        }
         let tells = self.tells();
         let mut angle: Vec<f64> = c.iter().zip(&s).map(|(c, s)| s.atan2(*c)).collect();
         // Bad samples take their neighbour's angle, but for many in a row: those were filled along the ellipse, and periods pass
@@ -227,15 +225,18 @@ impl Context {
             }
         }
         self.measured = unwrapped(angle);
+        let mut angle = std::mem::take(&mut self.measured);
+        self.bridge_rails(&mut angle);
+        self.measured = angle;
         (self.c, self.s) = (c, s);
         if self.spline.is_none() {
             let per = self.periods_per_revolution;
-            let (angle, weight) = (&self.measured, &self.weight);
+            let (angle, weight) = (&self.measured, &tells);
             let spacing = match reference {
                 Some(_) => knots::spacing(angle, weight, per, Told::ByReference),
                 None => in_step::spacing(angle, &self.radial(), weight, per),
             };
-            let make = |spacing: f64| Spline::new(n, spacing, weight);
+            let make = |spacing: f64| Spline::new(n, spacing, &self.weight);
             self.spline = Some(make(spacing.motion));
             let finer = spacing.followed < spacing.motion;
             self.finer = finer.then(|| make(spacing.followed));
@@ -248,11 +249,7 @@ impl Context {
         });
         self.shaking = self.shown_by_reference();
         if let Some(spline) = self.finer.as_ref().or(self.spline.as_ref()) {
-            let slow: Vec<f64> = self.slow();
-            let there =
-                (!self.clipped.is_empty()).then(|| Spline::new(n, spline.spacing(), &tells));
-            let spline = there.as_ref().unwrap_or(spline);
-            let fit = spline.fit(&slow, &tells);
+            let (spline, fit) = self.fitted(spline, &self.slow());
             let rate = self.rate;
             let fast: Vec<f64> = self.fast_motion().collect();
             let smooth = spline.values(&fit).into_iter().zip(&fast);
@@ -277,7 +274,8 @@ impl Context {
         let (Some(_), Some(motion)) = (&self.finer, &self.spline) else {
             return self.acceleration.clone();
         };
-        let speed = motion.derivative(&motion.fit(&self.slow(), &self.weight));
+        let (motion, fit) = self.fitted(motion, &self.slow());
+        let speed = motion.derivative(&fit);
         let per_sample = gradient(&speed).into_iter();
         per_sample.map(|a| a * self.rate * self.rate).collect()
     }
@@ -332,13 +330,6 @@ impl Context {
         }
     }
 
-    /// 1 where a sample tells the angle: one of which a single channel is clipped does.
-    pub(crate) fn tells(&self) -> Vec<f64> {
-        let mut tells = self.weight.clone();
-        self.clipped.iter().for_each(|one| tells[one.sample] = 1.0);
-        tells
-    }
-
     /// The angle of the pair without known fast motion, radians.
     fn slow(&self) -> Vec<f64> {
         let pairs = self.measured.iter().zip(self.fast_motion());
@@ -391,6 +382,7 @@ impl Context {
             s.push(y - r * sin - t * cos);
         }
         self.fast = known.fast;
+        self.complete(&mut c, &mut s, &known.angle);
         self.set_pair(c, s, reference);
     }
 }

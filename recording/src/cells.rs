@@ -35,7 +35,9 @@ impl<'a> Cells<'a> {
     /// The cell from byte `from` on, and where the cell after it begins.
     fn cell(&self, from: usize) -> Result<(Cell<'a>, Option<usize>), Unclosed> {
         let rest = &self.line[from..];
-        let at = from + (rest.len() - rest.trim_start().len());
+        // A tab may be the separator.
+        let blank = |c: char| c.is_whitespace() && c != self.separator;
+        let at = from + (rest.len() - rest.trim_start_matches(blank).len());
         // The end of the quoted part: a separator counts only behind it.
         let body = match self.line[at..].strip_prefix('"') {
             Some(quoted) => at + 1 + closing_quote(quoted).ok_or(Unclosed(at))? + 1,

@@ -37,11 +37,12 @@ impl Header {
     ) -> Result<Self, Error> {
         let separator = separator(line).map_err(|(at, kind)| lines.error(at, kind))?;
         let mut names: Vec<String> = Vec::new();
+        let mut twice = None;
         for cell in Cells::new(line, separator) {
             let cell = cell.map_err(|open| lines.error(open.0, ErrorKind::UnclosedQuote))?;
             let name = cell.text.into_owned();
             if !name.is_empty() && names.contains(&name) {
-                return Err(lines.error(cell.at, ErrorKind::DuplicateColumn { name }));
+                twice.get_or_insert((cell.at, name.clone()));
             }
             names.push(name);
         }
@@ -51,6 +52,9 @@ impl Header {
         }
         let place = Place::line(&lines.file, lines.number);
         let roles = roles(&names, overrides, &place)?;
+        if let Some((at, name)) = twice {
+            return Err(lines.error(at, ErrorKind::DuplicateColumn { name }));
+        }
         Ok(Self {
             separator,
             names,
@@ -113,7 +117,7 @@ fn separator(line: &str) -> Result<char, (usize, ErrorKind)> {
 }
 
 /// Name of the column of times, in seconds.
-pub(crate) const USUAL_TIME: &str = "time_s";
+const USUAL_TIME: &str = "time_s";
 
 fn roles(names: &[String], overrides: &Overrides, place: &Place) -> Result<Vec<Role>, Error> {
     let refuse = |kind| Err(Error::new(place.clone(), kind));
@@ -133,9 +137,13 @@ fn roles(names: &[String], overrides: &Overrides, place: &Place) -> Result<Vec<R
         (temperature, Role::Temperature),
     ];
     for (column, role) in fixed {
-        if let Some(column) = column {
-            roles[column] = role;
+        let Some(column) = column else { continue };
+        if roles[column] != Role::Nameless {
+            let name = names[column].clone();
+            let option = "--time";
+            return refuse(ErrorKind::ReservedColumn { name, option });
         }
+        roles[column] = role;
     }
     let signals = [
         (Role::Cos, "--cos", "cos", &overrides.cos_column),

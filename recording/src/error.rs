@@ -143,18 +143,18 @@ pub enum ErrorKind {
         "neither a column time_s nor a sample rate; name the column of times with --time COLUMN, or give --sample-rate RATE or the line `# sample_rate_hz: RATE`"
     )]
     NoRate,
-    #[error("time_s runs back from {previous} to {time}; {hint}")]
+    #[error("the time runs back from {previous} to {time} s; {hint}")]
     TimeBack {
         previous: f64,
         time: f64,
         hint: String,
     },
     #[error(
-        "time_s stands still at {time} while the sample changes; expected a later time: write time_s with more digits, or leave it out and give --sample-rate"
+        "the time stands still at {time} s while the sample changes; expected a later one: write times with more digits, or leave them out and give --sample-rate"
     )]
     TimeStill { time: f64 },
     #[error(
-        "time_s gives no usable sample rate (the time from sample to sample is {interval} s); check its unit"
+        "the times give no usable sample rate (the time from sample to sample is {interval} s); check its unit"
     )]
     NoInterval { interval: f64 },
     #[error(

@@ -2,7 +2,7 @@
 
 use std::io::BufRead;
 
-use crate::columns::{Header, Role, USUAL_TIME};
+use crate::columns::{Header, Role};
 use crate::declared::{self, Declared, Overrides};
 use crate::error::{Error, ErrorKind, Place};
 use crate::lines::Lines;
@@ -31,12 +31,18 @@ pub(crate) fn read(
     let own = time.as_deref().and_then(units::of_name);
     let mut table = Table::new(&header, lines.number, own.unwrap_or(1.0));
     let mut unit = own.is_some();
+    // A row of units is the first that is not blank.
     let mut first = true;
     while let Some(line) = lines.next()? {
-        if std::mem::take(&mut first) {
+        if first && !is_blank(line) {
+            first = false;
             match Units::of(line, &header) {
                 Ok(None) => {}
                 Ok(Some(units)) => {
+                    if own.is_some() && own != units.seconds && units.seconds.is_some() {
+                        let note = "the row of units has another unit of time than the name of its column, and is taken";
+                        declared.notes.push(note.into());
+                    }
                     unit |= units.seconds.is_some();
                     table.take_units(&units);
                     continue;
@@ -48,7 +54,7 @@ pub(crate) fn read(
             .take(line, &header)
             .map_err(|(at, kind)| lines.error(at, kind))?;
     }
-    if let Some(time) = time.filter(|time| !unit && time != USUAL_TIME) {
+    if let Some(time) = time.filter(|_| !unit) {
         let note = format!("the column '{time}' has no unit and is taken to be in seconds");
         declared.notes.push(note);
     }
@@ -68,10 +74,8 @@ fn head<R: BufRead>(
         if refused.as_ref().is_some_and(too_far) {
             break;
         }
-        let line = match lines.next() {
-            Ok(Some(line)) => line.to_owned(),
-            Ok(None) => break,
-            Err(error) => return Err(refused.map_or(error, |refused| refused.error)),
+        let Some(line) = lines.next()?.map(str::to_owned) else {
+            break;
         };
         // A spreadsheet may have put quotes around the whole line.
         let text = line.trim_start_matches([' ', '\t', '"']);
@@ -93,7 +97,7 @@ fn head<R: BufRead>(
                 Some(columns) => {
                     refused = Some(Refused::or(refused, error, columns, lines.number));
                 }
-                None => return Err(refused.map_or(error, |refused| refused.error)),
+                None => return Err(error),
             },
         }
     }
@@ -134,7 +138,7 @@ impl Refused {
         } else {
             format!("lines {first} to {last} were")
         };
-        format!("the header is line {header}: {not_read} not read")
+        format!("the header is line {header}: {not_read} not read, but for `# key: value`")
     }
 }
 
@@ -142,9 +146,7 @@ impl Refused {
 fn columns(error: &Error) -> Option<usize> {
     match &*error.kind {
         ErrorKind::MissingColumn { present, .. } => Some(present.len()),
-        ErrorKind::UnknownSeparator { .. }
-        | ErrorKind::DuplicateColumn { .. }
-        | ErrorKind::NoHeader => Some(1),
+        ErrorKind::UnknownSeparator { .. } | ErrorKind::NoHeader => Some(1),
         _ => None,
     }
 }

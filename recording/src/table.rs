@@ -246,7 +246,7 @@ fn hint(cell: &str, comma: bool) -> &'static str {
     if cell.is_empty() {
         "the cell is empty: fill it or remove the row"
     } else if cell.contains(',') && !comma {
-        "a decimal comma needs `;` between the columns"
+        "a decimal comma needs `;` or tabs between the columns"
     } else if cell.contains(',') {
         "expected one decimal comma or point, and nothing between the thousands"
     } else {
@@ -258,7 +258,7 @@ fn ragged(line: &str, header: &Header) -> ErrorKind {
     let expected = header.roles.len();
     let found = Cells::new(line, header.separator).count();
     let hint = if header.separator == ',' && found == 2 * expected {
-        "numbers with a decimal comma need `;` between the columns"
+        "numbers with a decimal comma need `;` or tabs between the columns"
     } else if line.contains(';') && header.separator == ',' {
         "the header has `,` between the columns and this row `;`: use one of them"
     } else if found > expected {

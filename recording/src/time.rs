@@ -90,7 +90,7 @@ pub(crate) fn uneven(time: &[f64], interval: f64) -> Option<String> {
     let lengths: std::collections::HashSet<i64> = lengths.collect();
     let share = 100.0 * rms / interval;
     (lengths.len() > ROUNDED).then(|| {
-        format!("time_s strays from equal steps by {share:.0} % of a step rms; the samples are taken as equally far apart in time")
+        format!("the time strays from equal steps by {share:.0} % of a step rms; the samples are taken as equally far apart in time")
     })
 }
 
@@ -99,7 +99,9 @@ pub(crate) fn disagreement(declared: f64, from_time: f64) -> Option<String> {
     let apart = (declared / from_time - 1.0).abs();
     (apart > AGREE).then(|| {
         let [from_time, declared] = [from_time, declared].map(crate::estimate::tidy);
-        format!("time_s and sample_rate_hz disagree: {from_time} Hz and {declared} Hz; time_s wins")
+        format!(
+            "times and sample_rate_hz disagree: {from_time} Hz and {declared} Hz; the times win"
+        )
     })
 }
 
@@ -119,7 +121,7 @@ mod tests {
         let note = disagreement(100.0, 120.0).expect("a note");
         assert_eq!(
             note,
-            "time_s and sample_rate_hz disagree: 120 Hz and 100 Hz; time_s wins"
+            "times and sample_rate_hz disagree: 120 Hz and 100 Hz; the times win"
         );
     }
 

@@ -15,7 +15,11 @@ const TIMES: [(&[&str], f64); 4] = [
     (&["ns", "nsec", "nanosecond", "nanoseconds"], 1e-9),
 ];
 /// Units of a signal. A converter's codes have one, too.
-const SIGNALS: [&str; 18] = [
+const SIGNALS: [&str; 22] = [
+    "a",
+    "ma",
+    "ua",
+    "µa",
     "v",
     "volt",
     "volts",
@@ -49,9 +53,9 @@ fn seconds(unit: &str) -> Option<f64> {
     known.map(|(_, seconds)| *seconds)
 }
 
-/// Seconds in the unit that the name of a column ends with: `Time (ms)`, `Time [s]`, `time_us`.
+/// Seconds in the unit that the name of a column ends with: `Time (ms)`, `Time [s]`, `t/ms`, `time_us`.
 pub(crate) fn of_name(name: &str) -> Option<f64> {
-    let last = name.rsplit(['_', ' ', '(', '[']).next()?;
+    let last = name.rsplit(['_', ' ', '/', '(', '[']).next()?;
     seconds(last).filter(|_| last.len() < name.len())
 }
 
@@ -108,6 +112,7 @@ mod tests {
             ("Time [s]", Some(1.0)),
             ("time_us", Some(1e-6)),
             ("t [µs]", Some(1e-6)),
+            ("t/ms", Some(1e-3)),
             ("time", None),
             ("s", None),
             ("ms", None),

@@ -67,7 +67,7 @@ fn lines_about_the_instrument_come_first() {
     let text = format!("{head}TIME,CH1,CH2\n{body}");
     let notes = is_read(&text, &columns(Some("TIME"), "CH1", "CH2"));
     let said = [
-        "the header is line 6: lines 1 to 5 were not read",
+        "the header is line 6: lines 1 to 5 were not read, but for `# key: value`",
         "the column 'TIME' has no unit and is taken to be in seconds",
     ];
     assert_eq!(notes, said);
@@ -92,10 +92,16 @@ fn both() {
         "Record Length,100,,\nVertical Units,V,V\nSource,CH1,CH2\nSecond,Volt,Volt\n{body}"
     );
     let notes = is_read(&text, &columns(Some("Source"), "CH1", "CH2"));
-    assert_eq!(notes, ["the header is line 3: lines 1 to 2 were not read"]);
+    assert_eq!(
+        notes,
+        ["the header is line 3: lines 1 to 2 were not read, but for `# key: value`"]
+    );
     let one = text.replacen("Record Length,100,,\n", "", 1);
     let notes = is_read(&one, &columns(Some("Source"), "CH1", "CH2"));
-    assert_eq!(notes, ["the header is line 2: line 1 was not read"]);
+    assert_eq!(
+        notes,
+        ["the header is line 2: line 1 was not read, but for `# key: value`"]
+    );
     let text = format!("x-axis,1,2\nsecond,Volt,Volt\n{body}");
     assert!(is_read(&text, &columns(Some("x-axis"), "1", "2")).is_empty());
 }
@@ -110,6 +116,37 @@ fn units_in_the_names() {
     }
     let text = format!("in us,C1 in V,C2 in V\n{body}");
     is_read(&text, &columns(Some("in us"), "C1 in V", "C2 in V"));
+}
+
+/// What stands in the way of the header is told, and not that an earlier line is none.
+#[test]
+fn what_is_wrong_behind_a_preamble() {
+    let body = rows(|_, t, c, s| format!("{t:.4},{c:.4},{s:.4}"));
+    let with = |head: &str| {
+        let overrides = columns(Some("TIME"), "CH1", "CH2");
+        read(&format!("Model,X1\n{head}\n{body}"), &overrides).expect_err("refused")
+    };
+    let error = with("TIME,CH1,CH2,Label,Label");
+    assert!(
+        error.starts_with("r.csv:2:20: the column 'Label' is there twice"),
+        "{error}"
+    );
+    let error = with("TIME,\"CH1,CH2");
+    assert!(error.starts_with("r.csv:2:6: the quote"), "{error}");
+    let bytes = [&b"Model,X1\nTIME,CH1 (\xB5V),CH2\n"[..], body.as_bytes()].concat();
+    let read = Recording::read_from(&bytes[..], "r.csv", &columns(Some("TIME"), "CH1", "CH2"));
+    let error = read.expect_err("Latin-1").to_string();
+    assert!(
+        error.starts_with("r.csv:2:11: the text is not UTF-8"),
+        "{error}"
+    );
+}
+
+#[test]
+fn tabs_and_empty_cells() {
+    let body = rows(|_, t, c, s| format!("{t:.4}\t\t\"{c:.4}\"\t{s:.4}\t 7"));
+    let text = format!("time_s\tnote\tcos\tsin\tother\n{body}");
+    assert!(is_read(&text, &Overrides::default()).is_empty());
 }
 
 #[test]
@@ -152,9 +189,19 @@ fn what_is_no_row_of_units_is_a_wrong_row() {
         error.contains("no column 'when'") && error.contains("--time COLUMN"),
         "{error}"
     );
-    let error = read(
-        &format!("time_s,cos,sin\n{body}"),
-        &columns(Some("cos"), "cos", "sin"),
+    for (name, option) in [("cos", "--cos"), ("reference_rad", "--time")] {
+        let text = format!("reference_rad,cos,sin\n{body}");
+        let error = read(&text, &columns(Some(name), "cos", "sin")).expect_err("twice");
+        let said =
+            format!("the column '{name}' has a fixed meaning; give another column with {option}");
+        assert!(error.contains(&said), "{error}");
+    }
+    let text = format!("Time (s),cos,sin\nms,V,V\n{body}");
+    let notes = read(&text, &columns(Some("Time (s)"), "cos", "sin"))
+        .expect("milliseconds")
+        .notes;
+    assert!(
+        notes[0].contains("another unit of time than the name"),
+        "{notes:?}"
     );
-    assert!(error.expect_err("twice").contains("has a fixed meaning"));
 }

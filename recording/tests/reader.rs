@@ -105,7 +105,7 @@ fn the_rate_serves_where_there_is_no_time() {
 fn time_wins_over_the_rate_and_says_so() {
     let recording = read(&plain("# sample_rate_hz: 120\n"));
     assert_eq!(recording.metadata.sample_rate_hz, 100.0);
-    let said = "time_s and sample_rate_hz disagree: 100 Hz and 120 Hz; time_s wins";
+    let said = "times and sample_rate_hz disagree: 100 Hz and 120 Hz; the times win";
     assert_eq!(recording.notes[0], said);
     assert_eq!(read(&plain("# sample_rate_hz: 100\n")).notes.len(), 1);
 }

@@ -105,18 +105,18 @@ fn rows() {
 fn time() {
     assert_refused(
         with_line(5, "0.01,0.5,1"),
-        "r.csv:5:1: time_s runs back from 0.02",
+        "r.csv:5:1: the time runs back from 0.02",
         "goes forward",
     );
     assert_refused(
         with_line(5, "0.02,0.5,1"),
-        "r.csv:5:1: time_s stands still",
+        "r.csv:5:1: the time stands still",
         "--sample-rate",
     );
     let twice = good() + good().split_once('\n').expect("a header").1;
     assert_refused(
         twice,
-        "r.csv:42:1: time_s runs back from 0.39 to 0",
+        "r.csv:42:1: the time runs back from 0.39 to 0",
         "several records",
     );
     assert_refused(

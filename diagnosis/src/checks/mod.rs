@@ -37,7 +37,7 @@ pub(crate) struct Checked {
     pub(crate) repeated: Vec<usize>,
     /// Those of them that were put in: what follows is late by one each.
     pub(crate) extra: Vec<usize>,
-    /// Samples at which one channel is clipped.
+    /// Samples that are left out where a channel is clipped.
     pub(crate) clipped: Vec<Clipped>,
     /// The ellipse of all samples, where one can be fitted; made when it is asked for.
     ellipse: OnceCell<Option<Ellipse>>,

@@ -2,11 +2,12 @@
 //! lowest code comes far more often than the ones beside it, every time that the signal passes there. What is clipped says
 //! nothing but where the rail is: it is left out, the angle is the other channel's there, and the rest of the signals is as it was.
 
+use nonius_calibration::Ellipse;
 use nonius_quantity::{agree, counted};
 use nonius_recording::{Adc, Recording};
 
 use crate::checks::{Checked, first};
-use crate::clipped::Clipped;
+use crate::clipped::{AtRail, By, Clipped, KNOWS};
 use crate::finding::{Cause, Finding, Parameter, Place};
 use crate::numerics::ends::{ends, span};
 
@@ -20,7 +21,7 @@ const MOVES: f64 = 0.03;
 const PASSES: usize = 4;
 const SAMPLES: usize = 20;
 /// Share of the samples that may be left out: what is clipped more is seen by its shape.
-const MOST: f64 = 0.5;
+const MOST: f64 = 0.75;
 /// Part of its width by which more is left out on either side of what is clipped.
 const WIDER: f64 = 0.05;
 /// Single rails, as the catalogue calls them.
@@ -99,7 +100,7 @@ fn rail(
 }
 
 /// Leaves out what is clipped, by the other channel, so that noise has no say in it: the samples there, and those beside them.
-fn leave_out(recording: &Recording, rail: &Rail, weight: &mut [f64]) -> Vec<Clipped> {
+fn leave_out(recording: &Recording, rail: &Rail, weight: &mut [f64]) -> Vec<usize> {
     let own = [&recording.cos, &recording.sin][rail.channel];
     let other = [&recording.sin, &recording.cos][rail.channel];
     let mut values: Vec<f64> = rail.clipped.iter().map(|k| other[*k]).collect();
@@ -112,18 +113,38 @@ fn leave_out(recording: &Recording, rail: &Rail, weight: &mut [f64]) -> Vec<Clip
     let sound: Vec<usize> = (0..weight.len()).filter(|k| weight[*k] > 0.0).collect();
     let [low, high] = ends(sound.iter().map(|k| own[*k]));
     let middle = (low + high) / 2.0;
-    let mut clipped = vec![];
-    for k in sound {
-        if range.contains(&other[k]) && (own[k] < middle) == rail.lower {
-            weight[k] = 0.0;
-            clipped.push(Clipped {
-                sample: k,
-                channel: rail.channel,
-                lower: rail.lower,
-            });
+    let near = |k: &usize| range.contains(&other[*k]) && (own[*k] < middle) == rail.lower;
+    let left_out: Vec<usize> = sound.into_iter().filter(near).collect();
+    left_out.iter().for_each(|k| weight[*k] = 0.0);
+    left_out
+}
+
+/// Samples that are left out, and what tells their angle.
+fn told(recording: &Recording, rails: &[Rail], left_out: &[usize], e: &Ellipse) -> Vec<Clipped> {
+    let mut at: Vec<Vec<AtRail>> = vec![vec![]; recording.samples()];
+    for rail in rails {
+        let (channel, lower) = (rail.channel, rail.lower);
+        for k in &rail.clipped {
+            at[*k].push(AtRail { channel, lower });
         }
     }
-    clipped
+    let knows = |rail: &AtRail, k: usize| {
+        let other = match rail.channel {
+            0 => (recording.sin[k] - e.b_s) / e.a_s,
+            _ => (recording.cos[k] - e.b_c) / e.a_c,
+        };
+        other.abs() < KNOWS
+    };
+    let by = |k: usize| match at[k][..] {
+        [] => By::Both,
+        [rail] if knows(&rail, k) => By::Other(rail),
+        _ => By::Neighbours,
+    };
+    let all = left_out.iter().map(|sample| Clipped {
+        sample: *sample,
+        by: by(*sample),
+    });
+    all.collect()
 }
 
 /// What is said of a rail; `offset` and `amplitude` are those of its channel.
@@ -194,9 +215,8 @@ pub(super) fn rails(recording: &Recording, checked: &mut Checked) {
         }
     }
     let mut without = weight.clone();
-    let each: Vec<Vec<Clipped>> = (found.iter())
-        .map(|rail| leave_out(recording, rail, &mut without))
-        .collect();
+    let mut left_out = |rail| leave_out(recording, rail, &mut without);
+    let left_out: Vec<Vec<usize>> = found.iter().map(&mut left_out).collect();
     let left = without.iter().filter(|w| **w > 0.0).count();
     if found.is_empty() || (left as f64) < (1.0 - MOST) * sound.len() as f64 {
         return;
@@ -206,7 +226,7 @@ pub(super) fn rails(recording: &Recording, checked: &mut Checked) {
     };
     checked.weight = without;
     let adc = recording.metadata.adc;
-    for (rail, left_out) in found.iter().zip(each) {
+    for (rail, left_out) in found.iter().zip(&left_out) {
         let (adc, offset, amplitude) = if rail.channel == 0 {
             (&adc.cos, e.b_c, e.a_c)
         } else {
@@ -214,6 +234,6 @@ pub(super) fn rails(recording: &Recording, checked: &mut Checked) {
         };
         let finding = finding(rail, adc, offset, amplitude, left_out.len());
         checked.findings.push(finding);
-        checked.clipped.extend(left_out);
     }
+    checked.clipped = told(recording, &found, &left_out.concat(), &e);
 }

@@ -10,7 +10,7 @@ use crate::context::{Context, ContextError};
 pub(crate) struct Repaired {
     pub(crate) recording: Recording,
     pub(crate) weight: Vec<f64>,
-    /// Samples at which one channel is clipped.
+    /// Samples that are left out where a channel is clipped.
     pub(crate) clipped: Vec<Clipped>,
     /// One per sample of the original.
     pub(crate) place: Vec<usize>,

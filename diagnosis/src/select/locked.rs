@@ -17,7 +17,7 @@ const OF_REVOLUTION: i32 = 4;
 /// Orders of a motion to and fro.
 const OF_MOTION: u32 = 12;
 /// Fewest scale periods, so that hardly a line stands at their orders by chance.
-const FEWEST: f64 = 50.0;
+const PERIODS: f64 = 50.0;
 /// Fewest times that a motion comes again.
 const AGAIN: f64 = 2.0;
 /// So many times as far as a line may be off its place the next one is, so that hardly a line stands there by chance.
@@ -123,7 +123,7 @@ fn stands_at(
 ) -> bool {
     // Vibration too: where it goes with the angle it may be an error of the sensor.
     let line = candidate.domain == Domain::Line || candidate.name == Cause::Vibration;
-    let many = context.periods_travelled() > FEWEST;
+    let many = context.periods_travelled() > PERIODS;
     let told = line && many && !causes::speed_varies_much(context);
     let Some(hertz) = candidate.inner().filter(|_| told) else {
         return false;

@@ -28,7 +28,7 @@ pub fn unseen(context: &Context) -> Vec<String> {
     let samples = context.samples();
     if samples < FEWEST {
         tell(&format!(
-            "of {samples} samples, fewer than {FEWEST}, no cause is named but what the codes themselves show; record more"
+            "of {samples} samples, fewer than {FEWEST}, no cause is named but what codes and times themselves show; record more"
         ));
     }
     let travelled = context.periods_travelled();

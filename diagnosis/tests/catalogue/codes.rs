@@ -254,32 +254,66 @@ fn positions_where_a_channel_is_clipped() {
         let (stop, on) = ((t / 0.1).floor(), (t % 0.1 / 0.06).min(1.0));
         20.0 * (stop + on * on * (3.0 - 2.0 * on))
     }
-    let clipped = Seen {
-        periods: stopping,
-        code: |code, which| if which == 0 { code.min(6500) } else { code },
-        ..PLAIN
-    };
-    is_named(&clipped, &[Cause::Saturation]);
-    let recording = recorded(&clipped, 0);
-    let found = diagnosed(&clipped, 0);
-    let truth = recording.time_s.iter().map(|t| stopping(*t));
-    let errors = found.positions.iter().zip(truth).map(|(p, t)| p - t);
-    let errors: Vec<f64> = errors.map(|e| e - e.round()).collect();
-    let at_rail = |k: &usize| recording.cos[*k] >= 6500.0 / 8192.0;
-    let rms = |of: &dyn Fn(&usize) -> bool| {
-        let squares = (0..errors.len()).filter(of).map(|k| errors[k].powi(2));
-        let (sum, count) = squares.fold((0.0, 0), |(sum, n), square| (sum + square, n + 1));
-        assert!(count > 1000);
-        (sum / f64::from(count)).sqrt()
-    };
-    let (inside, outside) = (rms(&at_rail), rms(&|k| !at_rail(k)));
-    assert!(inside < 1.2 * outside, "{inside} {outside}");
-    let sensor = nonius_diagnosis::sensor_toml(&found, &recording);
-    let fastest = sensor
-        .lines()
-        .find_map(|line| line.strip_prefix("speed_max_periods_per_s = "));
-    let fastest: f64 = fastest.and_then(|v| v.parse().ok()).expect("a speed");
-    assert!((fastest / 500.0 - 1.0).abs() < 0.02, "{fastest}");
+    // Far up, and so low that the other channel is near its own peak where this one comes off its rail.
+    let cuts: [(Seen, usize, f64, f64); 3] = [
+        (
+            Seen {
+                periods: stopping,
+                code: |code, which| [code.min(6500), code][which],
+                ..PLAIN
+            },
+            0,
+            6500.0,
+            500.0,
+        ),
+        (
+            Seen {
+                periods: reversing,
+                code: |code, which| [code.min(3200), code][which],
+                ..PLAIN
+            },
+            0,
+            3200.0,
+            45.4,
+        ),
+        (
+            Seen {
+                periods: reversing,
+                code: |code, which| [code, code.max(-4000)][which],
+                ..PLAIN
+            },
+            1,
+            -4000.0,
+            45.4,
+        ),
+    ];
+    for (clipped, which, rail, top) in cuts {
+        is_named(&clipped, &[Cause::Saturation]);
+        let recording = recorded(&clipped, 0);
+        let found = diagnosed(&clipped, 0);
+        let truth = recording.time_s.iter().map(|t| (clipped.periods)(*t));
+        let errors = found.positions.iter().zip(truth).map(|(p, t)| p - t);
+        let errors: Vec<f64> = errors.map(|e| e - e.round()).collect();
+        let channel = [&recording.cos, &recording.sin][which];
+        let at_rail = |k: &usize| channel[*k] == rail / 8192.0;
+        let rms = |of: &dyn Fn(&usize) -> bool| {
+            let squares = (0..errors.len()).filter(of).map(|k| errors[k].powi(2));
+            let (sum, count) = squares.fold((0.0, 0), |(sum, n), square| (sum + square, n + 1));
+            assert!(count > 1000);
+            (sum / f64::from(count)).sqrt()
+        };
+        let (inside, outside) = (rms(&at_rail), rms(&|k| !at_rail(k)));
+        let noise = PLAIN.noise / AMPLITUDES[1] / TAU;
+        assert!(
+            inside < 1.5 * noise && outside < 1.1 * noise,
+            "{rail}: {inside} {outside}"
+        );
+        let sensor = nonius_diagnosis::sensor_toml(&found, &recording);
+        let mut lines = sensor.lines();
+        let fastest = lines.find_map(|line| line.strip_prefix("speed_max_periods_per_s = "));
+        let fastest: f64 = fastest.and_then(|v| v.parse().ok()).expect("a speed");
+        assert!((fastest / top - 1.0).abs() < 0.02, "{rail}: {fastest}");
+    }
 }
 
 /// A converter that errs smoothly over its codes: several bends together follow it, none of them does, and at one speed its high
@@ -302,5 +336,27 @@ fn a_smooth_error_of_a_converter_is_neither_bends_nor_a_vibration() {
             assert_eq!(names(&found), []);
             assert!(found.unexplained.significant);
         }
+    }
+}
+
+/// Rails that offsets move apart are as many saturations, and each has its name: none is most of what they explain.
+#[test]
+fn rails_that_offsets_move_apart() {
+    let soft = Seen {
+        periods: reversing,
+        code: |code, which| {
+            let (lower, upper) = [(-6000, 5600), (-5500, 6000)][which];
+            let inside = code.clamp(lower, upper);
+            inside + (code - inside) * 3 / 5
+        },
+        ..PLAIN
+    };
+    for seed in 0..3 {
+        let named = names(&diagnosed(&soft, seed));
+        assert!(named.len() > 1, "{named:?}");
+        assert!(
+            named.iter().all(|name| *name == Cause::Saturation),
+            "{named:?}"
+        );
     }
 }

@@ -3,12 +3,14 @@
 mod calibration;
 mod correction;
 mod large;
+mod method;
 mod overrides;
 mod place;
 mod read;
 
-pub use calibration::{Calibration, CalibrationMethod, CalibrationStart};
+pub use calibration::Calibration;
 pub use correction::{Correction, Harmonic};
+pub use method::{CalibrationMethod, CalibrationStart};
 pub use overrides::Overrides;
 pub use place::Place;
 pub use read::{SpecError, keys};
