@@ -49,7 +49,15 @@ pub(crate) fn conclude(
         }
         found
     };
-    let mut findings = beside(&checked.findings, held_before, position_before);
+    let ellipse = exact::ellipse(&system.context.ellipse, &extended.fit.solution.x);
+    let mut digital = checked.findings.clone();
+    for finding in &mut digital {
+        // Where a rail is depends on the offset and the amplitude that its channel has beside all causes.
+        if let Some(rail) = checked.rails.iter().find(|rail| rail.is_of(finding)) {
+            *finding = rail.finding(&system.context.adc, &ellipse);
+        }
+    }
+    let mut findings = beside(&digital, held_before, position_before);
     findings.extend(extended.findings(system, &halves));
     findings.extend(beside(&nameless.noise, held_after, position_after));
     sort(&mut findings);
@@ -79,7 +87,6 @@ pub(crate) fn conclude(
     let angle = angle(system, selection, sure.as_ref().unwrap_or(&extended));
     let own = repaired.place.iter();
     let positions = own.map(|&k| angle[k] / std::f64::consts::TAU).collect();
-    let ellipse = exact::ellipse(&system.context.ellipse, &extended.fit.solution.x);
     let notes = repaired.recording.notes.clone();
     let residuals = [(was.radial, was.tangential), (left.radial, left.tangential)];
     let left_motion = left.motion;

@@ -74,34 +74,68 @@ pub(crate) fn of_scale(
     }
 }
 
+/// A rail of a channel.
+struct Rail {
+    /// In amplitudes.
+    threshold: f64,
+    /// What of the slope is gone beyond it.
+    compression: f64,
+}
+
+impl Rail {
+    /// Nothing goes beyond it: neither what else is in the channel, nor noise.
+    fn clips(&self) -> bool {
+        self.compression >= 1.0
+    }
+}
+
+/// The upper rail of a channel, or the lower, where the cause has rails.
+fn rail(cause: &Cause, which: usize, upper: bool) -> Option<Rail> {
+    let Cause::Saturation {
+        threshold,
+        compression,
+        compression_upper,
+        compression_lower,
+        compression_cos_upper,
+        compression_cos_lower,
+        compression_sin_upper,
+        compression_sin_lower,
+    } = *cause
+    else {
+        return None;
+    };
+    let (of_rail, of_both) = if upper {
+        (
+            [compression_cos_upper, compression_sin_upper],
+            compression_upper,
+        )
+    } else {
+        (
+            [compression_cos_lower, compression_sin_lower],
+            compression_lower,
+        )
+    };
+    Some(Rail {
+        threshold,
+        compression: of_rail[which].or(of_both).unwrap_or(compression),
+    })
+}
+
+/// A channel y with all that is in it, in its amplitudes, behind the rails that clip it.
+pub(crate) fn clipped(cause: &Cause, which: usize, y: f64) -> f64 {
+    let rail = rail(cause, which, y > 0.0).filter(Rail::clips);
+    rail.map_or(y, |rail| y.abs().min(rail.threshold).copysign(y))
+}
+
 /// What is added to a channel y, in its amplitudes.
 pub(crate) fn of_one(cause: &Cause, which: usize, y: f64, at: &Moment) -> f64 {
     let of = |cos: f64, sin: f64| if which == 0 { cos } else { sin };
     match *cause {
-        Cause::Saturation {
-            threshold,
-            compression,
-            compression_upper,
-            compression_lower,
-            compression_cos_upper,
-            compression_cos_lower,
-            compression_sin_upper,
-            compression_sin_lower,
-        } => {
-            let (of_rail, of_both) = if y > 0.0 {
-                (
-                    [compression_cos_upper, compression_sin_upper],
-                    compression_upper,
-                )
-            } else {
-                (
-                    [compression_cos_lower, compression_sin_lower],
-                    compression_lower,
-                )
-            };
-            let compression = of_rail[which].or(of_both).unwrap_or(compression);
-            -compression * (y.abs() - threshold).max(0.0) * y.signum()
-        }
+        Cause::Saturation { .. } => rail(cause, which, y > 0.0)
+            .filter(|rail| !rail.clips())
+            .map_or(0.0, |rail| {
+                -rail.compression * (y.abs() - rail.threshold).max(0.0) * y.signum()
+            }),
         Cause::Hysteresis {
             offset_cos,
             offset_sin,

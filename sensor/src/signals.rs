@@ -6,7 +6,7 @@ use rand::{Rng, SeedableRng, rngs::StdRng};
 use rand_distr::StandardNormal;
 
 use crate::cause::Cause;
-use crate::channel::{Moment, of_both, of_one, of_scale};
+use crate::channel::{Moment, clipped, of_both, of_one, of_scale};
 use crate::coupling::Coupling;
 use crate::flicker;
 use crate::lag::Passed;
@@ -94,9 +94,11 @@ impl Sensor {
                     }
                     _ => 0.0,
                 });
-                y + more
-                    + slow[which][k]
-                    + self.signals.noise_rms * random.sample::<f64, _>(StandardNormal)
+                let white = self.signals.noise_rms * random.sample::<f64, _>(StandardNormal);
+                let all = y + more + slow[which][k] + white;
+                self.causes
+                    .iter()
+                    .fold(all, |y, cause| clipped(cause, which, y))
             };
             let pair = [noisy(pair[0], 0), noisy(pair[1], 1)];
             let s = &self.signals;

@@ -165,6 +165,25 @@ fn saturation_of_single_rails() {
     );
 }
 
+/// Behind a rail that clips there is nothing more: neither what else is in the channel, nor noise.
+#[test]
+fn a_rail_that_clips_is_flat() {
+    let causes = "[[cause]]\nname = \"saturation\"\nthreshold = 0.7\ncompression = 1.0\ncompression_sin_lower = 0.0\n\
+                  [[cause]]\nname = \"spatial_harmonic\"\norder = 3\namplitude_cos = 0.05\nphase_cos = 0.4\namplitude_sin = 0.05\nphase_sin = 0.1\n";
+    let samples = sensor(causes, 0.01, 31).simulate(&steady(2000, 130.0), 3);
+    let normal = |v: &[f64], a: f64, b: f64| v.iter().map(|v| (v - b) / a).collect::<Vec<_>>();
+    let (cos, sin) = (
+        normal(&samples.cos, 0.8, 0.03),
+        normal(&samples.sin, 0.75, -0.02),
+    );
+    let at = |v: &[f64], rail: f64| v.iter().filter(|y| (**y - rail).abs() < 1e-6).count();
+    for (channel, rail) in [(&cos, 0.7), (&cos, -0.7), (&sin, 0.7)] {
+        assert!(at(channel, rail) > 300, "{rail}: {}", at(channel, rail));
+        assert!(channel.iter().all(|y| y * rail.signum() < 0.7 + 1e-6));
+    }
+    assert!(sin.iter().any(|y| *y < -0.95));
+}
+
 #[test]
 fn ac_coupling_is_a_first_order_high_pass() {
     let (speed, corner) = (130.0, 40.0);

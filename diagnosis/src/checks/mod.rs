@@ -22,6 +22,7 @@ use std::cell::OnceCell;
 use nonius_calibration::Ellipse;
 use nonius_recording::{AdcSource, Recording};
 
+use crate::checks::rail::Rail;
 use crate::clipped::Clipped;
 use crate::finding::units;
 use crate::finding::{Cause, Finding, Parameter, Place};
@@ -39,6 +40,8 @@ pub(crate) struct Checked {
     pub(crate) extra: Vec<usize>,
     /// Samples that are left out where a channel is clipped.
     pub(crate) clipped: Vec<Clipped>,
+    /// Channels that are clipped.
+    pub(crate) rails: Vec<Rail>,
     /// The ellipse of all samples, where one can be fitted; made when it is asked for.
     ellipse: OnceCell<Option<Ellipse>>,
 }
@@ -75,6 +78,7 @@ pub(crate) fn check(recording: &Recording, weight: Vec<f64>, time_base: TimeBase
         repeated: vec![],
         extra: vec![],
         clipped: vec![],
+        rails: vec![],
         ellipse: OnceCell::new(),
     };
     if time_base == TimeBase::Searched {

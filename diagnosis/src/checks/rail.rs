@@ -4,7 +4,7 @@
 
 use nonius_calibration::Ellipse;
 use nonius_quantity::{agree, counted};
-use nonius_recording::{Adc, Recording};
+use nonius_recording::{AdcPair, Recording};
 
 use crate::checks::{Checked, first};
 use crate::clipped::{AtRail, By, Clipped, KNOWS};
@@ -28,7 +28,7 @@ const WIDER: f64 = 0.05;
 const RAILS: [[&str; 2]; 2] = [["cos_upper", "cos_lower"], ["sin_upper", "sin_lower"]];
 
 /// A channel that is clipped.
-struct Rail {
+pub(crate) struct Rail {
     channel: usize,
     /// The lower one.
     lower: bool,
@@ -36,6 +36,8 @@ struct Rail {
     code: i64,
     /// Samples that have it.
     clipped: Vec<usize>,
+    /// Number of samples that are left out for it.
+    left_out: usize,
 }
 
 /// The signal at the top of a channel, from one time in the other half to the next.
@@ -147,48 +149,64 @@ fn told(recording: &Recording, rails: &[Rail], left_out: &[usize], e: &Ellipse) 
     all.collect()
 }
 
-/// What is said of a rail; `offset` and `amplitude` are those of its channel.
-fn finding(rail: &Rail, adc: &Adc, offset: f64, amplitude: f64, left_out: usize) -> Finding {
-    let sense = if rail.lower { -1.0 } else { 1.0 };
-    let threshold = sense * (adc.value(rail.code) - offset) / amplitude;
-    let half = 0.5 * adc.lsb / amplitude;
-    let mut parameters = vec![
-        Parameter::measured("threshold", threshold, half, "amplitude"),
-        Parameter::exact("compression", 1.0, "1"),
-    ];
-    for (channel, names) in RAILS.iter().enumerate() {
-        for (name, lower) in names.iter().zip([false, true]) {
-            let own = channel == rail.channel && lower == rail.lower;
-            let value = f64::from(own);
-            parameters.push(Parameter::exact(&format!("compression_{name}"), value, "1"));
+impl Rail {
+    /// What is said of it, by an ellipse: offset and amplitude of its channel.
+    pub(crate) fn finding(&self, adc: &AdcPair, e: &Ellipse) -> Finding {
+        let rail = self;
+        let (adc, offset, amplitude) = match rail.channel {
+            0 => (&adc.cos, e.b_c, e.a_c),
+            _ => (&adc.sin, e.b_s, e.a_s),
+        };
+        let sense = if rail.lower { -1.0 } else { 1.0 };
+        let threshold = sense * (adc.value(rail.code) - offset) / amplitude;
+        let half = 0.5 * adc.lsb / amplitude;
+        let mut parameters = vec![
+            Parameter::measured("threshold", threshold, half, "amplitude"),
+            Parameter::exact("compression", 1.0, "1"),
+        ];
+        for (channel, names) in RAILS.iter().enumerate() {
+            for (name, lower) in names.iter().zip([false, true]) {
+                let own = channel == rail.channel && lower == rail.lower;
+                let value = f64::from(own);
+                parameters.push(Parameter::exact(&format!("compression_{name}"), value, "1"));
+            }
         }
+        let ends = adc.codes();
+        let end = rail.code == if rail.lower { ends.0 } else { ends.1 };
+        let count = rail.clipped.len();
+        let evidence = format!(
+            "the {} channel is clipped at its {} rail, {} of the amplitude {} its offset: {} {} its {} code, {}{}",
+            ["cos", "sin"][rail.channel],
+            if rail.lower { "lower" } else { "upper" },
+            parameters[0].brief(),
+            if rail.lower { "below" } else { "above" },
+            counted(count, "sample"),
+            agree(count, "has", "have"),
+            if rail.lower { "lowest" } else { "highest" },
+            rail.code,
+            if end {
+                ", the end of the ADC's range"
+            } else {
+                ""
+            },
+        );
+        let place = Place::Rail {
+            channel: rail.channel,
+            code: rail.code,
+        };
+        Finding::digital(Cause::Saturation, parameters, evidence)
+            .at(place)
+            .repairing(self.left_out)
     }
-    let ends = adc.codes();
-    let end = rail.code == if rail.lower { ends.0 } else { ends.1 };
-    let count = rail.clipped.len();
-    let evidence = format!(
-        "the {} channel is clipped at its {} rail, {} of the amplitude {} its offset: {} {} its {} code, {}{}",
-        ["cos", "sin"][rail.channel],
-        if rail.lower { "lower" } else { "upper" },
-        parameters[0].brief(),
-        if rail.lower { "below" } else { "above" },
-        counted(count, "sample"),
-        agree(count, "has", "have"),
-        if rail.lower { "lowest" } else { "highest" },
-        rail.code,
-        if end {
-            ", the end of the ADC's range"
-        } else {
-            ""
-        },
-    );
-    let place = Place::Rail {
-        channel: rail.channel,
-        code: rail.code,
-    };
-    Finding::digital(Cause::Saturation, parameters, evidence)
-        .at(place)
-        .repairing(left_out)
+
+    /// Whether a finding is that of it.
+    pub(crate) fn is_of(&self, finding: &Finding) -> bool {
+        let own = Place::Rail {
+            channel: self.channel,
+            code: self.code,
+        };
+        finding.place == Some(own)
+    }
 }
 
 /// Finds the rails of a recording and leaves out what is clipped; nothing where too little would be left.
@@ -210,6 +228,7 @@ pub(super) fn rails(recording: &Recording, checked: &mut Checked) {
                     lower,
                     code,
                     clipped,
+                    left_out: 0,
                 });
             }
         }
@@ -226,14 +245,10 @@ pub(super) fn rails(recording: &Recording, checked: &mut Checked) {
     };
     checked.weight = without;
     let adc = recording.metadata.adc;
-    for (rail, left_out) in found.iter().zip(&left_out) {
-        let (adc, offset, amplitude) = if rail.channel == 0 {
-            (&adc.cos, e.b_c, e.a_c)
-        } else {
-            (&adc.sin, e.b_s, e.a_s)
-        };
-        let finding = finding(rail, adc, offset, amplitude, left_out.len());
-        checked.findings.push(finding);
+    for (rail, left_out) in found.iter_mut().zip(&left_out) {
+        rail.left_out = left_out.len();
+        checked.findings.push(rail.finding(&adc, &e));
     }
     checked.clipped = told(recording, &found, &left_out.concat(), &e);
+    checked.rails = found;
 }

@@ -278,3 +278,44 @@ fn a_harmonic_beyond_the_catalogue_is_no_motion() {
         "{signature}"
     );
 }
+
+/// Of channels that are clipped for a fourth of each period a harmonic has its own order, and each rail stands where the offset and the
+/// amplitude beside that harmonic put it.
+#[test]
+fn a_harmonic_beside_clipped_channels() {
+    let clipped = Instrument {
+        error: |a| [0.02 * (2.0 * a + 0.7).cos(), 0.02 * (2.0 * a - 1.3).cos()],
+        damage: |_, [c, s]| [c.min(4800), s.max(-4700)],
+        ..PLAIN
+    };
+    let recording = clipped.recorded(3);
+    let found = clipped.diagnosed_of(&recording);
+    let all = [Cause::Saturation, Cause::Saturation, Cause::SpatialHarmonic];
+    let mut named = names(&found);
+    named.sort_by_key(|name| all.iter().position(|one| one == name));
+    assert_eq!(named, all);
+    assert!(!found.unexplained.significant);
+    let [ours, _] = clipped.position_errors(&recording, &found);
+    assert!(ours < 1.4 * clipped.noise, "{ours}");
+    let number = |f: &Finding, name: &str| f.parameter(name).expect("a number");
+    for finding in &found.findings {
+        if finding.cause == Cause::SpatialHarmonic {
+            assert_eq!(number(finding, "order"), 2.0);
+            let amplitude = number(finding, "amplitude_cos");
+            assert!((amplitude - 0.02).abs() < 5e-4, "{amplitude}");
+            continue;
+        }
+        let half = 8192.0;
+        let (rail, middle, amplitude) = match number(finding, "compression_cos_upper") {
+            1.0 => (4800.0, 0.02 * half, 0.8 * half),
+            _ => (4700.0, 0.03 * half, 0.78 * half),
+        };
+        // The lower one is as far below.
+        let expected = (rail - middle) / amplitude;
+        let threshold = number(finding, "threshold");
+        assert!(
+            (threshold - expected).abs() < 1e-3,
+            "{threshold} {expected}"
+        );
+    }
+}
