@@ -21,6 +21,8 @@ pub(crate) fn read(
 ) -> Result<(Columns, Declared), Error> {
     let mut lines = Lines::new(source, name);
     let (header, mut declared) = head(&mut lines, overrides)?;
+    units::one_of_names(&header)
+        .map_err(|kind| Error::new(Place::line(name, lines.number), kind))?;
     let time = header.name(Role::Time).map(str::to_owned);
     if declared.sample_rate_hz.is_none() && time.is_none() {
         return Err(Error::new(

@@ -40,6 +40,9 @@ const SIGNALS: [&str; 22] = [
     "counts",
 ];
 
+/// What stands before a unit in a name.
+const SPLIT: [char; 5] = ['_', ' ', '/', '(', '['];
+
 /// A unit without the brackets around it, in small letters.
 fn plain(text: &str) -> String {
     let inside = text.trim().trim_start_matches(['(', '[']);
@@ -55,8 +58,23 @@ fn seconds(unit: &str) -> Option<f64> {
 
 /// Seconds in the unit that the name of a column ends with: `Time (ms)`, `Time [s]`, `t/ms`, `time_us`.
 pub(crate) fn of_name(name: &str) -> Option<f64> {
-    let last = name.rsplit(['_', ' ', '/', '(', '[']).next()?;
+    let last = name.rsplit(SPLIT).next()?;
     seconds(last).filter(|_| last.len() < name.len())
+}
+
+/// Refuses signals whose names say two units.
+pub(crate) fn one_of_names(header: &Header) -> Result<(), ErrorKind> {
+    let unit = |role| {
+        // A letter behind a dash below the line is a channel: `enc_a`.
+        let last = header.name(role)?.rsplit(&SPLIT[1..]).next()?;
+        Some(plain(last)).filter(|unit| SIGNALS.contains(&unit.as_str()))
+    };
+    match (unit(Role::Cos), unit(Role::Sin)) {
+        (Some(first), Some(second)) if first != second => {
+            Err(ErrorKind::TwoUnits { first, second })
+        }
+        _ => Ok(()),
+    }
 }
 
 /// What a row of units says.

@@ -171,6 +171,12 @@ fn what_is_no_row_of_units_is_a_wrong_row() {
         error.starts_with("r.csv:2:5: the signals have the units 'v' and 'mv'"),
         "{error}"
     );
+    let text = format!("time_s,C1 (mV),C2 (V)\n{body}");
+    let error = read(&text, &columns(None, "C1 (mV)", "C2 (V)")).expect_err("two units");
+    assert!(
+        error.starts_with("r.csv:1: the signals have the units 'mv' and 'v'"),
+        "{error}"
+    );
     let error = with("fortnights,V,V").expect_err("no unit of time");
     assert!(
         error.starts_with("r.csv:2:1: 'fortnights' in the column 'time_s'"),
