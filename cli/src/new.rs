@@ -82,7 +82,7 @@ pub(crate) fn run(args: &New) -> Result<()> {
 ///
 /// # Errors
 /// No design can follow the recording.
-pub(crate) fn fitted_text(
+pub fn fitted_text(
     name: &str,
     file: &Path,
     recording: &Recording,

@@ -20,7 +20,8 @@ const VERILATOR: Options = Options {
 fn agrees(file: &Path, repeat: u32, options: &Options) {
     let name = file.display();
     let recording = Recording::read(file, &Overrides::default()).expect("a recording");
-    let text = nonius::new::fitted_text("it", file, &recording).expect("a design can follow it");
+    let (text, _) =
+        nonius::new::fitted_text("it", file, &recording).expect("a design can follow it");
     let spec = Spec::from_toml(&text, "it.toml").expect("a design");
     let design = Design::new(&spec).expect("a design");
     let played = nonius::play::stimulus("recording", &spec, &recording, repeat);

@@ -22,12 +22,6 @@ const MUCH: f64 = 0.02;
 /// Products of the largest speed and a time constant that are tried.
 const REACHES: [f64; 5] = [0.003, 0.02, 0.1, 0.4, 1.0];
 
-/// The same of a delay of crosstalk, the part of it that is not in proportion to the speed.
-const DELAYS: [f64; 4] = [0.0, 0.4, 0.9, 1.6];
-
-/// Scale periods of travel from which on such a delay is told.
-const REPEATS: f64 = 4.0;
-
 /// Share of the speed that changes, rms.
 fn change(context: &Context) -> f64 {
     let n = context.samples() as f64;
@@ -163,11 +157,7 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
     }
     if varies {
         list.push(common_bandwidth(&speed));
-        // Within few periods what goes with the speed is what goes with the angle.
-        let told = varies_much(context) && context.periods_travelled() > REPEATS;
-        let delays = DELAYS.into_iter().filter(|delay| told || *delay == 0.0);
-        let library = &mut catalogue.library;
-        list.extend(delays.map(|delay| crosstalk(&speed, delay / speed.top, library)));
+        list.push(crosstalk(&speed, &mut catalogue.library));
     }
     list.extend(direction::hysteresis(context, &speed));
     list.push(direction::tilt(&speed));
@@ -312,7 +302,7 @@ fn common_bandwidth(speed: &Speed) -> Candidate {
     }
 }
 
-fn crosstalk(speed: &Speed, delay: f64, library: &mut Library) -> Candidate {
+fn crosstalk(speed: &Speed, library: &mut Library) -> Candidate {
     let make = |inner: &[f64], library: &mut Library| {
         let delay = inner[0];
         let into = |which: usize| {
@@ -323,16 +313,15 @@ fn crosstalk(speed: &Speed, delay: f64, library: &mut Library) -> Candidate {
         [0, 1].map(into).into()
     };
     let slope = derivatives(speed.beta);
-    let shapes = if speed.sines && delay == 0.0 {
+    let shapes = if speed.sines {
         vec![speed.times(0, &slope[1]), speed.times(1, &slope[0])]
     } else {
-        make(&[delay], library)
+        make(&[0.0], library)
     };
     Candidate {
-        trials: DELAYS.len() as f64,
         exact: Some(Exact {
             make: Rc::new(make),
-            inner: vec![delay],
+            inner: vec![0.0],
             steps: vec![0.01 / speed.top],
             follows: false,
         }),

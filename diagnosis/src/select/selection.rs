@@ -2,7 +2,8 @@
 
 use nonius_quantity::ordinal;
 
-use crate::causes::candidate::{Candidate, Estimate};
+use crate::causes::candidate::{Candidate, Domain, Estimate};
+use crate::doubt::home;
 use crate::finding::{Cause, Chip, Finding, Gain, OTHER_ORDER, Parameter};
 use crate::model::exact::Start;
 use crate::model::{Fit, Halves, System, amounts};
@@ -357,11 +358,24 @@ impl Selection {
         known.map(|(atom, x)| (atom, -x)).collect()
     }
 
-    /// Without what a position would be twice as wrong by if it were the opposite along the circle, where there is such.
+    /// Without what a position would be twice as wrong by if it were the opposite along the circle, where there is such; without anything
+    /// that goes with the angle, where one of those has a vague size: they hide each other.
     pub(crate) fn sure(&self, system: &System) -> Option<Self> {
-        let sure = |a: &&Accepted| a.other_order.is_none() && !a.hidden;
+        let with_angle = |a: &Accepted| home(a.candidate.domain) == Domain::Angle;
+        let vague = (self.accepted.iter()).any(|a| with_angle(a) && self.is_vague(a));
+        let sure =
+            |a: &&Accepted| a.other_order.is_none() && !a.hidden && !(vague && with_angle(a));
         let sure: Vec<Accepted> = self.accepted.iter().filter(sure).cloned().collect();
         (sure.len() < self.accepted.len()).then(|| self.of(sure, system))
+    }
+
+    /// Whether the amounts of a cause have a standard error of more than a third of them.
+    fn is_vague(&self, one: &Accepted) -> bool {
+        const VAGUE: f64 = 1.0 / 3.0;
+        let solution = &self.fit.solution;
+        let square: f64 = one.range().map(|k| solution.x[k].powi(2)).sum();
+        let error: f64 = one.range().map(|k| solution.covariance[(k, k)]).sum();
+        one.inflation * error > VAGUE * VAGUE * square
     }
 
     /// The five parameters and every accepted cause that is no motion, with what they are beyond what is known.

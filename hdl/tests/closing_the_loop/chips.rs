@@ -99,7 +99,8 @@ pub(super) fn closed(recording: &str, simulated: bool) -> Closed {
     let (file, found) = (dir.join("r.csv"), dir.join("found"));
     fs::write(&file, recording).expect("a recording");
     let read = Recording::read(&file, &Overrides::default()).expect("a recording");
-    let plain = nonius::new::fitted_text("plain", &file, &read).expect("a design can follow it");
+    let (plain, _) =
+        nonius::new::fitted_text("plain", &file, &read).expect("a design can follow it");
     fs::write(dir.join("plain.toml"), plain).expect("a design");
     done(&[&"diagnose", &file, &"-o", &found]);
     let json = fs::read_to_string(dir.join("found/findings.json")).expect("findings");
