@@ -7,14 +7,9 @@ use rand_distr::{Distribution, StandardNormal};
 
 /// The sensor of the campaign, whose phase error is 5°, with another one, degrees.
 fn sensor(beta: f64) -> Ellipse {
-    let [a_c, b_c, a_s, b_s, _] = SENSOR;
-    let beta = beta.to_radians();
     Ellipse {
-        a_c,
-        b_c,
-        a_s,
-        b_s,
-        beta,
+        beta: beta.to_radians(),
+        ..Ellipse::of(&SENSOR.into())
     }
 }
 

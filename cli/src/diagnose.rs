@@ -73,12 +73,9 @@ pub(crate) fn run(args: &Diagnose) -> Result<bool> {
             crate::play::compare(&design.spec, &recording);
             Ok(text)
         }
-        None => crate::new::fitted_text("fitted", &args.recording, &recording).map(
-            |(text, not_held)| {
-                crate::notes(&not_held);
-                text
-            },
-        ),
+        None => crate::new::fitted_text("fitted", &args.recording, &recording)
+            .inspect(|(_, not_held)| crate::notes(not_held))
+            .map(|(text, _)| text),
     };
     let (design, outcomes) = match design {
         Ok(text) => {

@@ -20,6 +20,7 @@ use crate::recording_args::RecordingArgs;
 use crate::target::Target;
 use draft::{Draft, plain, rounded_up};
 use fitted::fitted;
+use promise::Promise;
 
 /// A new design.
 #[derive(Args)]
@@ -94,11 +95,13 @@ pub fn fitted_text(
 
 /// A sentence for each promise that does not hold what was measured.
 fn not_held(draft: &Draft) -> Vec<String> {
-    let promises = draft.promises().into_iter();
-    let said = |(key, why)| format!("sensor.{key} does not hold what the recording shows: {why}");
-    promises
-        .filter_map(|(key, promise)| Some(said((key, promise.missed()?))))
-        .collect()
+    let said = |(key, promise): (_, &Promise)| {
+        let why = promise.missed()?;
+        Some(format!(
+            "sensor.{key} does not hold what the recording shows: {why}"
+        ))
+    };
+    draft.promises().into_iter().filter_map(said).collect()
 }
 
 /// The finest accuracy that the rest of the draft allows and that the bit-true chip reaches, with a tenth to spare.

@@ -162,26 +162,23 @@ pub(crate) fn compare(spec: &Spec, recording: &Recording) {
     let clipped = pairs
         .filter(|(c, s)| converter.clips(**c) || converter.clips(**s))
         .count();
-    if clipped > 0 {
-        eprintln!(
-            "note: {clipped} of {} samples lie outside the design's ADC range {} … {} and are held at its ends; \
-             `nonius new NAME --from RECORDING.csv` fits a range",
-            recording.samples(),
-            spec.adc.middle - spec.adc.full_scale,
-            spec.adc.middle + spec.adc.full_scale
-        );
-        return;
-    }
-    let of_range = |v: &f64| (v - spec.adc.middle).abs() / spec.adc.full_scale;
+    let adc = &spec.adc;
+    let of_range = |v: &f64| (v - adc.middle).abs() / adc.full_scale;
     let both = recording.cos.iter().chain(&recording.sin);
     let most = both.map(of_range).fold(0.0, f64::max);
-    if most < SMALL {
+    let range = format!(
+        "the design's ADC range {} … {}",
+        adc.middle - adc.full_scale,
+        adc.middle + adc.full_scale
+    );
+    let fits = "`nonius new NAME --from RECORDING.csv` fits a range";
+    if clipped > 0 {
+        let samples = recording.samples();
         eprintln!(
-            "note: the signals take {:.1} % of the design's ADC range {} … {}: are they in its unit? `nonius new NAME \
-             --from RECORDING.csv` fits a range",
-            100.0 * most,
-            spec.adc.middle - spec.adc.full_scale,
-            spec.adc.middle + spec.adc.full_scale
+            "note: {clipped} of {samples} samples lie outside {range} and are held at its ends; {fits}"
         );
+    } else if most < SMALL {
+        let share = 100.0 * most;
+        eprintln!("note: the signals take {share:.1} % of {range}: are they in its unit? {fits}");
     }
 }

@@ -1,9 +1,11 @@
 //! Samples that are left out where a channel is clipped: the other one tells the angle, and beside the rail both do.
 
+use std::borrow::Cow;
 use std::f64::consts::PI;
 
 use crate::context::Context;
 use crate::motion::spline::Spline;
+use crate::numerics::slopes::lay_straight;
 
 /// Of the other channel's amplitude, beyond which it hardly knows the angle: its own peak is near.
 pub(crate) const KNOWS: f64 = 0.985;
@@ -61,9 +63,9 @@ impl Context {
     /// Gives clipped samples the pair that the other channel knows; pairs were `turned` back by these angles, or by none.
     pub(crate) fn complete(&self, c: &mut [f64], s: &mut [f64], turned: &[f64]) {
         for clipped in &self.clipped {
-            let k = clipped.sample;
-            let turned = turned.get(k).copied().unwrap_or(0.0);
             if let By::Other(at) = clipped.by {
+                let k = clipped.sample;
+                let turned = turned.get(k).copied().unwrap_or(0.0);
                 [c[k], s[k]] = at.pair([c[k], s[k]], self.ellipse.beta, turned);
             }
         }
@@ -83,26 +85,21 @@ impl Context {
         let mut places: Vec<usize> = unknown.map(|one| one.sample).collect();
         places.sort_unstable();
         for run in places.chunk_by(|a, b| a + 1 == *b) {
-            let (first, count) = (run[0], run.len());
-            let before = first.checked_sub(1).map(|k| angle[k]);
-            let after = angle.get(first + count).copied();
-            // At an end there is one neighbour.
-            let (Some(from), Some(to)) = (before.or(after), after.or(before)) else {
-                continue;
-            };
-            let step = (to - from) / (count + 1) as f64;
-            let all = angle[first..first + count].iter_mut().zip(1u32..);
-            all.for_each(|(angle, i)| *angle = from + step * f64::from(i));
+            lay_straight(angle, run[0]..run[0] + run.len());
         }
     }
 
     /// The motion by the samples that tell it: the spline, and what it fits to an angle.
-    pub(crate) fn fitted(&self, spline: &Spline, angle: &[f64]) -> (Spline, Vec<f64>) {
+    pub(crate) fn fitted<'a>(
+        &self,
+        spline: &'a Spline,
+        angle: &[f64],
+    ) -> (Cow<'a, Spline>, Vec<f64>) {
         let tells = self.tells();
         let spline = if self.clipped.is_empty() {
-            spline.clone()
+            Cow::Borrowed(spline)
         } else {
-            Spline::new(self.samples(), spline.spacing(), &tells)
+            Cow::Owned(Spline::new(self.samples(), spline.spacing(), &tells))
         };
         let fit = spline.fit(angle, &tells);
         (spline, fit)

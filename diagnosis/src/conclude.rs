@@ -12,7 +12,6 @@ use crate::model::exact;
 use crate::model::{Fit, Residual, System};
 use crate::noise;
 use crate::noise::flicker::Flicker;
-use crate::select::FEWEST;
 use crate::select::selection::Selection;
 use crate::shapes::library::Row;
 use crate::simulation::motion::{self, Motion};
@@ -63,7 +62,7 @@ pub(crate) fn conclude(
     sort(&mut findings);
     let was = system.residual(&selection.base);
     let left = system.residual(&extended.fit);
-    let nothing = if system.context.samples() < FEWEST {
+    let nothing = if system.context.is_too_short() {
         Unexplained::not_looked_for()
     } else {
         Unexplained::nothing(&findings)
@@ -122,6 +121,7 @@ fn angle(system: &System, selection: &Selection, extended: &Selection) -> Vec<f6
 }
 
 /// What is left beside the causes: noise of a kind, and what has no name.
+#[derive(Default)]
 struct Nameless {
     noise: Vec<Finding>,
     /// What could not be named, in the order in which it is told.
@@ -131,11 +131,8 @@ struct Nameless {
 impl Nameless {
     /// What a selection leaves; `extended` has those of its causes that keep their names.
     fn of(system: &System, selection: &Selection, extended: &Selection) -> Self {
-        if system.context.samples() < FEWEST {
-            return Self {
-                noise: vec![],
-                unnamed: vec![],
-            };
+        if system.context.is_too_short() {
+            return Self::default();
         }
         let residual = system.residual(&selection.fit);
         // Only what is noise can be noise of a kind.

@@ -20,6 +20,9 @@ use crate::shapes::trig::Trig;
 /// From so many bad samples in a row on, their own angle tells how far the scale moves meanwhile.
 pub(crate) const MANY: usize = 8;
 
+/// Fewest samples by which causes are looked for: of fewer, motion, five parameters and noise leave too little to tell one by.
+pub(crate) const FEWEST: usize = 150;
+
 /// Least gain that is taken off as one: of less, hardly anything of the signals is left.
 const LEAST_GAIN: f64 = 0.1;
 
@@ -181,6 +184,11 @@ impl Context {
         self.time.len()
     }
 
+    /// Whether causes are looked for by too few samples to tell any.
+    pub(crate) fn is_too_short(&self) -> bool {
+        self.samples() < FEWEST
+    }
+
     /// Scale periods travelled by the smooth motion, to and fro.
     #[must_use]
     pub fn periods_travelled(&self) -> f64 {
@@ -224,10 +232,9 @@ impl Context {
                 (k + 1 - bad..=k).for_each(|k| angle[k] = angle[k - 1]);
             }
         }
-        self.measured = unwrapped(angle);
-        let mut angle = std::mem::take(&mut self.measured);
-        self.bridge_rails(&mut angle);
-        self.measured = angle;
+        let mut measured = unwrapped(angle);
+        self.bridge_rails(&mut measured);
+        self.measured = measured;
         (self.c, self.s) = (c, s);
         if self.spline.is_none() {
             let per = self.periods_per_revolution;

@@ -21,7 +21,7 @@ use crate::select::rounds::Rounds;
 use crate::select::score::KINDS;
 use crate::select::select;
 use crate::select::selection::Accepted;
-use crate::select::{FEWEST, choice, speed_anew};
+use crate::select::{choice, speed_anew};
 use crate::simulation::Simulation;
 use crate::simulation::motion::Motion;
 use crate::unnamed::unexplained::Unexplained;
@@ -68,7 +68,7 @@ impl Diagnosis {
     /// What is said where no cause is named.
     #[must_use]
     pub fn nothing_named(&self) -> &'static str {
-        if self.context.samples() < FEWEST {
+        if self.context.is_too_short() {
             "no cause of the catalogue was looked for: there are too few samples"
         } else if self.unexplained.significant {
             "no cause of the catalogue was found, but something is left"

@@ -32,6 +32,7 @@ pub use context::{Context, ContextError};
 pub use diagnose::{Diagnosis, Extended, diagnose};
 pub use finding::{Cause, Chip, Effect, Finding, Gain, OTHER_ORDER, Parameter, Place};
 pub use report::{plots, report};
+pub use select::selection::VAGUE;
 pub use simulation::motion::motion_csv;
 pub use simulation::sensor::{MOTION, sensor_toml};
 pub use simulation::{SimulatedCause, Simulation};

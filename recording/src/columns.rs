@@ -19,6 +19,13 @@ pub(crate) enum Role {
     Nameless,
 }
 
+impl Role {
+    /// Whether no number has to be in its cells.
+    pub(crate) fn is_unused(self) -> bool {
+        matches!(self, Self::Other(_) | Self::Nameless)
+    }
+}
+
 /// The header.
 #[derive(Debug)]
 pub(crate) struct Header {
@@ -46,7 +53,8 @@ impl Header {
             }
             names.push(name);
         }
-        let is_number = |n: &String| number(n, separator != ',').is_some();
+        let comma = has_decimal_comma(separator);
+        let is_number = |n: &String| number(n, comma).is_some();
         if names.iter().filter(|n| !n.is_empty()).all(is_number) {
             return Err(lines.error(0, ErrorKind::NoHeader));
         }
@@ -64,7 +72,7 @@ impl Header {
 
     /// Whether numbers may have a decimal comma.
     pub(crate) fn has_decimal_comma(&self) -> bool {
-        self.separator != ','
+        has_decimal_comma(self.separator)
     }
 
     /// The name of the first column that has a role.
@@ -80,6 +88,11 @@ impl Header {
             .filter(|(_, r)| matches!(r, Role::Other(_)))
             .map(|(n, _)| n.as_str())
     }
+}
+
+/// Whether numbers between such separators may have a decimal comma.
+fn has_decimal_comma(separator: char) -> bool {
+    separator != ','
 }
 
 fn separator(line: &str) -> Result<char, (usize, ErrorKind)> {
@@ -122,13 +135,11 @@ const USUAL_TIME: &str = "time_s";
 fn roles(names: &[String], overrides: &Overrides, place: &Place) -> Result<Vec<Role>, Error> {
     let refuse = |kind| Err(Error::new(place.clone(), kind));
     let mut roles = vec![Role::Nameless; names.len()];
-    let time = match overrides.time_column.as_deref() {
-        None => find(names, USUAL_TIME, place)?,
-        Some(wanted) => match find(names, wanted.trim(), place)? {
-            None => return refuse(missing(wanted.trim(), "--time", names)),
-            found => found,
-        },
-    };
+    let wanted = overrides.time_column.as_deref().map(str::trim);
+    let time = find(names, wanted.unwrap_or(USUAL_TIME), place)?;
+    if let (Some(wanted), None) = (wanted, time) {
+        return refuse(missing(wanted, "--time", names));
+    }
     let reference = find(names, "reference_rad", place)?;
     let temperature = find(names, "temperature_c", place)?;
     let fixed = [

@@ -31,8 +31,8 @@ pub(crate) fn read(
         ));
     }
     let own = time.as_deref().and_then(units::of_name);
+    let mut unit = own;
     let mut table = Table::new(&header, lines.number, own.unwrap_or(1.0));
-    let mut unit = own.is_some();
     // A row of units is the first that is not blank.
     let mut first = true;
     while let Some(line) = lines.next()? {
@@ -41,12 +41,8 @@ pub(crate) fn read(
             match Units::of(line, &header) {
                 Ok(None) => {}
                 Ok(Some(units)) => {
-                    if own.is_some() && own != units.seconds && units.seconds.is_some() {
-                        let note = "the row of units has another unit of time than the name of its column, and is taken";
-                        declared.notes.push(note.into());
-                    }
-                    unit |= units.seconds.is_some();
                     table.take_units(&units);
+                    unit = units.seconds.or(own);
                     continue;
                 }
                 Err((at, kind)) => return Err(lines.error(at, kind)),
@@ -56,7 +52,12 @@ pub(crate) fn read(
             .take(line, &header)
             .map_err(|(at, kind)| lines.error(at, kind))?;
     }
-    if let Some(time) = time.filter(|_| !unit) {
+    if own.is_some() && unit != own {
+        let note =
+            "the row of units has another unit of time than the name of its column, and is taken";
+        declared.notes.push(note.into());
+    }
+    if let (Some(time), None) = (time, unit) {
         let note = format!("the column '{time}' has no unit and is taken to be in seconds");
         declared.notes.push(note);
     }

@@ -91,10 +91,8 @@ impl Table {
             let value = self.value(&cell, *role, header)?;
             self.row.push(value);
         }
-        let missing = header.roles.get(self.row.len()..).unwrap_or_default();
-        let kept = |role: &Role| matches!(role, Role::Other(_) | Role::Nameless);
-        let complete = missing.is_empty() || self.may_be_short && missing.iter().all(kept);
-        if !complete {
+        let mut missing = header.roles.iter().skip(self.row.len());
+        if missing.any(|role| !(self.may_be_short && role.is_unused())) {
             return Err((line.len(), ragged(line, header)));
         }
         self.row.resize(header.roles.len(), f64::NAN);
@@ -114,7 +112,7 @@ impl Table {
         match role {
             Role::Cos => self.columns.cos_digits.see(&cell.text),
             Role::Sin => self.columns.sin_digits.see(&cell.text),
-            Role::Other(_) | Role::Nameless => return Ok(value.unwrap_or(f64::NAN)),
+            _ if role.is_unused() => return Ok(value.unwrap_or(f64::NAN)),
             _ => {}
         }
         let names = || (header.names[self.row.len()].clone(), shorten(&cell.text));

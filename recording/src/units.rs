@@ -56,6 +56,11 @@ fn seconds(unit: &str) -> Option<f64> {
     known.map(|(_, seconds)| *seconds)
 }
 
+/// A unit of a signal.
+fn signal(unit: &str) -> Option<String> {
+    Some(plain(unit)).filter(|unit| SIGNALS.contains(&unit.as_str()))
+}
+
 /// Seconds in the unit that the name of a column ends with: `Time (ms)`, `Time [s]`, `t/ms`, `time_us`.
 pub(crate) fn of_name(name: &str) -> Option<f64> {
     let last = name.rsplit(SPLIT).next()?;
@@ -67,7 +72,7 @@ pub(crate) fn one_of_names(header: &Header) -> Result<(), ErrorKind> {
     let unit = |role| {
         // A letter behind a dash below the line is a channel: `enc_a`.
         let last = header.name(role)?.rsplit(&SPLIT[1..]).next()?;
-        Some(plain(last)).filter(|unit| SIGNALS.contains(&unit.as_str()))
+        signal(last)
     };
     match (unit(Role::Cos), unit(Role::Sin)) {
         (Some(first), Some(second)) if first != second => {
@@ -92,16 +97,12 @@ impl Units {
         let (mut time, mut signals) = (None, vec![]);
         for (cell, role) in Cells::new(line, header.separator).zip(&header.roles) {
             let Ok(cell) = cell else { return Ok(None) };
-            let is_number = number(&cell.text, header.has_decimal_comma()).is_some();
-            let unit = plain(&cell.text);
+            if !role.is_unused() && number(&cell.text, header.has_decimal_comma()).is_some() {
+                return Ok(None);
+            }
             match role {
-                _ if is_number && !matches!(role, Role::Other(_) | Role::Nameless) => {
-                    return Ok(None);
-                }
-                Role::Time => time = seconds(&unit),
-                Role::Cos | Role::Sin if SIGNALS.contains(&&*unit) => {
-                    signals.push((cell.at, unit));
-                }
+                Role::Time => time = seconds(&cell.text),
+                Role::Cos | Role::Sin => signals.extend(signal(&cell.text).map(|u| (cell.at, u))),
                 _ => {}
             }
         }

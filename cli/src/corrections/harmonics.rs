@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use nonius_diagnosis::{Cause, Chip, Diagnosis, Finding, OTHER_ORDER};
+use nonius_diagnosis::{Cause, Chip, Diagnosis, Finding, OTHER_ORDER, VAGUE};
 use nonius_model::design::ORDER_MAX;
 use nonius_model::spec::Harmonic;
 use nonius_quantity::ordinal;
@@ -15,9 +15,6 @@ const PHASE: f64 = 0.3;
 
 /// A channel with less than this part of the other's amplitude does not say whether a harmonic is a bend.
 const FAINT: f64 = 0.2;
-
-/// The largest share of an amplitude that its standard error may have: beyond it a correction may add more than it takes.
-const UNSURE: f64 = 1.0 / 3.0;
 
 /// Real and imaginary part of amplitude · exp(i phase), of the cosine and of the sine channel.
 type Pair = [[f64; 2]; 2];
@@ -107,7 +104,7 @@ fn unsure(finding: &Finding) -> bool {
     let (value, error) = amplitudes.fold((0.0f64, 0.0f64), |(value, error), p| {
         (value.hypot(p.value), error.hypot(p.std_error))
     });
-    error.is_nan() || value.is_nan() || error > UNSURE * value
+    error.is_nan() || value.is_nan() || error > VAGUE * value
 }
 
 /// A table of harmonics.

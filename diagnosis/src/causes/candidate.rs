@@ -27,6 +27,17 @@ pub(crate) enum Domain {
     Motion,
 }
 
+impl Domain {
+    /// What depends on the code depends on the angle too.
+    pub(crate) fn home(self) -> Self {
+        if self == Self::Code {
+            Self::Angle
+        } else {
+            self
+        }
+    }
+}
+
 /// Estimates of a cause's shapes: number per shape, and their standard errors.
 pub(crate) struct Estimate<'a> {
     /// Amount of each shape.

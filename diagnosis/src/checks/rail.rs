@@ -29,15 +29,13 @@ const RAILS: [[&str; 2]; 2] = [["cos_upper", "cos_lower"], ["sin_upper", "sin_lo
 
 /// A channel that is clipped.
 pub(crate) struct Rail {
-    channel: usize,
-    /// The lower one.
-    lower: bool,
+    at: AtRail,
     /// Its code.
     code: i64,
     /// Samples that have it.
     clipped: Vec<usize>,
-    /// Number of samples that are left out for it.
-    left_out: usize,
+    /// Samples that are left out for it: these, and those beside them.
+    left_out: Vec<usize>,
 }
 
 /// The signal at the top of a channel, from one time in the other half to the next.
@@ -101,64 +99,65 @@ fn rail(
         .then_some((if lower { -top } else { top }, clipped))
 }
 
-/// Leaves out what is clipped, by the other channel, so that noise has no say in it: the samples there, and those beside them.
-fn leave_out(recording: &Recording, rail: &Rail, weight: &mut [f64]) -> Vec<usize> {
-    let own = [&recording.cos, &recording.sin][rail.channel];
-    let other = [&recording.sin, &recording.cos][rail.channel];
-    let mut values: Vec<f64> = rail.clipped.iter().map(|k| other[*k]).collect();
-    values.sort_unstable_by(f64::total_cmp);
-    let (Some(low), Some(high)) = (values.first(), values.last()) else {
-        return vec![];
-    };
-    let wider = WIDER * (high - low);
-    let range = low - wider..=high + wider;
-    let sound: Vec<usize> = (0..weight.len()).filter(|k| weight[*k] > 0.0).collect();
-    let [low, high] = ends(sound.iter().map(|k| own[*k]));
-    let middle = (low + high) / 2.0;
-    let near = |k: &usize| range.contains(&other[*k]) && (own[*k] < middle) == rail.lower;
-    let left_out: Vec<usize> = sound.into_iter().filter(near).collect();
-    left_out.iter().for_each(|k| weight[*k] = 0.0);
-    left_out
-}
-
 /// Samples that are left out, and what tells their angle.
-fn told(recording: &Recording, rails: &[Rail], left_out: &[usize], e: &Ellipse) -> Vec<Clipped> {
+fn told(recording: &Recording, rails: &[Rail], e: &Ellipse) -> Vec<Clipped> {
     let mut at: Vec<Vec<AtRail>> = vec![vec![]; recording.samples()];
     for rail in rails {
-        let (channel, lower) = (rail.channel, rail.lower);
-        for k in &rail.clipped {
-            at[*k].push(AtRail { channel, lower });
-        }
+        rail.clipped.iter().for_each(|k| at[*k].push(rail.at));
     }
+    let others = [&recording.sin, &recording.cos];
     let knows = |rail: &AtRail, k: usize| {
-        let other = match rail.channel {
-            0 => (recording.sin[k] - e.b_s) / e.a_s,
-            _ => (recording.cos[k] - e.b_c) / e.a_c,
-        };
-        other.abs() < KNOWS
+        let (offset, amplitude) = of_channel(e, 1 - rail.channel);
+        ((others[rail.channel][k] - offset) / amplitude).abs() < KNOWS
     };
     let by = |k: usize| match at[k][..] {
         [] => By::Both,
         [rail] if knows(&rail, k) => By::Other(rail),
         _ => By::Neighbours,
     };
-    let all = left_out.iter().map(|sample| Clipped {
+    let all = rails.iter().flat_map(|rail| &rail.left_out);
+    all.map(|sample| Clipped {
         sample: *sample,
         by: by(*sample),
-    });
-    all.collect()
+    })
+    .collect()
+}
+
+/// Offset and amplitude of a channel.
+fn of_channel(e: &Ellipse, which: usize) -> (f64, f64) {
+    [(e.b_c, e.a_c), (e.b_s, e.a_s)][which]
 }
 
 impl Rail {
+    /// Leaves out what is clipped, by the other channel, so that noise has no say in it: the samples there, and those beside them.
+    fn leave_out(&mut self, recording: &Recording, weight: &mut [f64]) {
+        let both = [&recording.cos, &recording.sin];
+        let (own, other) = (both[self.at.channel], both[1 - self.at.channel]);
+        let [low, high] = ends(self.clipped.iter().map(|k| other[*k]));
+        let wider = WIDER * (high - low);
+        let range = low - wider..=high + wider;
+        let sound: Vec<usize> = (0..weight.len()).filter(|k| weight[*k] > 0.0).collect();
+        let [low, high] = ends(sound.iter().map(|k| own[*k]));
+        let middle = (low + high) / 2.0;
+        let near = |k: &usize| range.contains(&other[*k]) && (own[*k] < middle) == self.at.lower;
+        self.left_out = sound.into_iter().filter(near).collect();
+        self.left_out.iter().for_each(|k| weight[*k] = 0.0);
+    }
+
+    fn place(&self) -> Place {
+        Place::Rail {
+            channel: self.at.channel,
+            code: self.code,
+        }
+    }
+
     /// What is said of it, by an ellipse: offset and amplitude of its channel.
     pub(crate) fn finding(&self, adc: &AdcPair, e: &Ellipse) -> Finding {
-        let rail = self;
-        let (adc, offset, amplitude) = match rail.channel {
-            0 => (&adc.cos, e.b_c, e.a_c),
-            _ => (&adc.sin, e.b_s, e.a_s),
-        };
-        let sense = if rail.lower { -1.0 } else { 1.0 };
-        let threshold = sense * (adc.value(rail.code) - offset) / amplitude;
+        let AtRail { channel, lower } = self.at;
+        let adc = [&adc.cos, &adc.sin][channel];
+        let (offset, amplitude) = of_channel(e, channel);
+        let sense = if lower { -1.0 } else { 1.0 };
+        let threshold = sense * (adc.value(self.code) - offset) / amplitude;
         let half = 0.5 * adc.lsb / amplitude;
         let mut parameters = vec![
             Parameter::measured("threshold", threshold, half, "amplitude"),
@@ -166,46 +165,37 @@ impl Rail {
         ];
         for (channel, names) in RAILS.iter().enumerate() {
             for (name, lower) in names.iter().zip([false, true]) {
-                let own = channel == rail.channel && lower == rail.lower;
-                let value = f64::from(own);
+                let value = f64::from(self.at == AtRail { channel, lower });
                 parameters.push(Parameter::exact(&format!("compression_{name}"), value, "1"));
             }
         }
         let ends = adc.codes();
-        let end = rail.code == if rail.lower { ends.0 } else { ends.1 };
-        let count = rail.clipped.len();
+        let end = self.code == if lower { ends.0 } else { ends.1 };
+        let count = self.clipped.len();
         let evidence = format!(
             "the {} channel is clipped at its {} rail, {} of the amplitude {} its offset: {} {} its {} code, {}{}",
-            ["cos", "sin"][rail.channel],
-            if rail.lower { "lower" } else { "upper" },
+            ["cos", "sin"][channel],
+            if lower { "lower" } else { "upper" },
             parameters[0].brief(),
-            if rail.lower { "below" } else { "above" },
+            if lower { "below" } else { "above" },
             counted(count, "sample"),
             agree(count, "has", "have"),
-            if rail.lower { "lowest" } else { "highest" },
-            rail.code,
+            if lower { "lowest" } else { "highest" },
+            self.code,
             if end {
                 ", the end of the ADC's range"
             } else {
                 ""
             },
         );
-        let place = Place::Rail {
-            channel: rail.channel,
-            code: rail.code,
-        };
         Finding::digital(Cause::Saturation, parameters, evidence)
-            .at(place)
-            .repairing(self.left_out)
+            .at(self.place())
+            .repairing(self.left_out.len())
     }
 
     /// Whether a finding is that of it.
     pub(crate) fn is_of(&self, finding: &Finding) -> bool {
-        let own = Place::Rail {
-            channel: self.channel,
-            code: self.code,
-        };
-        finding.place == Some(own)
+        finding.place == Some(self.place())
     }
 }
 
@@ -224,18 +214,18 @@ pub(super) fn rails(recording: &Recording, checked: &mut Checked) {
             let rail = rail(codes, &sound, lower, &moves);
             if let Some((code, clipped)) = rail.filter(|(_, clipped)| moves(clipped)) {
                 found.push(Rail {
-                    channel,
-                    lower,
+                    at: AtRail { channel, lower },
                     code,
                     clipped,
-                    left_out: 0,
+                    left_out: vec![],
                 });
             }
         }
     }
     let mut without = weight.clone();
-    let mut left_out = |rail| leave_out(recording, rail, &mut without);
-    let left_out: Vec<Vec<usize>> = found.iter().map(&mut left_out).collect();
+    for rail in &mut found {
+        rail.leave_out(recording, &mut without);
+    }
     let left = without.iter().filter(|w| **w > 0.0).count();
     if found.is_empty() || (left as f64) < (1.0 - MOST) * sound.len() as f64 {
         return;
@@ -245,10 +235,8 @@ pub(super) fn rails(recording: &Recording, checked: &mut Checked) {
     };
     checked.weight = without;
     let adc = recording.metadata.adc;
-    for (rail, left_out) in found.iter_mut().zip(&left_out) {
-        rail.left_out = left_out.len();
-        checked.findings.push(rail.finding(&adc, &e));
-    }
-    checked.clipped = told(recording, &found, &left_out.concat(), &e);
+    let said = found.iter().map(|rail| rail.finding(&adc, &e));
+    checked.findings.extend(said);
+    checked.clipped = told(recording, &found, &e);
     checked.rails = found;
 }

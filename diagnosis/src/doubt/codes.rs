@@ -10,7 +10,7 @@ use nonius_recording::AdcSource;
 use crate::causes::candidate::Domain;
 use crate::causes::speed_varies;
 use crate::context::Context;
-use crate::doubt::{SLOW_DOMAINS, gain_of, home};
+use crate::doubt::{SLOW_DOMAINS, gain_of};
 use crate::finding::{Cause, Finding};
 use crate::model::System;
 use crate::select::selection::Selection;
@@ -162,7 +162,7 @@ pub(crate) fn beside(
     };
     let all = 0..found.accepted.len();
     let sizes: Vec<f64> = all.map(|i| system.size(gain(system, found, i))).collect();
-    let repeats = |i: usize| home(found.accepted[i].candidate.domain) == Domain::Angle;
+    let repeats = |i: usize| found.accepted[i].candidate.domain.home() == Domain::Angle;
     // Many at once are the pattern that lost codes make. A quiet ADC loses none, and a sensor may have many harmonics.
     let small = (0..sizes.len()).filter(|i| repeats(*i) && sizes[*i] < known.whole);
     let many = small.count() > MANY;

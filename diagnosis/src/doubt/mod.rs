@@ -39,15 +39,6 @@ pub(crate) const APART: f64 = 2.0;
 /// Domains that slow noise of the channels is in: all that can be slow.
 pub(crate) const SLOW_DOMAINS: [Domain; 3] = [Domain::Speed, Domain::Time, Domain::Revolution];
 
-/// What depends on the code depends on the angle too.
-pub(crate) fn home(domain: Domain) -> Domain {
-    if domain == Domain::Code {
-        Domain::Angle
-    } else {
-        domain
-    }
-}
-
 /// Takes names back that do not hold, and returns the domains that have none for what is in them.
 pub(crate) fn doubt(system: &System, catalogue: &Catalogue, found: &mut Selection) -> Vec<Domain> {
     let mut closed = vec![];
@@ -62,7 +53,7 @@ pub(crate) fn doubt(system: &System, catalogue: &Catalogue, found: &mut Selectio
             continue;
         }
         let own: Vec<usize> = (0..found.accepted.len())
-            .filter(|i| home(found.accepted[*i].candidate.domain) == domain)
+            .filter(|i| found.accepted[*i].candidate.domain.home() == domain)
             .collect();
         let one = domain == Domain::Angle && system.context.periods_travelled() < APART;
         if own.is_empty() || one {
@@ -94,7 +85,7 @@ pub(crate) fn doubt(system: &System, catalogue: &Catalogue, found: &mut Selectio
 
 /// Takes lines back that stand at an order of the scale period, where what goes with the angle has no name: they are part of it.
 pub(crate) fn lines_at_orders(system: &System, found: &mut Selection) {
-    let of_angle = |one: &Unnamed| one.domain().map(home) == Some(Domain::Angle);
+    let of_angle = |one: &Unnamed| one.domain().map(Domain::home) == Some(Domain::Angle);
     if !found.unnamed.iter().chain(&found.left).any(of_angle) {
         return;
     }

@@ -4,7 +4,6 @@
 use nonius_quantity::{Quantity, Unit};
 use nonius_recording::{Recording, code_step};
 
-use crate::doubt::home;
 use crate::model::System;
 use crate::select::selection::Selection;
 use crate::unnamed::unexplained::Unnamed;
@@ -52,7 +51,7 @@ pub(crate) fn beside(
         tangential: &left.tangential,
     };
     let stays = |one: &Unnamed| {
-        let along = one.domain().is_some_and(|d| left.is_along(home(d)));
+        let along = one.domain().is_some_and(|d| left.is_along(d.home()));
         system.size(one.gain) > rounding || !along
     };
     let before = found.unnamed.len() + found.left.len();

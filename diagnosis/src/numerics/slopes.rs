@@ -1,5 +1,19 @@
 //! How values change from sample to sample.
 
+/// Lays a straight line from the value before a run to the one behind it; at an end there is one neighbour, and none where there is
+/// nothing but the run.
+pub(crate) fn lay_straight(values: &mut [f64], run: std::ops::Range<usize>) {
+    let before = run.start.checked_sub(1).map(|k| values[k]);
+    let after = values.get(run.end).copied();
+    let (Some(first), Some(last)) = (before.or(after), after.or(before)) else {
+        return;
+    };
+    let step = (last - first) / (run.len() + 1) as f64;
+    for (k, value) in values[run].iter_mut().enumerate() {
+        *value = first + step * (k + 1) as f64;
+    }
+}
+
 /// Change per sample.
 pub(crate) fn gradient(values: &[f64]) -> Vec<f64> {
     let last = values.len().saturating_sub(1);

@@ -22,9 +22,6 @@ use crate::select::search::search;
 use crate::select::selection::{Accepted, Selection};
 use crate::shapes::library::Shape;
 
-/// Fewest samples by which causes are looked for: of fewer, motion, five parameters and noise leave too little to tell one by.
-pub(crate) const FEWEST: usize = 150;
-
 /// Shapes of one list, then of the other.
 pub(crate) fn both(a: &[Shape], b: &[Shape]) -> Vec<Shape> {
     a.iter().chain(b).cloned().collect()
@@ -84,7 +81,7 @@ pub(crate) fn select(
     may: Anew,
 ) -> Selection {
     let found = begin(system, catalogue, carried);
-    if system.context.samples() < FEWEST {
+    if system.context.is_too_short() {
         return found;
     }
     let known = found.accepted.len();

@@ -3,7 +3,6 @@
 use nonius_quantity::ordinal;
 
 use crate::causes::candidate::{Candidate, Domain, Estimate};
-use crate::doubt::home;
 use crate::finding::{Cause, Chip, Finding, Gain, OTHER_ORDER, Parameter};
 use crate::model::exact::Start;
 use crate::model::{Fit, Halves, System, amounts};
@@ -34,6 +33,9 @@ pub(crate) struct Accepted {
     /// It does not hold in the end, and gets no name.
     pub(crate) doubted: bool,
 }
+
+/// The largest share of a size that its standard error may have: beyond it a correction may add more than it takes.
+pub const VAGUE: f64 = 1.0 / 3.0;
 
 /// What a cause explains that nothing else explains.
 #[derive(Clone, Copy, Debug, Default)]
@@ -361,7 +363,7 @@ impl Selection {
     /// Without what a position would be twice as wrong by if it were the opposite along the circle, where there is such; without anything
     /// that goes with the angle, where one of those has a vague size: they hide each other.
     pub(crate) fn sure(&self, system: &System) -> Option<Self> {
-        let with_angle = |a: &Accepted| home(a.candidate.domain) == Domain::Angle;
+        let with_angle = |a: &Accepted| a.candidate.domain.home() == Domain::Angle;
         let vague = (self.accepted.iter()).any(|a| with_angle(a) && self.is_vague(a));
         let sure =
             |a: &&Accepted| a.other_order.is_none() && !a.hidden && !(vague && with_angle(a));
@@ -369,9 +371,8 @@ impl Selection {
         (sure.len() < self.accepted.len()).then(|| self.of(sure, system))
     }
 
-    /// Whether the amounts of a cause have a standard error of more than a third of them.
+    /// Whether the amounts of a cause have so large a standard error that it may move no position.
     fn is_vague(&self, one: &Accepted) -> bool {
-        const VAGUE: f64 = 1.0 / 3.0;
         let solution = &self.fit.solution;
         let square: f64 = one.range().map(|k| solution.x[k].powi(2)).sum();
         let error: f64 = one.range().map(|k| solution.covariance[(k, k)]).sum();

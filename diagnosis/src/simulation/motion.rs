@@ -10,6 +10,7 @@ use crate::context::{Context, MANY};
 use crate::diagnose::Diagnosis;
 use crate::finding::{Cause, Finding};
 use crate::motion::spline::Spline;
+use crate::numerics::slopes::lay_straight;
 
 /// What a sample counts that the diagnosis leaves out: where there is no other, the motion goes along it.
 const LEFT_OUT: f64 = 1e-6;
@@ -59,15 +60,7 @@ pub(crate) fn bridge(context: &Context, angle: &mut [f64]) {
     for run in context.tells().chunk_by(|a, b| (*a == 0.0) == (*b == 0.0)) {
         let to = from + run.len();
         if run.first() == Some(&0.0) && run.len() < MANY && run.len() < n {
-            let before = from.checked_sub(1).map(|k| angle[k]);
-            let after = angle.get(to).copied();
-            // At an end there is one neighbour.
-            let (Some(first), Some(last)) = (before.or(after), after.or(before)) else {
-                return;
-            };
-            let step = (last - first) / (run.len() + 1) as f64;
-            let all = angle[from..to].iter_mut().enumerate();
-            all.for_each(|(k, a)| *a = first + step * (k + 1) as f64);
+            lay_straight(angle, from..to);
         }
         from = to;
     }

@@ -7,8 +7,7 @@ use nonius_recording::AdcSource;
 
 use crate::causes::revolution::turns;
 use crate::causes::speed_varies;
-use crate::context::Context;
-use crate::select::FEWEST;
+use crate::context::{Context, FEWEST};
 
 /// Share of the largest speed below which the scale stands.
 const STANDS: f64 = 0.02;
@@ -25,8 +24,8 @@ const DRIFTS: f64 = 3.0;
 pub fn unseen(context: &Context) -> Vec<String> {
     let mut list: Vec<String> = vec![];
     let mut tell = |sentence: &str| list.push(sentence.into());
-    let samples = context.samples();
-    if samples < FEWEST {
+    if context.is_too_short() {
+        let samples = context.samples();
         tell(&format!(
             "of {samples} samples, fewer than {FEWEST}, no cause is named but what codes and times themselves show; record more"
         ));
@@ -59,11 +58,11 @@ pub fn unseen(context: &Context) -> Vec<String> {
         tell(
             "at this constant speed, channel_skew, bandwidth_mismatch, common_bandwidth and delayed_crosstalk look like phase and gain errors, harmonics like lines, and amplitude_noise and clock_jitter like white noise; record several speeds",
         );
-    }
-    if !speed_varies(context) && context.against_reference.is_some() {
-        tell(
-            "at this constant speed, a latency looks like the angle between the sensor and its reference; record several speeds",
-        );
+        if context.against_reference.is_some() {
+            tell(
+                "at this constant speed, a latency looks like the angle between the sensor and its reference; record several speeds",
+            );
+        }
     }
     if !(moves(1.0) && moves(-1.0)) {
         tell("in one direction, hysteresis looks like an offset; reverse");

@@ -53,6 +53,15 @@ pub(crate) fn swept(t: f64) -> f64 {
     60.0 * TAU * (TAU * 1.3 * t / LENGTH).sin() + 11.0 * TAU * t / LENGTH
 }
 
+/// How far positions, turns, are off the angle of each sample, radians: rms, but for where they count from.
+pub(crate) fn off(turns: &[f64], angle: impl Fn(usize) -> f64) -> f64 {
+    let off = turns.iter().enumerate().map(|(k, t)| t - angle(k) / TAU);
+    let off: Vec<f64> = off.map(|off| off - off.round()).collect();
+    let mean = off.iter().sum::<f64>() / off.len() as f64;
+    let square: f64 = off.iter().map(|o| (o - mean).powi(2)).sum();
+    TAU * (square / off.len() as f64).sqrt()
+}
+
 impl Instrument {
     pub(crate) fn diagnosed(&self, seed: u64) -> Diagnosis {
         self.diagnosed_of(&self.recorded(seed))
@@ -68,18 +77,9 @@ impl Instrument {
     pub(crate) fn position_errors(&self, recording: &Recording, found: &Diagnosis) -> [f64; 2] {
         let (cos, sin) = (&recording.cos, &recording.sin);
         let ellipse = Ellipse::fit(cos, sin).ellipse;
-        let near = |turns: f64, k: usize| {
-            let off = turns - (self.axis)(k as f64 / RATE) / TAU;
-            off - off.round()
-        };
         let by_ellipse = cos.iter().zip(sin).map(|(c, s)| ellipse.angle(*c, *s));
         let all: [Vec<f64>; 2] = [found.positions.clone(), by_ellipse.collect()];
-        all.map(|turns| {
-            let off: Vec<f64> = turns.iter().enumerate().map(|(k, t)| near(*t, k)).collect();
-            let mean = off.iter().sum::<f64>() / off.len() as f64;
-            let square: f64 = off.iter().map(|o| (o - mean).powi(2)).sum();
-            TAU * (square / off.len() as f64).sqrt()
-        })
+        all.map(|turns| off(&turns, |k| (self.axis)(k as f64 / RATE)))
     }
 
     pub(crate) fn recorded(&self, seed: u64) -> Recording {

@@ -10,7 +10,7 @@ use rand::{SeedableRng, rngs::StdRng};
 use rand_distr::{Distribution, StandardNormal};
 
 use crate::harness::names;
-use crate::instrument::{Damage, Instrument, LENGTH, PLAIN, RATE, SAMPLES, swept};
+use crate::instrument::{Damage, Instrument, LENGTH, PLAIN, RATE, SAMPLES, off, swept};
 
 /// Moves from place to place, with rests between.
 fn served(t: f64) -> f64 {
@@ -342,6 +342,7 @@ fn what_is_vague_moves_no_position() {
         10.0 * TAU * WAVES.iter().zip(1..).map(wave).sum::<f64>()
     }
     const COUNT: usize = 5000;
+    let angle = |k: usize| hand(LENGTH * k as f64 / COUNT as f64) + 1.2;
     let mut random = StdRng::seed_from_u64(3);
     let mut own = || -> f64 { StandardNormal.sample(&mut random) };
     let [mut time, mut cos, mut sin] = [vec![], vec![], vec![]];
@@ -352,7 +353,7 @@ fn what_is_vague_moves_no_position() {
         (0..16).map(code).sum::<f64>() / 16.0
     };
     for k in 0..COUNT {
-        let a = hand(LENGTH * k as f64 / COUNT as f64) + 1.2;
+        let a = angle(k);
         let third = |a: f64| 0.01 * (3.0 * a + 3.943).cos();
         time.push(k as f64 * 1e-5);
         cos.push(seen(0.03 + a.cos() + third(a)));
@@ -362,14 +363,7 @@ fn what_is_vague_moves_no_position() {
     }
     let recording = Recording::from_samples(time, cos, sin, &Overrides::default());
     let found = diagnose(&recording.expect("a recording")).expect("an ellipse");
-    let errors = found
-        .positions
-        .iter()
-        .enumerate()
-        .map(|(k, turns)| turns - (hand(LENGTH * k as f64 / COUNT as f64) + 1.2) / TAU);
-    let errors: Vec<f64> = errors.map(|e| TAU * (e - e.round())).collect();
-    let mean = errors.iter().sum::<f64>() / COUNT as f64;
-    let rms = (errors.iter().map(|e| (e - mean).powi(2)).sum::<f64>() / COUNT as f64).sqrt();
+    let rms = off(&found.positions, angle);
     // The nearest ellipse leaves 7.2 mrad.
     assert!(rms < 0.009, "{rms} {:?}", names(&found));
 }
