@@ -5,10 +5,12 @@ use std::f64::consts::PI;
 
 use crate::context::Context;
 use crate::motion::spline::Spline;
-use crate::numerics::slopes::lay_straight;
 
 /// Of the other channel's amplitude, beyond which it hardly knows the angle: its own peak is near.
 pub(crate) const KNOWS: f64 = 0.985;
+
+/// What a sample counts for the motion that does not tell the angle.
+const LEFT_OUT: f64 = 1e-6;
 
 /// A channel (0 is cos) at its upper or its lower rail.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -79,14 +81,11 @@ impl Context {
         tells
     }
 
-    /// Lays straight lines over samples of which neither channel tells the angle, radians, continuous.
-    pub(crate) fn bridge_rails(&self, angle: &mut [f64]) {
-        let unknown = self.clipped.iter().filter(|one| one.by == By::Neighbours);
-        let mut places: Vec<usize> = unknown.map(|one| one.sample).collect();
-        places.sort_unstable();
-        for run in places.chunk_by(|a, b| a + 1 == *b) {
-            lay_straight(angle, run[0]..run[0] + run.len());
-        }
+    /// What a sample counts for the motion: next to nothing where nothing tells the angle, but there it goes along the line that was
+    /// laid over it, whatever its knots could do.
+    pub(crate) fn leads(&self) -> Vec<f64> {
+        let tells = self.tells().into_iter();
+        tells.map(|tells| tells.max(LEFT_OUT)).collect()
     }
 
     /// The motion by the samples that tell it: the spline, and what it fits to an angle.
@@ -95,13 +94,13 @@ impl Context {
         spline: &'a Spline,
         angle: &[f64],
     ) -> (Cow<'a, Spline>, Vec<f64>) {
-        let tells = self.tells();
-        let spline = if self.clipped.is_empty() {
+        let leads = self.leads();
+        let spline = if self.weight.iter().all(|weight| *weight > 0.0) {
             Cow::Borrowed(spline)
         } else {
-            Cow::Owned(Spline::new(self.samples(), spline.spacing(), &tells))
+            Cow::Owned(Spline::new(self.samples(), spline.spacing(), &leads))
         };
-        let fit = spline.fit(angle, &tells);
+        let fit = spline.fit(angle, &leads);
         (spline, fit)
     }
 }

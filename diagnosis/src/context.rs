@@ -12,13 +12,11 @@ use crate::model::known::Known;
 use crate::motion::in_step;
 use crate::motion::knots::{self, Told};
 use crate::motion::spline::Spline;
+use crate::numerics::continuous::continuous;
 use crate::numerics::slopes::{around, fine_gradient, gradient};
 use crate::numerics::solve::dot;
 use crate::numerics::spread::standardised;
 use crate::shapes::trig::Trig;
-
-/// From so many bad samples in a row on, their own angle tells how far the scale moves meanwhile.
-pub(crate) const MANY: usize = 8;
 
 /// Fewest samples by which causes are looked for: of fewer, motion, five parameters and noise leave too little to tell one by.
 pub(crate) const FEWEST: usize = 150;
@@ -221,20 +219,8 @@ impl Context {
     pub fn set_pair(&mut self, c: Vec<f64>, s: Vec<f64>, reference: Option<&[f64]>) {
         let n = c.len();
         let tells = self.tells();
-        let mut angle: Vec<f64> = c.iter().zip(&s).map(|(c, s)| s.atan2(*c)).collect();
-        // Bad samples take their neighbour's angle, but for many in a row: those were filled along the ellipse, and periods pass
-        // in them.
-        let mut bad = 0;
-        for k in 1..n {
-            bad = if tells[k] == 0.0 { bad + 1 } else { 0 };
-            let ends = k + 1 == n || tells[k + 1] > 0.0;
-            if bad > 0 && ends && bad < MANY {
-                (k + 1 - bad..=k).for_each(|k| angle[k] = angle[k - 1]);
-            }
-        }
-        let mut measured = unwrapped(angle);
-        self.bridge_rails(&mut measured);
-        self.measured = measured;
+        let angle = c.iter().zip(&s).map(|(c, s)| s.atan2(*c)).collect();
+        self.measured = continuous(angle, &tells);
         (self.c, self.s) = (c, s);
         if self.spline.is_none() {
             let per = self.periods_per_revolution;

@@ -7,6 +7,7 @@ use crate::checks::delays::{Delay, Delays, delays};
 use crate::checks::sides::{AROUND, beside, column, is_about, powers};
 use crate::checks::{Checked, NINTH, magnitudes, ninth};
 use crate::context::{against, unwrapped};
+use crate::numerics::continuous::continuous;
 use crate::numerics::correlate::sums;
 use crate::numerics::solve::{dot, weights_of};
 
@@ -99,39 +100,6 @@ fn sides(samples: usize) -> impl Iterator<Item = (usize, i32)> {
         .take_while(move |(side, _)| samples >= 32 * side)
 }
 
-/// Lays straight lines over samples that do not count.
-fn bridge(values: &mut [f64], weight: &[f64]) {
-    // Before the first two that count, and behind the last two, their line goes on.
-    let counts = |k: &usize| weight[*k] > 0.0;
-    let ends: [Vec<usize>; 2] = [
-        (0..values.len()).filter(counts).take(2).collect(),
-        (0..values.len()).rev().filter(counts).take(2).collect(),
-    ];
-    for ends in ends {
-        let [near, next] = ends[..] else { return };
-        let slope = (values[next] - values[near]) / (next as f64 - near as f64);
-        let outside = if near < next {
-            0..near
-        } else {
-            near + 1..values.len()
-        };
-        for k in outside {
-            values[k] = values[near] + slope * (k as f64 - near as f64);
-        }
-    }
-    let mut last = 0;
-    for (k, weight) in weight.iter().enumerate().skip(1) {
-        if *weight == 0.0 {
-            continue;
-        }
-        let (from, by) = (values[last], values[k] - values[last]);
-        for (i, value) in values[last + 1..k].iter_mut().enumerate() {
-            *value = from + by * (i + 1) as f64 / (k - last) as f64;
-        }
-        last = k;
-    }
-}
-
 /// The angle of a recording that draws an ellipse, continuous, radians.
 pub(crate) fn angle(recording: &Recording, ellipse: &Ellipse, weight: &[f64]) -> Vec<f64> {
     let pairs = recording.cos.iter().zip(&recording.sin);
@@ -139,9 +107,7 @@ pub(crate) fn angle(recording: &Recording, ellipse: &Ellipse, weight: &[f64]) ->
         let (c, s) = ellipse.corrected(*c, *s);
         s.atan2(c)
     });
-    let mut angle = unwrapped(angle.collect());
-    bridge(&mut angle, weight);
-    angle
+    continuous(angle.collect(), weight)
 }
 
 /// An angle, looked at with curves through so many samples on either side.

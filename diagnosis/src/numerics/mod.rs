@@ -1,5 +1,6 @@
 //! Least squares, tail probabilities, spectra and curves, as any program has them.
 
+pub(crate) mod continuous;
 pub(crate) mod correlate;
 pub(crate) mod ends;
 pub(crate) mod lines;

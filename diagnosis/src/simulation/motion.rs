@@ -6,14 +6,11 @@ use std::fmt::Write;
 use nonius_recording::Recording;
 
 use crate::checks::timebase::GAP;
-use crate::context::{Context, MANY};
+use crate::context::Context;
 use crate::diagnose::Diagnosis;
 use crate::finding::{Cause, Finding};
 use crate::motion::spline::Spline;
 use crate::numerics::slopes::lay_straight;
-
-/// What a sample counts that the diagnosis leaves out: where there is no other, the motion goes along it.
-const LEFT_OUT: f64 = 1e-6;
 
 /// Where the axis is by the extended model, as a spline of the sample's number: radians of the scale period.
 #[derive(Clone, Debug)]
@@ -27,7 +24,7 @@ impl Motion {
     pub(crate) fn of(context: &Context, angle: &[f64]) -> Self {
         let n = context.samples();
         let spacing = context.followed().map_or(n as f64, Spline::spacing);
-        let weights = weights(context);
+        let weights = context.leads();
         let spline = Spline::new(n, spacing, &weights);
         let coefficients = spline.fit(angle, &weights);
         Self {
@@ -44,7 +41,7 @@ impl Motion {
             let each = added.iter_mut().enumerate();
             each.for_each(|(k, added)| *added += at(k));
         }
-        let added = self.spline.fit(&added, &weights(context));
+        let added = self.spline.fit(&added, &context.leads());
         let pairs = self.coefficients.iter().zip(added);
         Self {
             spline: self.spline.clone(),
@@ -53,22 +50,23 @@ impl Motion {
     }
 }
 
-/// Where a few samples are wrong, the axis goes straight on from the one before to the one after.
+/// Where samples tell nothing, the axis goes along its smooth motion from the one before to the one after.
 pub(crate) fn bridge(context: &Context, angle: &mut [f64]) {
-    let n = angle.len();
+    let smooth = |k: usize| context.alpha[k];
+    let mut off: Vec<f64> = angle
+        .iter()
+        .enumerate()
+        .map(|(k, angle)| angle - smooth(k))
+        .collect();
     let mut from = 0;
     for run in context.tells().chunk_by(|a, b| (*a == 0.0) == (*b == 0.0)) {
         let to = from + run.len();
-        if run.first() == Some(&0.0) && run.len() < MANY && run.len() < n {
-            lay_straight(angle, from..to);
+        if run.first() == Some(&0.0) {
+            lay_straight(&mut off, from..to);
+            (from..to).for_each(|k| angle[k] = smooth(k) + off[k]);
         }
         from = to;
     }
-}
-
-fn weights(context: &Context) -> Vec<f64> {
-    let tells = context.tells().into_iter();
-    tells.map(|w| w.max(LEFT_OUT)).collect()
 }
 
 /// What the simulation of a finding adds to the angle at each sample, radians, and the positions hold yet: real motion, and the lag of a

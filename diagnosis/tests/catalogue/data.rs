@@ -55,58 +55,6 @@ fn a_sample_an_hour() {
     assert_eq!(names(&found), []);
 }
 
-/// Rows of zeros hold no signal: a logger shows them before its ADC has begun, after it has ended, and while its link is down.
-/// They are left out, the notes say how many, and neither they nor the samples beside them are a cause.
-#[test]
-fn rows_of_zeros_hold_no_signal() {
-    let last = 19_999;
-    for zeros in [
-        0..1,
-        0..5,
-        0..400,
-        last..last + 1,
-        last - 300..last + 1,
-        9000..9002,
-        9000..9300,
-    ] {
-        let found = damaged(&PLAIN, |rows| {
-            for row in &mut rows[zeros.clone()] {
-                (row[1], row[2]) = (0.0, 0.0);
-            }
-        });
-        let left = &found.unexplained;
-        assert!(names(&found).is_empty(), "{zeros:?}: {:?}", names(&found));
-        assert!(!left.significant, "{zeros:?}: {}", left.signature);
-        let said = format!("{} row", zeros.len());
-        assert!(
-            found.notes.iter().any(|n| n.starts_with(&said)),
-            "{:?}",
-            found.notes
-        );
-    }
-}
-
-/// A glitch leaves out itself and its neighbours, not the rows without signal that were left out before it.
-#[test]
-fn a_glitch_beside_rows_of_zeros_counts_its_own_samples() {
-    let found = damaged(&PLAIN, |rows| {
-        for row in &mut rows[..400] {
-            (row[1], row[2]) = (0.0, 0.0);
-        }
-        rows[9000][1] += 0.2;
-    });
-    assert_eq!(names(&found), [Cause::Glitches]);
-    assert_eq!(found.findings[0].gain.repaired_samples, Some(3));
-}
-
-/// A single row of zeros within a recording is a sample that is far off like any other.
-#[test]
-fn a_single_row_of_zeros_is_a_glitch() {
-    shows(Cause::Glitches, |rows| {
-        (rows[9000][1], rows[9000][2]) = (0.0, 0.0)
-    });
-}
-
 /// No other sample is near it in value: how large noise is there, only its neighbours can tell.
 #[test]
 fn a_glitch_beyond_every_other_value() {

@@ -11,6 +11,7 @@ mod instruments;
 mod lengths;
 mod long;
 mod motion;
+mod no_signal;
 mod reference;
 mod revolution;
 mod speed;
