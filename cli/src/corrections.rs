@@ -40,20 +40,45 @@ fn learns_bends(spec: &Spec, found: &Diagnosis) -> bool {
     slow as f64 > SOME * speeds.len() as f64
 }
 
-/// A bandwidth behind which the completion sees the bend, where the loop of the design is too wide for that and the
-/// motion of the recording allows a narrower one.
-fn narrower(spec: &Spec, found: &Diagnosis) -> Option<f64> {
-    let mut speeds: Vec<f64> = found.context.speed.iter().map(|v| v.abs()).collect();
-    speeds.sort_by(f64::total_cmp);
-    let usual = speeds.get(speeds.len() / 2)? / TAU;
-    let acceleration = found.context.acceleration.iter();
-    let most = acceleration.fold(0.0f64, |m, a| m.max(a.abs()));
-    // A type 2 loop lags by the acceleration over the square of its bandwidth.
-    let lag = TAU * spec.accuracy.rms_periods;
-    let needed = (most / lag).sqrt() / TAU;
-    let narrow = digits(needed.max(2.0 * usual), 3);
-    let now = spec.tracking.bandwidth_hz;
-    (spec.tracking.filter_type == 2 && now > 4.0 * usual && narrow < now).then_some(narrow)
+/// What the completion, which learns the bends of third order, sees of the motion of a recording behind a loop.
+struct Behind {
+    /// Median signal frequency, Hz.
+    usual: f64,
+    /// Bandwidth to which the loop is narrowed for it, Hz, where the motion allows that.
+    narrowed: Option<f64>,
+    /// Bandwidth of the loop then, Hz.
+    bandwidth: f64,
+}
+
+impl Behind {
+    /// So many times the usual signal frequency, behind a wider loop the completion would take more than a thousand periods, or rest.
+    const WIDEST: f64 = 4.0;
+    /// So many times that is narrow enough.
+    const ENOUGH: f64 = 2.0;
+
+    fn of(spec: &Spec, found: &Diagnosis) -> Self {
+        let mut speeds: Vec<f64> = found.context.speed.iter().map(|v| v.abs()).collect();
+        speeds.sort_by(f64::total_cmp);
+        let usual = speeds.get(speeds.len() / 2).map_or(0.0, |v| v / TAU);
+        let acceleration = found.context.acceleration.iter();
+        let most = acceleration.fold(0.0f64, |m, a| m.max(a.abs()));
+        // A type 2 loop lags by the acceleration over the square of its bandwidth.
+        let lag = TAU * spec.accuracy.rms_periods;
+        let needed = (most / lag).sqrt() / TAU;
+        let narrow = digits(needed.max(Self::ENOUGH * usual), 3);
+        let now = spec.tracking.bandwidth_hz;
+        let narrows = spec.tracking.filter_type == 2 && now > Self::WIDEST * usual && narrow < now;
+        let narrowed = narrows.then_some(narrow);
+        Self {
+            usual,
+            narrowed,
+            bandwidth: narrowed.unwrap_or(now),
+        }
+    }
+
+    fn sees(&self) -> bool {
+        self.bandwidth <= Self::WIDEST * self.usual
+    }
 }
 
 /// A design, or why there cannot be one.
@@ -238,16 +263,31 @@ fn correct_bends(text: &str, found: &Diagnosis) -> Result<(String, Vec<Outcome>)
              chip does not learn bends, so the design keeps its parameters"
         ));
     }
+    let behind = Behind::of(&spec, found);
+    let cubic = which
+        .iter()
+        .any(|k| harmonics::is_of_third_order(&found.findings[*k]));
+    if cubic && !behind.sees() {
+        return unchanged(format!(
+            "the channels bend by the third order, which the chip learns well where the bandwidth of its loop is up to {} times the signal \
+             frequency; this axis accelerates too much for that (the signals have {} Hz, usually, and the loop needs {} Hz), so the design keeps \
+             its parameters",
+            Behind::WIDEST,
+            digits(behind.usual, 2),
+            digits(behind.bandwidth, 3),
+        ));
+    }
     let mut document: DocumentMut = text.parse().context("the design is no TOML")?;
     document["calibration"]["parameters"] = value(9);
     let bend_max = (ROOM * bend).clamp(0.02, 0.2);
     document["sensor"]["bend_max"] = value(digits(bend_max, 3));
     let mut narrowed = vec![];
-    if let Some(bandwidth) = narrower(&spec, found) {
+    if let Some(bandwidth) = behind.narrowed {
         document["loop"]["bandwidth_hz"] = value(bandwidth);
         narrowed = said(format!(
-            "its loop is narrowed to {bandwidth} Hz, twice the usual signal frequency: what a wider loop follows it \
-             cannot tell from motion"
+            "its loop is narrowed to {bandwidth} Hz, for signals that have {} Hz, usually: what a wider loop follows it \
+             cannot tell from motion",
+            digits(behind.usual, 2)
         ));
     }
     match designed(&document)? {

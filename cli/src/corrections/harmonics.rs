@@ -53,6 +53,11 @@ pub(super) fn bend(finding: &Finding, beta: f64) -> Option<f64> {
     }
 }
 
+/// Whether a bend is one of third order.
+pub(super) fn is_of_third_order(bend: &Finding) -> bool {
+    bend.cause == Cause::OddNonlinearity || bend.parameter("order") == Some(3.0)
+}
+
 /// Phase of T2 and T3 of the sine channel: they are −cos 2 and −sin 3 of the angle less the phase error.
 fn sine_phase(order: f64, beta: f64) -> f64 {
     let quarter = if order == 3.0 { FRAC_PI_2 } else { 0.0 };
