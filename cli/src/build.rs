@@ -125,9 +125,11 @@ fn summary(j: &DesignJson, output: &Path, shown: &str) {
     let rate = j.spec.adc.sample_rate_hz;
     say!("{} (design {})", j.name, j.hash);
     say!(
-        "  accuracy    {:.2e} periods rms predicted, {:.2e} simulated with half of the promised errors, {:.2e} asked",
+        "  accuracy    {:.2e} periods rms predicted, {:.2e} simulated with half of the promised errors, {:.2e} with the weakest signals, {:.2e} \
+         asked",
         j.budget.total,
         j.simulated.rms_periods,
+        j.simulated_weakest.rms_periods,
         j.budget.asked
     );
     for (unit, per_period) in [
@@ -179,13 +181,6 @@ fn summary(j: &DesignJson, output: &Path, shown: &str) {
             j.budget.arithmetic_allowed
         );
     }
-    if j.budget.total > j.budget.asked && j.budget.uncorrected == 0.0 {
-        say!(
-            "  note        predicted for the worst sensor that is promised: {:.2e} periods rms of {:.2e} asked; the run simulates a better one",
-            j.budget.total,
-            j.budget.asked
-        );
-    }
     if j.spec.calibration.has_bend() && j.spec.sensor.bend_max > 0.0 {
         say!(
             "  note        what polynomials of third order leave of bends of {} goes with the square of the bend and is not in the \
@@ -213,6 +208,13 @@ fn summary(j: &DesignJson, output: &Path, shown: &str) {
              and where noise is most of it a narrower loop, where the lag is a wider one"
         };
         say!("  note        the simulated accuracy misses what was asked for: {why}");
+    }
+    if uncorrected.is_none() && !j.misses() && j.misses_with_the_weakest() {
+        say!(
+            "  note        the weakest signals that are promised (sensor.amplitude_tolerance = {}) miss the accuracy that was asked for: noise and \
+             steps of the ADC are larger beside them",
+            j.spec.sensor.amplitude_tolerance
+        );
     }
     let folder = output.display();
     say!("  written     {folder}: rtl, tb, vectors, waves, coefficients, design.json, report.html");

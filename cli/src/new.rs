@@ -110,7 +110,9 @@ fn settle(draft: &mut Draft) -> Result<Design> {
     loop {
         match designed(draft) {
             Ok(design) => {
-                let reached = nonius_package::simulate(&design).accuracy.rms_periods;
+                let usual = nonius_package::simulate(&design).accuracy.rms_periods;
+                let weakest = nonius_package::simulate_weakest(&design).rms_periods;
+                let reached = usual.max(weakest);
                 let spared = rounded_up(MARGIN * draft.accuracy.max(reached.min(COARSEST)));
                 if spared <= MARGIN * MARGIN * draft.accuracy {
                     draft.accuracy = spared;

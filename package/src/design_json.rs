@@ -52,6 +52,8 @@ pub struct DesignJson {
     pub budget: Budget,
     /// The bit-true chip, measured.
     pub simulated: Accuracy,
+    /// The same with the weakest signals that are promised.
+    pub simulated_weakest: Accuracy,
     /// From power-up into full speed, measured likewise.
     pub pull_in: PullIn,
     /// What was asked for.
@@ -162,6 +164,13 @@ impl DesignJson {
         self.simulated.rms_periods > self.budget.asked || !self.simulated.locked
     }
 
+    /// The weakest sensor that is promised is simulated worse than what was asked for.
+    #[must_use]
+    pub fn misses_with_the_weakest(&self) -> bool {
+        let weakest = self.simulated_weakest;
+        weakest.rms_periods > self.budget.asked || !weakest.locked
+    }
+
     /// Everything that was asked for and promised is simulated to hold.
     #[must_use]
     pub fn holds(&self) -> bool {
@@ -174,7 +183,7 @@ impl DesignJson {
         design: &Design,
         hash: &str,
         (clocks, multipliers): (usize, usize),
-        simulated: Accuracy,
+        [simulated, simulated_weakest]: [Accuracy; 2],
         pull_in: PullIn,
     ) -> Self {
         let (spec, b) = (&design.spec, &design.budget);
@@ -228,6 +237,7 @@ impl DesignJson {
                 words: design.word_lengths(),
             },
             simulated,
+            simulated_weakest,
             pull_in,
             spec: spec.clone(),
         }

@@ -21,7 +21,7 @@ pub use design_json::DesignJson;
 pub use progress::{Event, Progress, silent};
 pub use pull_in::{BOTH_WAYS, PullIn, Worst, pull_in, pull_in_followed};
 pub use signals::{Signal, signals};
-pub use simulation::{Accuracy, Simulation, simulate};
+pub use simulation::{Accuracy, Simulation, simulate, simulate_weakest};
 pub use sine::{SineError, sine_error};
 pub use write::{WriteError, may_write, write};
 
@@ -103,10 +103,11 @@ pub fn package_followed(
     }
     progress(Event::Simulating);
     let simulation = simulate(design);
+    let accuracies = [simulation.accuracy, simulate_weakest(design)];
     let pull_in = pull_in_followed(design, &BOTH_WAYS, progress);
     progress(Event::Writing);
     let size = (chip.clocks, chip.multipliers);
-    let json = DesignJson::of(design, &hash, size, simulation.accuracy, pull_in);
+    let json = DesignJson::of(design, &hash, size, accuracies, pull_in);
     let mut files: Vec<(String, Vec<u8>)> = chip
         .files
         .into_iter()

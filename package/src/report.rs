@@ -111,8 +111,9 @@ fn said(design: &Design, j: &DesignJson) -> Vec<(&'static str, String, String)> 
             SIMULATED,
             per_period(j.simulated.rms_periods),
             format!(
-                "bit-true, rms, with half of the promised errors; largest {:.2e}; asked {:.2e}{}",
+                "bit-true, rms, with half of the promised errors; largest {:.2e}; with the weakest signals {:.2e} rms; asked {:.2e}{}",
                 j.simulated.largest_periods,
+                j.simulated_weakest.rms_periods,
                 j.budget.asked,
                 if j.simulated.locked {
                     ""

@@ -41,10 +41,20 @@ const SWEEP: usize = 100_000;
 /// Of so many parts of the period the mean error is told.
 const PARTS: usize = 200;
 
-/// A sensor with half of the promised errors and the promised noise: a fast stretch to converge on line, a ramp, and a slow
-/// sweep over one period.
+/// A sensor with half of the promised errors and the promised noise.
 #[must_use]
 pub fn simulate(design: &Design) -> Simulation {
+    of(design, half(design, [0.5, -0.5]))
+}
+
+/// The same with the weakest signals that are promised: noise and steps of the ADC are larger beside them.
+#[must_use]
+pub fn simulate_weakest(design: &Design) -> Accuracy {
+    of(design, half(design, [-1.0; 2])).accuracy
+}
+
+/// A fast stretch to converge on line, a ramp, and a slow sweep over one period.
+fn of(design: &Design, mut sensor: Sensor) -> Simulation {
     let spec = &design.spec;
     let top = spec.sensor.speed_max_periods_per_s / spec.adc.sample_rate_hz;
     let fast = (top / 2.0).min(0.00713);
@@ -61,7 +71,6 @@ pub fn simulate(design: &Design) -> Simulation {
     let settle = RAMP + ((20.0 / turns) as usize).min(100_000);
     let slow = 1.0 / SWEEP as f64;
 
-    let mut sensor = half(design);
     let mut chip = Chip::bit_true(design);
     let (mut course, mut period, mut raw) = (vec![], Squares::default(), Squares::default());
     let (mut whole, mut parts) = (Squares::default(), vec![Squares::default(); PARTS]);
@@ -166,13 +175,13 @@ impl Squares {
     }
 }
 
-/// Half of what the design promises of offsets, amplitudes and phase, and the noise; an amplitude that is no round number of codes. Where
-/// that does not fit the ADC it clips, as on the axis.
-fn half(design: &Design) -> Sensor {
+/// Half of what the design promises of offsets and phase, the noise, and so much of what it promises of the gains; an amplitude that is
+/// no round number of codes. Where that does not fit the ADC it clips, as on the axis.
+fn half(design: &Design, gains: [f64; 2]) -> Sensor {
     let spec = &design.spec;
     let s = &spec.sensor;
     let shares = Shares {
-        gains: [0.5, -0.5],
+        gains,
         offsets: [0.5, -0.5],
         phase: 0.5,
         bends: [0.0; 2],

@@ -2,7 +2,7 @@
 
 use crate::shipped;
 use nonius_model::design::Design;
-use nonius_package::simulate;
+use nonius_package::{simulate, simulate_weakest};
 
 /// Whatever a chip is built with, nothing is as wide as it is for no reason.
 #[test]
@@ -31,6 +31,15 @@ fn shipped_designs_reach_the_accuracy_they_ask_for() {
             found.locked && found.rms_periods <= asked,
             "{name}: {found:?}"
         );
+        let weakest = simulate_weakest(&design);
+        assert!(
+            weakest.locked && weakest.rms_periods <= asked,
+            "{name}: {weakest:?}"
+        );
+        // Noise and steps of the ADC are most of it, and the signals are weaker by what is promised.
+        let weaker = weakest.rms_periods / found.rms_periods;
+        let of_signals = 1.0 / (1.0 - spec.sensor.amplitude_tolerance);
+        assert!((weaker / of_signals - 1.0).abs() < 0.05, "{name}: {weaker}");
     }
 }
 
