@@ -147,6 +147,11 @@ impl Nameless {
         } else if !rest.is_empty() {
             (noise, strange) = (vec![], vec![]);
         }
+        let single = left::is_of_single_samples(system.context, &residual.radial);
+        if single {
+            (noise, rest) = (vec![], &[]);
+            strange = left::no_noise(system.context, &residual.radial, selection.coded);
+        }
         let mut unnamed = [selection.unnamed.as_slice(), rest].concat();
         let flicker = flicker(system, selection, &residual, &unnamed);
         let silent = unnamed.is_empty() && noise.is_empty() && strange.is_empty();

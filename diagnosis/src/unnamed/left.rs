@@ -19,6 +19,8 @@ const TRIALS: f64 = 2.0;
 const CODES: f64 = 0.5;
 /// Standard deviations from which on a sample stands out: not one in 10⁸ of noise does.
 const FAR: f64 = 6.0;
+/// Share of all samples from which on those that stand out are no tail of a noise.
+const SINGLE: f64 = 0.005;
 /// Sectors of the period in each of which the noise has a size of its own, and fewest samples that tell it.
 const SECTORS: usize = 16;
 const IN_A_SECTOR: usize = 50;
@@ -138,13 +140,37 @@ fn by_angle(context: &Context, radial: &[f64], sigma: f64) -> Vec<f64> {
     sizes.iter().map(louder).collect()
 }
 
+/// Samples that stand out of the noise of their part of the period, whose standard deviation is `sigma` on the whole.
+fn far_off(context: &Context, radial: &[f64], sigma: f64) -> Vec<usize> {
+    let louder = by_angle(context, radial, sigma);
+    let far = |k: &usize| {
+        let sigma = sigma * louder[sector(context, *k)];
+        radial[*k].abs() > FAR * sigma && context.weight[*k] > 0.0
+    };
+    (0..radial.len()).filter(far).collect()
+}
+
+/// Sizes of a radial residual where samples count.
+fn sizes(context: &Context, radial: &[f64]) -> Vec<f64> {
+    let pairs = radial.iter().zip(&context.weight);
+    pairs
+        .filter(|(_, w)| **w > 0.0)
+        .map(|(r, _)| r.abs())
+        .collect()
+}
+
+/// Whether so many samples stand out that they are what a kind of noise is made of.
+pub(crate) fn is_of_single_samples(context: &Context, radial: &[f64]) -> bool {
+    let sizes = sizes(context, radial);
+    let sigma = spread(&sizes);
+    let far = || far_off(context, radial, sigma).len() as f64;
+    sigma > CODES * code(context) && far() > SINGLE * sizes.len() as f64
+}
+
 /// What of a radial residual, in amplitudes, is no white noise; nothing where the ADC is coarser than the noise, or the codes err by
 /// `coded` rms and no more is left than that may make.
 pub(crate) fn no_noise(context: &Context, radial: &[f64], coded: f64) -> Vec<Unnamed> {
-    let sizes: Vec<f64> = (radial.iter().zip(&context.weight))
-        .filter(|(_, w)| **w > 0.0)
-        .map(|(r, _)| r.abs())
-        .collect();
+    let sizes = sizes(context, radial);
     if sizes.is_empty() {
         return vec![];
     }
@@ -169,12 +195,7 @@ pub(crate) fn no_noise(context: &Context, radial: &[f64], coded: f64) -> Vec<Unn
             });
         }
     };
-    let louder = by_angle(context, radial, sigma);
-    let far = |k: &usize| {
-        let sigma = sigma * louder[sector(context, *k)];
-        radial[*k].abs() > FAR * sigma && context.weight[*k] > 0.0
-    };
-    let far: Vec<usize> = (0..radial.len()).filter(far).collect();
+    let far = far_off(context, radial, sigma);
     if let Some(first) = far.first().filter(|_| far.len() >= FEWEST) {
         // Each is less likely than one in 10⁸.
         let expected = 2e-9 * radial.len() as f64;

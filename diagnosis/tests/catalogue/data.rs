@@ -1,6 +1,8 @@
 //! Causes in the data: samples that are off, lost or doubled, and noise with the signal.
 
 use nonius_diagnosis::Cause;
+use rand::rngs::StdRng;
+use rand::{Rng, SeedableRng};
 
 use crate::harness::{
     Case, LSB, NOISE, PLAIN, Rows, damaged, farthest, finds, finds_nothing, names, near, shows,
@@ -300,6 +302,26 @@ fn noise_with_the_signal() {
         },
     );
     near(&found, "rms", 0.002);
+}
+
+/// More samples are off than are left out, a few per cent of one channel: no noise that goes with the signal, and something is left.
+#[test]
+fn many_wild_samples_are_no_noise() {
+    for (every, size) in [(20, 0.45), (10, 0.15)] {
+        let found = damaged(&PLAIN, |rows| {
+            let mut random = StdRng::seed_from_u64(5);
+            for row in rows.iter_mut() {
+                if random.random_ratio(1, every) {
+                    row[1] += if random.random() { size } else { -size };
+                }
+            }
+        });
+        let named = names(&found);
+        let left = &found.unexplained;
+        assert!(!named.contains(&Cause::AmplitudeNoise), "{named:?}");
+        assert!(left.significant, "{named:?} {}", left.signature);
+        assert!(left.signature.contains("glitches"), "{}", left.signature);
+    }
 }
 
 /// Where the axis turns round a code comes again by chance. A wild sample before it is no motion, so none was put in; and the positions go
