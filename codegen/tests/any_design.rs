@@ -36,7 +36,7 @@ proptest! {
             c.gear_periods = Some(gear_periods);
             (c.restart_residual, c.hold_residual) = residuals;
             c.recall = c.recall.filter(|recall| !recall || c.settles());
-            c.hold_periods = hold_periods.filter(|_| c.recalls());
+            c.hold_periods = hold_periods.filter(|_| c.settles());
         }
         spec.chip.count_bits = count_bits;
         spec.chip.multipliers = Multipliers::Count(multipliers);

@@ -3,9 +3,14 @@
 use std::f64::consts::TAU;
 
 use crate::chip_support::loss::{PERIOD, sensor_for};
-use crate::chip_support::shipped::variants::{Variant, searches};
+use crate::chip_support::shipped::{
+    self,
+    variants::{Variant, searches},
+};
 use crate::chip_support::{Bench, largest, optical};
 use nonius_kept::long;
+use nonius_model::design::Design;
+use nonius_model::spec::Spec;
 use rand::{Rng, SeedableRng, rngs::StdRng};
 use rayon::prelude::*;
 
@@ -72,6 +77,34 @@ fn every_second_period_disturbed_counts_as_each() {
             );
         }
     });
+}
+
+/// Without recall parameters are held too, for as long; only where γ never settles none is.
+#[test]
+fn held_periods_are_refused_only_where_nothing_is_held() {
+    let with = |lines: &str| {
+        let text = shipped::text("optical");
+        let text = text.replace("parameters = 5", &format!("parameters = 5\n{lines}"));
+        Design::new(&Spec::from_toml(&text, "d.toml").expect("well formed"))
+    };
+    for periods in [1, 31, 64, 4096] {
+        let design = with(&format!("recall = false\nhold_periods = {periods}"));
+        let last = design.expect("held").constants.held_periods_last.value();
+        assert_eq!(last, f64::from(periods - 1));
+    }
+    for recall in ["", "recall = false\n"] {
+        let refused = with(&format!("{recall}gamma_last = 5\nhold_periods = 64"));
+        let refused = refused.expect_err("never settles");
+        assert_eq!(refused.field(), "calibration.hold_periods");
+        let message = refused.to_string();
+        for words in [
+            "leave it out, or gamma_last at least 8",
+            "once gamma has settled",
+            "no effect",
+        ] {
+            assert!(message.contains(words), "{message}");
+        }
+    }
 }
 
 /// Where there is only one gear a search that has begun stays so: a signal that is lost takes nothing back, whenever it is lost.

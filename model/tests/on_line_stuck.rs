@@ -59,13 +59,22 @@ fn a_stuck_channel_leaves_nothing() {
     });
 }
 
-/// A third larger, or a quarter smaller: held for `hold_periods`, then searched for anew.
+/// A third larger, or a quarter smaller: held for `hold_periods`, with recall and without, then searched for anew.
 #[test]
 fn another_amplitude_is_learned() {
-    let times = [None, Some(32)].into_iter();
-    let cases = times.flat_map(|hold| [(0.85, 1.15, hold), (1.15, 0.85, hold)]);
-    for (before, after, hold) in cases {
+    let times = [
+        (true, None),
+        (true, Some(32)),
+        (false, None),
+        (false, Some(8)),
+        (false, Some(100)),
+    ];
+    let cases = times
+        .into_iter()
+        .flat_map(|hold| [(0.85, 1.15, hold), (1.15, 0.85, hold)]);
+    for (before, after, (recall, hold)) in cases {
         let mut spec = optical();
+        spec.calibration.recall = Some(recall);
         spec.calibration.hold_periods = hold;
         let mut bench = Bench::new(&spec, 3);
         let signals = |scale: f64| {
@@ -90,7 +99,7 @@ fn another_amplitude_is_learned() {
             )
         };
         let (settled, radius) = run(&mut bench, before, 300);
-        let hold = hold.unwrap_or(256);
+        let hold = hold.unwrap_or(if recall { 256 } else { 32 });
         let (_, held) = run(&mut bench, after, hold - 7);
         let (learned, again) = run(&mut bench, after, 175);
         println!(

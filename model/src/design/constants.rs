@@ -122,7 +122,7 @@ pub(super) fn constants(
         gamma_gear_settled: whole(spec.calibration.settled_gears().into()),
         gamma_gear_last: whole(structure.calibration.gears().into()),
         gear_periods_last: whole(i64::from(spec.calibration.gear_periods()) - 1),
-        held_periods_last: whole(i64::from(Calibration::HELD) - 1),
+        held_periods_last: whole(i64::from(spec.calibration.hold_unknown_periods()) - 1),
         unlocked_sample: Constant::rounded(exp2(-i64::from(unlocked)), unlocked),
         unlocked_samples_last: Constant::rounded(1.0 - exp2(-i64::from(unlocked)), unlocked),
         failed_periods_last: whole(Calibration::FAILED.into()),

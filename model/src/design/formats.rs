@@ -214,12 +214,14 @@ pub(super) fn structure(
         gamma_gear: counting_to(spec.calibration.gears()),
         gear_periods: counting_to(periods(&spec.calibration).saturating_sub(1)),
         held_periods: {
+            let unknown = spec.calibration.hold_unknown_periods();
             let known = if spec.calibration.recalls() {
                 spec.calibration.hold_periods()
             } else {
-                0
+                unknown
             };
-            counting_to(known.max(Calibration::HELD) - 1)
+            // Five bits even where fewer would do.
+            counting_to(known.max(unknown).max(Calibration::HELD) - 1)
         },
         unlocked_samples: {
             let w = unlocked_bits(follow.lock_level_bits);

@@ -39,10 +39,7 @@ pub(super) fn check(spec: &Spec) -> Result<(), DesignError> {
         return refuse(
             "calibration.recall",
             true,
-            format!(
-                "false, or gamma_last at least {}",
-                c.gamma_first.saturating_add(c.settled_gears())
-            ),
+            format!("false, or {}", settling(c)),
             "parameters are held only once gamma has settled: before there is nothing to recall",
         );
     }
@@ -79,6 +76,12 @@ pub(super) fn check(spec: &Spec) -> Result<(), DesignError> {
     idle(c)
 }
 
+/// With what γ settles.
+fn settling(c: &Calibration) -> String {
+    let gear = c.gamma_first.saturating_add(c.settled_gears());
+    format!("gamma_last at least {gear}")
+}
+
 /// Keys of another search or set of parameters say nothing here: one that does not stand at its default was meant for it.
 fn idle(c: &Calibration) -> Result<(), DesignError> {
     let default = Calibration::default();
@@ -98,12 +101,12 @@ fn idle(c: &Calibration) -> Result<(), DesignError> {
             "the sum of squares knows no estimate that could lag: this key has no effect",
         );
     }
-    if let (false, Some(hold_periods)) = (c.recalls(), c.hold_periods) {
+    if let (false, Some(hold_periods)) = (c.settles(), c.hold_periods) {
         return refuse(
             "calibration.hold_periods",
             hold_periods,
-            "leave it out",
-            "nothing is recalled: this key has no effect",
+            format!("leave it out, or {}", settling(c)),
+            "parameters are held only once gamma has settled, which it never does: this key has no effect",
         );
     }
     if c.completed().is_none() && c.completion_gamma != default.completion_gamma {

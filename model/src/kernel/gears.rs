@@ -5,8 +5,8 @@
 //! throughout (`calm`) it moves no parameter: they are held to the end of the first period without it. From the first period on that was
 //! quiet a large one does the same, and after a sample out of the lock window they are held until the lock level is full again.
 //!
-//! Where it has been large for [`HELD`](crate::spec::Calibration::HELD) periods, not counting those that were held to their end without
-//! it, or where better parameters are known for [`hold_periods`](crate::spec::Calibration::hold_periods) more than not, and lock was not
+//! Where it has been large for [`hold_unknown_periods`](crate::spec::Calibration::hold_unknown_periods), not counting those that were held
+//! to their end without it, or where better parameters are known for [`hold_periods`](crate::spec::Calibration::hold_periods) more than not, and lock was not
 //! lost, the signal has changed, and the search begins again; at once where it has followed a signal that faded, and the radius is far
 //! too large now: the signal is back. A signal that is lost before the search has begun leaves parameters of which nothing is known: they
 //! begin again from their nominal values, or with recall from the best that is known. After that they stay, and the first gear goes on.

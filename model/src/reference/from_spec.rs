@@ -233,7 +233,7 @@ pub fn config(spec: &Spec) -> Result<Config, ReferenceError> {
             residual: spec.hold_residual(),
             restart: k.restart_residual,
             settled: k.settled_gears(),
-            periods: [Calibration::HELD, k.hold_periods()],
+            periods: [k.hold_unknown_periods(), k.hold_periods()],
             steady: spec.steady_gain(),
             recall: k.recalls().then_some(RecallConfig {
                 periods: k.gear_periods().into(),

@@ -46,8 +46,8 @@ pub struct Calibration {
     /// |ρ| above this holds the parameters once a gear has ended without: the signal may be fading. See [`Spec::hold_residual`].
     #[serde(default = "hold")]
     pub hold_residual: f64,
-    /// Periods of travel that what was recalled is held before the sensor is taken for changed, and the search begins again. Default:
-    /// see [`hold_periods`](Self::hold_periods).
+    /// Periods of travel that parameters are held before the sensor is taken for changed, and the search begins again: what was recalled, or
+    /// without recall whatever they are. Default: see [`hold_periods`](Self::hold_periods).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub hold_periods: Option<u32>,
     /// Where they begin to be held, the parameters go back to what they were some periods before: a fade of the signal takes
@@ -141,7 +141,8 @@ impl Spec {
 }
 
 impl Calibration {
-    /// Periods of travel that parameters are held of which nothing better is known, before the search begins again.
+    /// Periods of travel that parameters are held of which nothing better is known, before the search begins again, where the design does
+    /// not say.
     pub const HELD: u32 = 32;
     /// The same of those of which something is known, where the design does not say.
     pub const HELD_KNOWN: u32 = 256;
@@ -298,6 +299,16 @@ impl Calibration {
         let known = self.recall.unwrap_or(true);
         let periods = if known { Self::HELD_KNOWN } else { Self::HELD };
         self.hold_periods.unwrap_or(periods)
+    }
+
+    /// The same of parameters of which nothing better is known: [`Self::HELD`], and where the design wants no recall as it says.
+    #[must_use]
+    pub fn hold_unknown_periods(&self) -> u32 {
+        if self.recall == Some(false) {
+            self.hold_periods()
+        } else {
+            Self::HELD
+        }
     }
 
     /// Quiet periods of travel after which what was recalled moves again: an eighth. What comes back slowly is small again before it is
