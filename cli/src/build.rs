@@ -168,8 +168,7 @@ fn summary(j: &DesignJson, output: &Path, shown: &str) {
     );
     say!("  position    {}", position(j));
     pulled_in(&j.pull_in);
-    let peak = j.spec.sensor.amplitude * j.spec.sensor.reach() / j.spec.adc.full_scale;
-    if peak > 1.0 {
+    if let Some(peak) = clipped(&j.spec) {
         say!(
             "  note        the sensor that the design promises reaches {peak:.3} of the ADC's range at its worst: it clips"
         );
@@ -222,6 +221,13 @@ fn summary(j: &DesignJson, output: &Path, shown: &str) {
     let waves = output.join("waves");
     let [vcd, gtkw] = ["vcd", "gtkw"].map(|kind| waves.join(format!("{shown}.{kind}")));
     say!("      gtkwave {} {}", vcd.display(), gtkw.display());
+}
+
+/// What the sensor that the design promises reaches at its worst, of the ADC's range, where that is beyond it by more than its rounding.
+fn clipped(spec: &Spec) -> Option<f64> {
+    let peak = spec.sensor.amplitude * spec.reach() / spec.adc.full_scale;
+    let half_a_step = 0.5f64.powi(spec.adc.bits as i32);
+    (peak > 1.0 + half_a_step).then_some(peak)
 }
 
 /// What the calibration cannot see at speeds that the design promises.

@@ -111,6 +111,33 @@ fn what_no_calibration_sees_at_top_speed_is_told() {
     }
 }
 
+/// A promise beyond the range of the ADC is noted whatever makes it so; one that just fills it is not.
+#[test]
+fn a_promise_that_clips_is_told() {
+    let dir = tempfile::tempdir().expect("scratch");
+    let text = fs::read_to_string(design()).expect("designs/optical.toml");
+    let second = "\n[[correction.harmonics]]\norder = 2\namplitude_cos = 0.02\nphase_cos = 0.3\namplitude_sin = 0.02\nphase_sin = 1.1\n";
+    for (from, to, more, reaches) in [
+        ("", "", "", None),
+        ("amplitude = 0.8 ", "amplitude = 0.82 ", "", Some("1.025")),
+        ("parameters = 5", "parameters = 9", "", Some("1.046")),
+        ("", "", second, Some("1.018")),
+    ] {
+        assert!(text.contains(from));
+        let text = text.replacen(from, to, 1) + more;
+        fs::write(dir.path().join("d.toml"), text).expect("design");
+        let output = nonius(
+            dir.path(),
+            &["build", "d.toml", "-o", "out", "--rows", "10"],
+        );
+        let said = String::from_utf8_lossy(&output.stdout);
+        assert!(said.contains("written"), "{said}");
+        assert_eq!(said.contains("it clips"), reaches.is_some(), "{said}");
+        let words = reaches.map(|peak| format!("reaches {peak} of the ADC's range"));
+        assert!(words.is_none_or(|words| said.contains(&words)), "{said}");
+    }
+}
+
 #[test]
 fn build_refuses_before_anything_is_written() {
     let dir = tempfile::tempdir().expect("scratch");

@@ -272,6 +272,32 @@ fn what_is_built_follows_from_the_promise() {
     assert_eq!(read(&empty), read(&text));
 }
 
+/// What a promised sensor reaches: bends where they are calibrated, and harmonics, are in it beside tolerance and offset.
+#[test]
+fn a_promised_sensor_reaches_further_by_bends_and_harmonics() {
+    let second = |phases: [f64; 2]| {
+        vec![Harmonic {
+            order: 2,
+            amplitude_cos: 0.02,
+            phase_cos: phases[0],
+            amplitude_sin: 0.02,
+            phase_sin: phases[1],
+        }]
+    };
+    for (parameters, list, reach) in [
+        (5, vec![], 1.25),
+        (8, vec![], 1.15 * 1.05 + 0.1),
+        // In phase with a channel's peak, and where that is some way off.
+        (5, second([0.0, 0.0]), 1.15 * 1.02 + 0.1),
+        (5, second([0.3, 1.1]), 1.2720),
+        (9, second([0.0, 0.0]), 1.15 * 1.07 + 0.1),
+    ] {
+        let spec = spec(parameters, list);
+        let found = spec.reach();
+        assert!((found - reach).abs() < 1e-4, "{parameters}: {found}");
+    }
+}
+
 /// As steep as is not refused, from rest at any place of the period, and moving: the loop locks.
 #[test]
 fn the_steepest_harmonics_lock() {

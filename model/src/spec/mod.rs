@@ -15,6 +15,8 @@ pub use overrides::Overrides;
 pub use place::Place;
 pub use read::{SpecError, keys};
 
+use std::f64::consts::TAU;
+
 use serde::{Deserialize, Serialize};
 
 /// A design in physical units, as written in `design.toml`. Checked for form, not yet for sense: see
@@ -81,10 +83,43 @@ fn bend_max() -> f64 {
 }
 
 impl Sensor {
-    /// Largest value that either signal may take with what is promised here, in amplitudes.
+    /// Largest value that either signal may take with tolerance and offset alone, in nominal amplitudes; with the rest see
+    /// [`Spec::reach`].
     #[must_use]
     pub fn reach(&self) -> f64 {
         1.0 + self.amplitude_tolerance + self.offset_max
+    }
+}
+
+impl Spec {
+    /// Largest value that either signal takes with all that is promised, in nominal amplitudes, without noise: tolerance and offset at
+    /// their ends, bends y + b (2y² − 1) of either sign where they are calibrated, and what the harmonics add to the angle of any phase
+    /// error.
+    #[must_use]
+    pub fn reach(&self) -> f64 {
+        /// In a scale period: 128 in a cycle of the highest order.
+        const ANGLES: u32 = 2048;
+        const BETAS: i32 = 8;
+        let s = &self.sensor;
+        let most = 1.0 + s.amplitude_tolerance;
+        let bend = if self.calibration.has_bend() {
+            s.bend_max
+        } else {
+            0.0
+        };
+        let reach = |u: f64, more: f64| {
+            let bent = [bend, -bend].map(|bend| (u + bend * (2.0 * u * u - 1.0) + more).abs());
+            most * bent[0].max(bent[1]) + s.offset_max
+        };
+        let angles = (0..ANGLES).map(|k| TAU * f64::from(k) / f64::from(ANGLES));
+        let of_angle = |alpha: f64| {
+            let [cos, sin] = [0, 1].map(|which| self.correction.harmonics_at(which, alpha).0);
+            let betas = (-BETAS..=BETAS).map(|k| f64::from(k) / f64::from(BETAS));
+            let betas = betas.map(|share| share * s.phase_error_max_deg.to_radians());
+            let of_sin = betas.map(|beta| reach((alpha - beta).sin(), sin));
+            of_sin.fold(reach(alpha.cos(), cos), f64::max)
+        };
+        angles.map(of_angle).fold(0.0, f64::max)
     }
 }
 
