@@ -34,6 +34,7 @@ pub use calibrate::{calibrate, undetermined};
 pub use curve::Curve;
 pub use method::{Error, Method, Options};
 pub use nonius_recording::Ellipse;
+pub use nothing::no_ellipse;
 pub use report::report;
 pub use result::{Calibration, Correlations, Parameter, RatioSource};
 pub use shape::Shape;

@@ -32,8 +32,23 @@ fn stuck(cos: &[f64], sin: &[f64]) -> Option<([f64; 2], usize)> {
     drawn.then_some((repeated.pair, count))
 }
 
-/// Where the samples draw no ellipse at all.
+/// Why the samples draw no ellipse, and what to do; `None` where they draw one.
+#[must_use]
+pub fn no_ellipse(cos: &[f64], sin: &[f64]) -> Option<String> {
+    let drawn = Samples::of(cos, sin).is_some();
+    (!drawn).then(|| reason(cos, sin, &Error::NoEllipse))
+}
+
+/// What to say of the parameters where the samples draw no ellipse at all.
 pub(crate) fn of_nothing(cos: &[f64], sin: &[f64], why: &Error) -> String {
+    let reason = reason(cos, sin, why);
+    format!(
+        "a_c, b_c, a_s, b_s, beta, theta: {reason}; the values are half the sums and differences of the extremes"
+    )
+}
+
+/// What is seen, and what to do.
+fn reason(cos: &[f64], sin: &[f64], why: &Error) -> String {
     /// Slimmer than this is a line, rounder a cloud.
     const LINE: f64 = 0.4;
     const MOVE: &str = "move the scale by a whole period or more while recording";
@@ -71,7 +86,5 @@ pub(crate) fn of_nothing(cos: &[f64], sin: &[f64], why: &Error) -> String {
         (Error::Standstill(why), _) => (format!("the scale stands still: {why}"), MOVE),
         (other, _) => (other.to_string(), MOVE),
     };
-    format!(
-        "a_c, b_c, a_s, b_s, beta, theta: {seen}; {advice}; the values are half the sums and differences of the extremes"
-    )
+    format!("{seen}; {advice}")
 }

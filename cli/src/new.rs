@@ -19,7 +19,7 @@ use nonius_recording::{Recording, Survey};
 use crate::recording_args::RecordingArgs;
 use crate::target::Target;
 use draft::{Draft, plain, rounded_up};
-use fitted::fitted;
+use fitted::{fitted, turns};
 use promise::Promise;
 
 /// A new design.
@@ -53,7 +53,9 @@ pub(crate) fn run(args: &New) -> Result<()> {
         Some(file) => {
             let recording = Recording::read(file, &args.recording_args.overrides())?;
             let survey = Survey::of(&recording);
-            crate::notes(recording.notes.iter().chain(&survey.notes));
+            crate::notes(&recording.notes);
+            turns(file, &recording, &survey)?;
+            crate::notes(&survey.notes);
             fitted(&args.name, file, &recording, &survey)?
         }
     };
@@ -88,7 +90,9 @@ pub fn fitted_text(
     file: &Path,
     recording: &Recording,
 ) -> Result<(String, Vec<String>)> {
-    let mut draft = fitted(name, file, recording, &Survey::of(recording))?;
+    let survey = Survey::of(recording);
+    turns(file, recording, &survey)?;
+    let mut draft = fitted(name, file, recording, &survey)?;
     settle(&mut draft)?;
     Ok((draft.toml(), not_held(&draft)))
 }

@@ -167,3 +167,32 @@ fn the_number_at_fault_is_named() {
         &["sensor.scale_period_m = ", "the number at fault"],
     );
 }
+
+/// Noise about a standstill has any angle in each sample. No speed is made of that: both commands say what it is, in the same words.
+#[test]
+fn a_scale_that_stands_still_is_told_and_no_speed() {
+    use rand::{SeedableRng, rngs::StdRng};
+    use rand_distr::{Distribution, Normal};
+    let mut random = StdRng::seed_from_u64(1);
+    let noise = Normal::new(0.0, 0.01).expect("a standard deviation");
+    let mut rows = String::from("# sample_rate_hz: 20000\ncos,sin\n");
+    for _ in 0..4000 {
+        let mut about = |place: f64| place + noise.sample(&mut random);
+        rows += &format!("{:.9},{:.9}\n", about(0.995), about(0.1));
+    }
+    let dir = tempfile::tempdir().expect("scratch");
+    fs::write(dir.path().join("r.csv"), rows).expect("a recording");
+    let output = nonius(dir.path(), &["new", "it", "--from", "r.csv"]);
+    let why = "the samples are a cloud and no ring: the scale stands still, or the signals are no sin/cos pair; move the scale by a \
+               whole period or more while recording";
+    refused(&output, &[&format!("r.csv: {why}")]);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(
+        !said.contains("per sample") && !said.contains("Hz"),
+        "{said}"
+    );
+    assert!(!dir.path().join("it.toml").exists());
+    let output = nonius(dir.path(), &["calibrate", "r.csv", "--json"]);
+    let said = String::from_utf8_lossy(&output.stdout);
+    assert!(said.contains(why), "{said}");
+}

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use anyhow::{Result, bail};
+use nonius_calibration::no_ellipse;
 use nonius_quantity::digits;
 use nonius_recording::{AdcSource, Recording, Survey};
 
@@ -29,6 +30,19 @@ fn bandwidth(speed: f64, rate: f64) -> (f64, &'static str) {
     } else {
         (wanted, "8 times the speed")
     }
+}
+
+/// Speed, periods per sample, beyond which no chip follows.
+const FASTEST: f64 = 0.25;
+
+/// Refuses what only seems to turn too fast: noise about a standstill has any angle in each sample.
+pub(super) fn turns(file: &Path, recording: &Recording, survey: &Survey) -> Result<()> {
+    if survey.motion.max_speed_periods_per_sample > FASTEST
+        && let Some(why) = no_ellipse(&recording.cos, &recording.sin)
+    {
+        bail!("{}: {why}", file.display());
+    }
+    Ok(())
 }
 
 /// A draft that can follow what the recording shows.
@@ -88,7 +102,7 @@ pub(super) fn fitted(
         )
     };
     let seen = survey.motion.max_speed_periods_per_sample;
-    if seen > 0.25 {
+    if seen > FASTEST {
         bail!(
             "{}: the signals turn by up to {seen:.3} periods per sample; a chip needs four samples per period. Sample \
              at {:.4e} Hz or more.",
@@ -97,7 +111,7 @@ pub(super) fn fitted(
             1.01 * seen * rate * 4.0
         );
     }
-    let speed = (seen * 1.3).clamp(1e-4, 0.25) * rate;
+    let speed = (seen * 1.3).clamp(1e-4, FASTEST) * rate;
     let (bandwidth, of_speed) = bandwidth(speed, rate);
     Ok(Draft {
         name: name.into(),
