@@ -230,6 +230,12 @@ fn designs_that_no_chip_can_have_are_refused() {
             "multipliers = 1\nclock_hz = nan",
             ["d.toml:33:1: chip.clock_hz", "NaN"],
         ),
+        // No chip is as fast, and constraints in thousandths of a nanosecond would be of none.
+        (
+            "multipliers = 1",
+            "multipliers = 1\nclock_hz = 1e12",
+            ["d.toml:33:1: chip.clock_hz", "2e9"],
+        ),
         (
             "scale_period_m = 20e-6",
             "scale_period_m = -1",

@@ -20,6 +20,9 @@ pub(super) fn check(spec: &Spec) -> Result<(), DesignError> {
     top_speed(spec)
 }
 
+/// Fastest clock, hertz: beyond it no process makes a product of the chip's words and its sum in one period.
+const CLOCK_MOST_HZ: f64 = 2e9;
+
 /// A field with its value, the least and the most that it may be, and why.
 type Row = (&'static str, f64, f64, f64, &'static str);
 
@@ -230,7 +233,16 @@ fn chip(spec: &Spec) -> Result<(), DesignError> {
             "products need a multiplier",
         );
     }
-    positive("chip.clock_hz", spec.chip.clock_hz, "a clock ticks")
+    match spec.chip.clock_hz {
+        None => Ok(()),
+        Some(clock) => between(
+            "chip.clock_hz",
+            clock,
+            1e-12,
+            CLOCK_MOST_HZ,
+            "Hz; a product takes one clock: an FPGA makes some 100 million a second, and no process more than this",
+        ),
+    }
 }
 
 /// The loop follows the top speed.
