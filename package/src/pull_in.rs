@@ -259,25 +259,34 @@ impl Worst {
     }
 }
 
+/// The same design with so much of every error that [`sensors`] vary, and what it says of them.
+fn less(spec: &Spec, tenth: f64) -> (Spec, String) {
+    let mut less = spec.clone();
+    let bent = spec.calibration.has_bend() && spec.sensor.bend_max > 0.0;
+    let s = &mut less.sensor;
+    let mut errors = vec![
+        ("amplitude_tolerance", &mut s.amplitude_tolerance),
+        ("offset_max", &mut s.offset_max),
+        ("phase_error_max_deg", &mut s.phase_error_max_deg),
+    ];
+    if bent {
+        errors.push(("bend_max", &mut s.bend_max));
+    }
+    let said = errors.into_iter().map(|(key, error)| {
+        *error = digits(*error * tenth, 3);
+        format!("sensor.{key} = {error}")
+    });
+    let said: Vec<String> = said.collect();
+    let said = match said.split_last() {
+        Some((last, others)) => format!("{} and {last}", others.join(", ")),
+        None => String::new(),
+    };
+    (less, said)
+}
+
 /// The largest promise and the largest speed, by tenths, of which every sensor locks.
 fn remedies(spec: &Spec, parts: &[f64]) -> Vec<String> {
     let tenths = [0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3, 0.2, 0.1];
-    let less = |tenth: f64| {
-        let mut less = spec.clone();
-        let s = &mut less.sensor;
-        for error in [
-            &mut s.amplitude_tolerance,
-            &mut s.offset_max,
-            &mut s.phase_error_max_deg,
-        ] {
-            *error = digits(*error * tenth, 3);
-        }
-        let text = format!(
-            "sensor.amplitude_tolerance = {}, sensor.offset_max = {} and sensor.phase_error_max_deg = {}",
-            s.amplitude_tolerance, s.offset_max, s.phase_error_max_deg
-        );
-        (less, text)
-    };
     let slower = |tenth: f64| {
         let mut slower = spec.clone();
         let top = &mut slower.sensor.speed_max_periods_per_s;
@@ -289,7 +298,7 @@ fn remedies(spec: &Spec, parts: &[f64]) -> Vec<String> {
         let mut changed = tenths.iter().map(|&tenth| change(tenth));
         changed.find(|(spec, _)| locks(spec, parts)).map(|it| it.1)
     };
-    let found = [first(&less), first(&slower)];
+    let found = [first(&|tenth| less(spec, tenth)), first(&slower)];
     found.into_iter().flatten().collect()
 }
 
@@ -300,4 +309,28 @@ fn locks(spec: &Spec, parts: &[f64]) -> bool {
             starts(&design, signs, parts).all(|start| samples_to_lock(&design, &start).is_some())
         })
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A promise is made less in every error that the sensors have: in bends where they are calibrated and promised.
+    #[test]
+    fn bends_are_promised_less_where_there_are_any() {
+        let text = include_str!("../../designs/optical.toml");
+        let mut spec = Spec::from_toml(text, "optical.toml").expect("a shipped design");
+        for (parameters, bend, left, said) in [
+            (5, 0.05, 0.05, None),
+            (8, 0.05, 0.02, Some(" and sensor.bend_max = 0.02")),
+            (9, 0.0, 0.0, None),
+        ] {
+            (spec.calibration.parameters, spec.sensor.bend_max) = (parameters, bend);
+            let (less, all) = less(&spec, 0.4);
+            assert_eq!(less.sensor.bend_max, left, "{parameters}");
+            assert_eq!(less.sensor.offset_max, 0.04);
+            let end = said.unwrap_or(" and sensor.phase_error_max_deg = 2");
+            assert!(all.ends_with(end), "{parameters}: {all}");
+        }
+    }
 }
