@@ -36,6 +36,21 @@ struct Fact {
     missed: bool,
 }
 
+impl Fact {
+    fn new(name: &'static str, value: String, note: String) -> Self {
+        Self {
+            name,
+            value,
+            note,
+            missed: false,
+        }
+    }
+
+    fn missed_where(self, missed: bool) -> Self {
+        Self { missed, ..self }
+    }
+}
+
 struct Bar {
     source: String,
     value: String,
@@ -45,25 +60,6 @@ struct Bar {
 }
 
 fn facts(design: &Design, j: &DesignJson) -> Vec<Fact> {
-    let fact = |(name, value, note): (&'static str, String, String)| Fact {
-        missed: match name {
-            PREDICTED => j.budget.total > j.budget.asked,
-            SIMULATED => j.misses(),
-            PULL_IN => !j.pull_in.holds(),
-            _ => false,
-        },
-        name,
-        value,
-        note,
-    };
-    said(design, j).into_iter().map(fact).collect()
-}
-
-const PREDICTED: &str = "Accuracy predicted";
-const SIMULATED: &str = "Accuracy simulated";
-const PULL_IN: &str = "Pull-in";
-
-fn said(design: &Design, j: &DesignJson) -> Vec<(&'static str, String, String)> {
     let (spec, t) = (&design.spec, &j.tracking);
     let per_period = |periods: f64| {
         let metres = metres(spec, periods).map(|x| engineering(x, "m"));
@@ -73,7 +69,7 @@ fn said(design: &Design, j: &DesignJson) -> Vec<(&'static str, String, String)> 
     };
     let phase = &design.structure.formats.alpha.format;
     let skew = j.channel_skew.as_ref().map(|skew| {
-        (
+        Fact::new(
             "Channel skew corrected",
             format!("sine later by {}", engineering(skew.delay_s, "s")),
             format!(
@@ -84,7 +80,7 @@ fn said(design: &Design, j: &DesignJson) -> Vec<(&'static str, String, String)> 
     });
     let harmonics = j.harmonics.as_ref().map(|h| {
         let orders: Vec<String> = h.orders.iter().map(ToString::to_string).collect();
-        (
+        Fact::new(
             "Harmonics corrected",
             format!("orders {}", orders.join(", ")),
             format!(
@@ -94,8 +90,8 @@ fn said(design: &Design, j: &DesignJson) -> Vec<(&'static str, String, String)> 
         )
     });
     let mut list = vec![
-        (
-            PREDICTED,
+        Fact::new(
+            "Accuracy predicted",
             per_period(j.budget.total),
             format!(
                 "rms, slow{}; asked {:.2e}",
@@ -106,9 +102,10 @@ fn said(design: &Design, j: &DesignJson) -> Vec<(&'static str, String, String)> 
                 },
                 j.budget.asked
             ),
-        ),
-        (
-            SIMULATED,
+        )
+        .missed_where(j.budget.total > j.budget.asked),
+        Fact::new(
+            "Accuracy simulated",
             per_period(j.simulated.rms_periods),
             format!(
                 "bit-true, rms, with half of the promised errors; largest {:.2e}; with the weakest signals {:.2e} rms; asked {:.2e}{}",
@@ -121,14 +118,15 @@ fn said(design: &Design, j: &DesignJson) -> Vec<(&'static str, String, String)> 
                     "; the loop did not lock"
                 }
             ),
-        ),
+        )
+        .missed_where(j.misses()),
         pull_in(j),
-        (
+        Fact::new(
             "Resolution",
             format!("2^-{} of a period", phase.fraction),
             per_period(phase.lsb()),
         ),
-        (
+        Fact::new(
             "Sample rate",
             engineering(spec.adc.sample_rate_hz, "Hz"),
             format!(
@@ -137,7 +135,7 @@ fn said(design: &Design, j: &DesignJson) -> Vec<(&'static str, String, String)> 
                 engineering(j.latency.clock_hz_min, "Hz")
             ),
         ),
-        (
+        Fact::new(
             "Latency",
             format!("{} clocks", j.latency.clocks),
             format!(
@@ -146,7 +144,7 @@ fn said(design: &Design, j: &DesignJson) -> Vec<(&'static str, String, String)> 
                 engineering(j.latency.clock_hz, "Hz")
             ),
         ),
-        (
+        Fact::new(
             "Bandwidth, −3 dB",
             match t.bandwidth_3db_hz {
                 hz if hz < 0.499 * spec.adc.sample_rate_hz => engineering(hz, "Hz"),
@@ -158,7 +156,7 @@ fn said(design: &Design, j: &DesignJson) -> Vec<(&'static str, String, String)> 
                 t.peak
             ),
         ),
-        (
+        Fact::new(
             "Largest speed",
             periods_per_second(t.speed_max_periods_per_s),
             if t.lag_at_top_speed_periods == 0.0 {
@@ -167,7 +165,7 @@ fn said(design: &Design, j: &DesignJson) -> Vec<(&'static str, String, String)> 
                 format!("lag there {:.2e} periods", t.lag_at_top_speed_periods)
             },
         ),
-        (
+        Fact::new(
             "Acceleration error",
             format!("{:.2e} periods per period/s²", t.acceleration_error_s2),
             match spec.tracking.filter_type {
@@ -175,7 +173,7 @@ fn said(design: &Design, j: &DesignJson) -> Vec<(&'static str, String, String)> 
                 _ => "type 1".into(),
             },
         ),
-        (
+        Fact::new(
             "Multipliers",
             format!("{} for {} products", j.multipliers, j.products),
             format!(
@@ -183,7 +181,7 @@ fn said(design: &Design, j: &DesignJson) -> Vec<(&'static str, String, String)> 
                 j.sine_table.bits, j.sine_table.error.largest_angle_turns
             ),
         ),
-        (
+        Fact::new(
             "Calibration",
             match spec.calibration.parameters {
                 0 => "off".into(),
@@ -217,27 +215,26 @@ fn corrected(spec: &Spec) -> String {
 }
 
 /// From power-up into full speed.
-fn pull_in(j: &DesignJson) -> (&'static str, String, String) {
+fn pull_in(j: &DesignJson) -> Fact {
     let p = &j.pull_in;
     let starts = format!(
         "into full speed from power-up, both ways; {} sensors with every promised error at an end of its range, {} starts each",
         p.sensors, p.starts_each
     );
-    match &p.worst {
+    let (value, note) = match &p.worst {
         None => (
-            PULL_IN,
             format!("locked within {}", engineering(p.longest_s, "s")),
             starts,
         ),
         Some(worst) => (
-            PULL_IN,
             format!(
                 "{} of {} sensors do not lock, or not for good",
                 p.not_locked, p.sensors
             ),
             format!("{starts}; worst: {worst}; {}", p.advice()),
         ),
-    }
+    };
+    Fact::new("Pull-in", value, note).missed_where(!p.holds())
 }
 
 /// The closed loop's magnitude in dB over frequency.
