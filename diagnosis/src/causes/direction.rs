@@ -8,13 +8,19 @@ use crate::context::Context;
 use crate::finding::Cause;
 use crate::shapes::trig::{Trig, channel, normalised};
 
-fn reverses(context: &Context) -> bool {
-    let least = 0.02 * context.top_speed();
+/// Share of the largest speed below which the scale stands.
+const STANDS: f64 = 0.02;
+/// Share of the samples that has to move either way.
+const EITHER_WAY: f64 = 0.01;
+
+/// Whether a recording can show hysteresis: enough of it moves either way.
+pub(crate) fn can_be_shown(context: &Context) -> bool {
+    let least = STANDS * context.top_speed();
     let share = |sign: f64| {
         let with = context.speed.iter().filter(|v| **v * sign > least);
         with.count() as f64 / context.samples() as f64
     };
-    share(1.0) > 0.01 && share(-1.0) > 0.01
+    share(1.0) > EITHER_WAY && share(-1.0) > EITHER_WAY
 }
 
 /// The direction of motion; at rest, the one in which it came. What the speed is below a small share of the largest is its
@@ -39,7 +45,7 @@ pub(super) fn sides(context: &Context) -> Vec<f64> {
 
 /// Offsets with the direction of motion, turning over at once or over some way.
 pub(super) fn hysteresis(context: &Context, speed: &Speed) -> Vec<Candidate> {
-    if !reverses(context) {
+    if !can_be_shown(context) {
         return vec![];
     }
     let turnings = [SIGN, SOFT];

@@ -134,10 +134,14 @@ fn corner_hz(e: &Estimate, known: (f64, f64)) -> Vec<Parameter> {
     vec![Parameter::measured("corner_hz", value, error, "Hz")]
 }
 
+/// Whether a recording can show ac coupling: over a few periods, what leaks away is any shape of the angle.
+pub(crate) fn can_be_shown(context: &Context) -> bool {
+    context.periods_travelled() >= FEWEST
+}
+
 pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
     let duration = context.samples() as f64 / context.rate;
-    // Over a few periods, what leaks away is any shape of the angle.
-    if context.periods_travelled() < FEWEST {
+    if !can_be_shown(context) {
         return;
     }
     // At the lowest corner a charge leaks away along a line, as it does at any below.

@@ -3,9 +3,9 @@
 pub(crate) mod angle;
 pub(crate) mod candidate;
 mod code;
-mod direction;
+pub(crate) mod direction;
 mod frequencies;
-mod high_pass;
+pub(crate) mod high_pass;
 mod lag;
 mod line;
 mod mains;
@@ -13,9 +13,9 @@ mod mirror;
 mod place;
 pub(crate) mod revolution;
 mod settling;
-mod speed;
+pub(crate) mod speed;
 mod steady;
-mod time;
+pub(crate) mod time;
 
 use std::rc::Rc;
 

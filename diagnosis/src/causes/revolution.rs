@@ -48,7 +48,7 @@ pub(crate) fn turns(phi: &[f64]) -> f64 {
 pub(super) const REVOLVING: f64 = 0.9;
 
 /// Angle of the revolution, radians, where the motion goes that far.
-pub(super) fn revolving(context: &Context) -> Option<&Vec<f64>> {
+pub(crate) fn revolving(context: &Context) -> Option<&Vec<f64>> {
     context.phi.as_ref().filter(|phi| turns(phi) >= REVOLVING)
 }
 
@@ -56,7 +56,9 @@ pub(super) fn revolving(context: &Context) -> Option<&Vec<f64>> {
 const RADIAL: std::ops::RangeInclusive<u32> = 1..=3;
 
 pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
-    let Some(phi) = &context.phi else { return };
+    if context.phi.is_none() {
+        return;
+    }
     let against = context.against_reference.is_some();
     let way = if against { Use::Both } else { Use::Radial };
     let place = catalogue.library.add(
@@ -66,7 +68,7 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
     );
     let all = (0..2 * ORDERS).flat_map(|i| [place.radial(i), place.tangential(i)]);
     catalogue.generic(Domain::Revolution, all.filter(|s| !s.0.is_empty()));
-    if turns(phi) < REVOLVING {
+    if revolving(context).is_none() {
         return;
     }
     let list = &mut catalogue.candidates;

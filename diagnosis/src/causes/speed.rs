@@ -44,6 +44,12 @@ pub(crate) fn varies_much(context: &Context) -> bool {
     change(context) > MUCH
 }
 
+/// Whether a recording can show what low passes and delays alike in both channels do. Against a reference, what a latency leaves where
+/// the speed hardly changes looks like them; not like one channel that is late by itself.
+pub(crate) fn both_can_be_shown(context: &Context) -> bool {
+    varies(context) && (context.against_reference.is_none() || varies_much(context))
+}
+
 /// A shape that is made anew with the size of its amount.
 pub(super) fn follows(
     inner: f64,
@@ -135,12 +141,8 @@ pub(super) fn cause(
 
 pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
     let speed = Speed::new(context, &mut catalogue.library);
-    // Against a reference, what a latency leaves where the speed hardly changes looks like the others; not like one channel
-    // that is late by itself.
-    let late = context.against_reference.is_some();
-    let changes = self::varies(context);
-    let varies = changes && (!late || varies_much(context));
-    if varies {
+    let both = both_can_be_shown(context);
+    if both {
         let orders = [ODD, EVEN, SIGN]
             .into_iter()
             .flat_map(|by| (0..=2).flat_map(move |order| speed.by.generic(by, order)));
@@ -151,11 +153,11 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
         list.push(latency(&speed));
         list.extend(late_bandwidths(&speed, &mut catalogue.library));
     }
-    if changes {
+    if varies(context) {
         list.push(skew(&speed, &mut catalogue.library));
         list.extend(mismatches(&speed, &mut catalogue.library));
     }
-    if varies {
+    if both {
         list.push(common_bandwidth(&speed));
         list.push(crosstalk(&speed, &mut catalogue.library));
     }

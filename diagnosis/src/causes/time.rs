@@ -33,14 +33,14 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
         orders.extend((1..=2).flat_map(|order| time.generic(by, order)));
         catalogue.generic(Domain::Time, orders);
     }
+    if !can_be_shown(context) {
+        return;
+    }
     let mut drivers: Vec<(&'static str, Modulated, usize)> = [1, 3, DEGREE]
         .into_iter()
         .filter(|degree| tells(context, *degree))
         .map(|degree| ("time", time, degree))
         .collect();
-    if drivers.is_empty() {
-        return;
-    }
     if context.temperature.is_some() {
         let temperature = modulated(&mut catalogue.library, 1, |block, _| {
             block.temperature.map_or_else(Vec::new, <[f64]>::to_vec)
@@ -73,6 +73,11 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
             });
         }
     }
+}
+
+/// Whether a recording can show drifts: of the first degree at least.
+pub(crate) fn can_be_shown(context: &Context) -> bool {
+    tells(context, 1)
 }
 
 /// Whether a recording tells a polynomial of the time of that degree from shapes of the angle: over a period or two, time and angle

@@ -5,21 +5,17 @@ use std::f64::consts::TAU;
 use nonius_quantity::digits;
 use nonius_recording::AdcSource;
 
-use crate::causes::revolution::turns;
-use crate::causes::speed_varies;
+use crate::causes::revolution::{revolving, turns};
+use crate::causes::{direction, high_pass, speed, time};
 use crate::context::{Context, FEWEST};
 
-/// Share of the largest speed below which the scale stands.
-const STANDS: f64 = 0.02;
 /// Parts of the scale period in which samples are looked for, and how many of them have to be seen.
 const PARTS: usize = 36;
 const ALL_BUT_A_FEW: usize = 32;
 /// Fewest scale periods, and fewest revolutions, that repeat themselves.
 pub(crate) const REPEATS: f64 = 1.9;
-/// Fewest scale periods by which drifts are looked for.
-const DRIFTS: f64 = 3.0;
 
-/// A sentence for each group of causes that this recording cannot show.
+/// A sentence for each group of causes that this recording cannot show: what lets a cause enter is asked of its own file.
 #[must_use]
 pub fn unseen(context: &Context) -> Vec<String> {
     let mut list: Vec<String> = vec![];
@@ -47,14 +43,14 @@ pub fn unseen(context: &Context) -> Vec<String> {
             "lines of fewer cycles than 32 for each scale period are not looked for within less than two; move over more of them",
         );
     }
-    if travelled < DRIFTS {
+    if !time::can_be_shown(context) {
         tell(
             "offset_drift, gain_drift and ac_coupling are not looked for within so few scale periods; move over more than six",
         );
+    } else if !high_pass::can_be_shown(context) {
+        tell("ac_coupling is not looked for within so few scale periods; move over more than six");
     }
-    let stands = STANDS * context.top_speed();
-    let moves = |sign: f64| context.speed.iter().any(|v| v * sign > stands);
-    if !speed_varies(context) {
+    if !speed::varies(context) {
         tell(
             "at this constant speed, channel_skew, bandwidth_mismatch, common_bandwidth and delayed_crosstalk look like phase and gain errors, harmonics like lines, and amplitude_noise and clock_jitter like white noise; record several speeds",
         );
@@ -63,8 +59,12 @@ pub fn unseen(context: &Context) -> Vec<String> {
                 "at this constant speed, a latency looks like the angle between the sensor and its reference; record several speeds",
             );
         }
+    } else if !speed::both_can_be_shown(context) {
+        tell(
+            "at a speed that changes so little, common_bandwidth and delayed_crosstalk look like what a latency leaves; record several speeds",
+        );
     }
-    if !(moves(1.0) && moves(-1.0)) {
+    if !direction::can_be_shown(context) {
         tell("in one direction, hysteresis looks like an offset; reverse");
     }
     if context.against_reference.is_none() {
@@ -76,13 +76,13 @@ pub fn unseen(context: &Context) -> Vec<String> {
         None => tell(
             "without periods_per_revolution, runout, contamination and cogging are not looked for; give it if the axis turns",
         ),
-        Some(phi) => {
-            if turns(phi) < REPEATS {
-                tell(
-                    "within less than two revolutions, what repeats with the revolution and what changes with time are the same; turn further",
-                );
-            }
-        }
+        Some(_) if revolving(context).is_none() => tell(
+            "within less than a revolution, runout, contamination and cogging are not looked for; turn further",
+        ),
+        Some(phi) if turns(phi) < REPEATS => tell(
+            "within less than two revolutions, what repeats with the revolution and what changes with time are the same; turn further",
+        ),
+        Some(_) => {}
     }
     match context.adc.cos.source {
         AdcSource::Described => {}

@@ -146,3 +146,39 @@ fn what_cannot_be_seen_is_true() {
     assert!(said(&evenly(&beside, 40.0, 1)).contains(late));
     assert!(!said(&diagnosed(&beside, 1)).contains(late));
 }
+
+/// What no cause is entered for is said not to be looked for, and nothing else is.
+#[test]
+fn what_is_not_looked_for_is_said() {
+    let said = |found: &Diagnosis| unseen(&found.context).join("\n");
+    let few = said(&evenly(&PLAIN, 4.5, 3));
+    assert!(few.contains("ac_coupling is not looked for"), "{few}");
+    assert!(!few.contains("offset_drift"), "{few}");
+    let fewer = said(&evenly(&PLAIN, 2.2, 3));
+    for cause in ["ac_coupling", "offset_drift"] {
+        assert!(fewer.contains(cause), "{cause}: {fewer}");
+    }
+    // The speed changes by half a percent: enough for one channel that is late, not for both beside a reference.
+    let hardly = Case {
+        motion: |t, _| 0.12 * (39.0 * t).sin(),
+        ..PLAIN
+    };
+    let beside = Case {
+        reference: true,
+        ..hardly
+    };
+    for cause in ["common_bandwidth", "delayed_crosstalk", "channel_skew"] {
+        let alone = said(&evenly(&hardly, 40.0, 3));
+        assert!(!alone.contains(cause), "{cause}: {alone}");
+        let late = said(&evenly(&beside, 40.0, 3));
+        assert_eq!(late.contains(cause), cause != "channel_skew", "{late}");
+    }
+    // A hundred samples backwards, of twenty thousand.
+    let jerks = Case {
+        motion: |t, _| -1.88 * ((t - 0.2) / 0.002).tanh(),
+        ..PLAIN
+    };
+    let found = evenly(&jerks, 40.0, 3);
+    assert!(found.context.speed.iter().any(|v| *v < -100.0));
+    assert!(said(&found).contains("hysteresis"), "{}", said(&found));
+}
