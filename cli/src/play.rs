@@ -6,7 +6,7 @@ use anyhow::{Context, Result, bail};
 use nonius_model::physical::Converter;
 use nonius_model::spec::Spec;
 use nonius_recording::{Adc, AdcPair, AdcSource, Overrides, Recording, Survey};
-use nonius_sensor::{Motion, Sensor};
+use nonius_sensor::{Grid, Motion, Sensor};
 use nonius_testvectors::stimulus::{Sample, Stimulus};
 
 /// Largest jump, in periods, from the end of a repeated recording to its beginning, beyond the usual step.
@@ -64,13 +64,16 @@ fn simulated(path: &Path) -> Result<Recording> {
         Recording::from_samples(samples.time_s, samples.cos, samples.sin, &overrides)
             .with_context(|| format!("{} makes no recording", path.display()))?;
     // The ADC is known: what the reader sees of it in the samples, and notes, is less.
-    let adc = Adc {
-        bits: sensor.adc.bits,
-        lsb: sensor.adc.lsb,
-        centre: sensor.adc.centre,
-        source: AdcSource::Described,
-    };
-    recording.metadata.adc = AdcPair { cos: adc, sin: adc };
+    let [cos, sin] = [0, 1].map(|which| {
+        let Grid { lsb, centre } = sensor.adc.grid(which);
+        Adc {
+            bits: sensor.adc.bits,
+            lsb,
+            centre,
+            source: AdcSource::Described,
+        }
+    });
+    recording.metadata.adc = AdcPair { cos, sin };
     recording.notes.clear();
     Ok(recording)
 }

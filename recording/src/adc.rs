@@ -79,6 +79,18 @@ pub struct AdcPair {
     pub sin: Adc,
 }
 
+impl AdcPair {
+    /// True where both channels have the same codes, nowhere in the range off each other by more than a small part of one.
+    #[must_use]
+    pub fn is_one(&self) -> bool {
+        /// Of a code: what the rounding of a text makes of one grid in two columns.
+        const OFF: f64 = 0.01;
+        let Self { cos, sin } = self;
+        let at_the_ends = (cos.full_scale() - sin.full_scale()).abs();
+        cos.bits == sin.bits && (cos.centre - sin.centre).abs() + at_the_ends < OFF * cos.lsb
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

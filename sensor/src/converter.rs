@@ -1,7 +1,7 @@
 //! The ADC: codes, held at the ends of its range, and what may be wrong with them.
 
 use crate::cause::{Cause, Channel};
-use crate::sensor::Sensor;
+use crate::sensor::{Grid, Sensor};
 
 /// Most codes of a step: any more hold the signal at one.
 const MOST: f64 = (1u64 << 40) as f64;
@@ -11,7 +11,8 @@ impl Sensor {
     pub(crate) fn converted(&self, value: f64, which: usize) -> f64 {
         let half = 2f64.powi(self.adc.bits as i32 - 1);
         let held = |code: f64| code.round().clamp(-half, half - 1.0);
-        let code = held((value - self.adc.centre) / self.adc.lsb);
+        let Grid { lsb, centre } = self.adc.grid(which);
+        let code = held((value - centre) / lsb);
         let amplitude = [self.signals.a_c, self.signals.a_s][which];
         let wrong = self.sum(|c| match *c {
             Cause::AdcNonlinearity {
@@ -25,11 +26,11 @@ impl Sensor {
             }
             _ => 0.0,
         });
-        let mut code = (held(code + wrong / self.adc.lsb) + half) as i64;
+        let mut code = (held(code + wrong / lsb) + half) as i64;
         for cause in &self.causes {
             code = digital(cause, code, which);
         }
-        self.adc.centre + self.adc.lsb * (code as f64 - half)
+        centre + lsb * (code as f64 - half)
     }
 }
 

@@ -24,5 +24,5 @@ pub use cause::{Cause, Channel};
 pub use drift::Drift;
 pub use interference::Interference;
 pub use motion::Motion;
-pub use sensor::{Adc, Moved, Sensor, SensorError, Signals};
+pub use sensor::{Adc, Grid, Moved, Sensor, SensorError, Signals};
 pub use signals::Samples;

@@ -66,7 +66,7 @@ pub struct Signals {
     pub noise_rms: f64,
 }
 
-/// The ADC: codes are `centre + lsb · n`, n in two's complement of `bits`.
+/// The ADC: codes are `centre + lsb · n`, n in two's complement of `bits`; those of sin are others where it has a grid of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Adc {
@@ -78,6 +78,31 @@ pub struct Adc {
     pub centre: f64,
     /// Samples per second.
     pub sample_rate_hz: f64,
+    /// The codes of sin, where a channel was scaled after the ADC.
+    #[serde(default)]
+    pub sin: Option<Grid>,
+}
+
+/// Values that codes stand for.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Grid {
+    /// One code, in the unit of the signals.
+    pub lsb: f64,
+    /// Value of code 0.
+    pub centre: f64,
+}
+
+impl Adc {
+    /// The codes of channel `which`: 0 is cos, 1 is sin.
+    #[must_use]
+    pub fn grid(&self, which: usize) -> Grid {
+        let both = Grid {
+            lsb: self.lsb,
+            centre: self.centre,
+        };
+        self.sin.filter(|_| which == 1).unwrap_or(both)
+    }
 }
 
 /// How it was moved: along a file; where none is named, to and fro, as far and as fast.
@@ -143,7 +168,8 @@ impl Sensor {
     fn check(&self, file: &str) -> Result<(), SensorError> {
         let (s, a, m) = (&self.signals, &self.adc, &self.motion);
         let positive = |v: f64| v.is_finite() && v > 0.0;
-        let rules: [(&str, f64, bool, &'static str); 12] = [
+        let sin = a.grid(1);
+        let rules: [(&str, f64, bool, &'static str); 14] = [
             (
                 "signals.a_c",
                 s.a_c,
@@ -191,6 +217,18 @@ impl Sensor {
                 "adc.centre",
                 a.centre,
                 a.centre.is_finite(),
+                "the middle is a number",
+            ),
+            (
+                "adc.sin.lsb",
+                sin.lsb,
+                positive(sin.lsb),
+                "a code has a size",
+            ),
+            (
+                "adc.sin.centre",
+                sin.centre,
+                sin.centre.is_finite(),
                 "the middle is a number",
             ),
             (

@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 
 use nonius_diagnosis::{diagnose, motion_csv, sensor_toml};
 use nonius_fourier::{Complex, forward};
-use nonius_recording::Recording;
+use nonius_recording::{Overrides, Recording};
 use nonius_sensor::{Motion, Samples, Sensor};
 use support::{PLAIN, recording};
 
@@ -310,4 +310,27 @@ fn every_time_of_a_motion_is_later_than_the_one_before() {
     let found = diagnose(&recording).expect("an ellipse");
     let motion = Motion::along(&sensor, &motion_csv(&found, &recording), "motion.csv");
     assert!(motion.is_ok(), "{motion:?}");
+}
+
+/// A channel that was scaled after the ADC has codes of its own size, and so has it simulated.
+#[test]
+fn either_channel_has_its_own_codes() {
+    let coarse = PLAIN.replace("bits = 14", "bits = 12");
+    let coarse = coarse.replace("lsb = 0.0001220703125", "lsb = 0.00048828125");
+    let sensor = Sensor::from_toml(&coarse, "sensor.toml").expect("a sensor");
+    let samples = sensor.simulate(&driven(), 11);
+    let scaled = samples.sin.iter().map(|v| 0.73 * v + 0.05).collect();
+    let recording =
+        Recording::from_samples(samples.time_s, samples.cos, scaled, &Overrides::default());
+    let recording = recording.expect("a recording");
+    let adc = recording.metadata.adc;
+    assert!((adc.sin.lsb / adc.cos.lsb - 0.73).abs() < 1e-6, "{adc:?}");
+    let (simulated, _) = replayed(&recording, &[]);
+    for samples in simulated {
+        for (adc, values) in [(adc.cos, &samples.cos), (adc.sin, &samples.sin)] {
+            let off = values.iter().map(|v| (adc.value(adc.code(*v)) - v).abs());
+            let off = off.fold(0.0, f64::max) / adc.lsb;
+            assert!(off < 1e-6, "{off} of a code: {adc:?}");
+        }
+    }
 }

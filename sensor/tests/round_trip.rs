@@ -240,6 +240,10 @@ fn bad_files_are_refused_with_their_place() {
     );
     refused(&PLAIN.replace("bits = 14", "bits = 77"), &["adc.bits"]);
     refused(
+        &PLAIN.replace("[motion]", "[adc.sin]\nlsb = 0.0\ncentre = 0.0\n[motion]"),
+        &["adc.sin.lsb", "a code has a size"],
+    );
+    refused(
         &PLAIN.replace("beta = 0.04", "beta = nan"),
         &["signals.beta"],
     );

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use nonius_recording::Recording;
+use nonius_recording::{AdcPair, Recording};
 
 use crate::diagnose::Diagnosis;
 use crate::finding::{Cause, Finding, OTHER_ORDER, Parameter, Place};
@@ -32,7 +32,7 @@ pub fn sensor_toml(found: &Diagnosis, recording: &Recording) -> String {
         .map(|rms| 0.75 * rms * rms)
         .sum();
     let noise = (white * white - with_signal).max(0.0).sqrt();
-    let adc = recording.metadata.adc.cos;
+    let AdcPair { cos: adc, sin } = recording.metadata.adc;
     let mut out = String::from(
         "# The sensor that a recording shows: equation (4), its noise, its ADC, and the causes that were found.\n\n[signals]\n",
     );
@@ -52,6 +52,13 @@ pub fn sensor_toml(found: &Diagnosis, recording: &Recording) -> String {
         "\n[adc]\nbits = {}\nlsb = {:?}\ncentre = {:?}\nsample_rate_hz = {:?}",
         adc.bits, adc.lsb, adc.centre, recording.metadata.sample_rate_hz
     );
+    if !recording.metadata.adc.is_one() {
+        let _ = writeln!(
+            out,
+            "\n[adc.sin] # the codes of sin are others\nlsb = {:?}\ncentre = {:?}",
+            sin.lsb, sin.centre
+        );
+    }
     let file = format!("file = {MOTION:?}");
     let _ = writeln!(
         out,
