@@ -173,16 +173,24 @@ fn off_both(channels: &[Vec<f64>; 2], turning: Option<&Turning>) -> [Vec<f64>; 2
     off
 }
 
+/// What a channel's own codes leave of any curve, in the unit of the columns: what is no farther off is no glitch.
+pub(crate) fn floors(recording: &Recording) -> [f64; 2] {
+    let adc = recording.metadata.adc;
+    [adc.cos, adc.sin].map(|adc| 6.0 * adc.lsb)
+}
+
 /// How far samples are off curves through so many neighbours on either side.
 struct Curve<'a> {
     off: &'a [f64],
     reach: usize,
+    /// How far codes are off it.
+    floor: f64,
 }
 
 impl Curve<'_> {
     /// Samples of a channel that are farther off than noise is there, and how far.
     fn far_off(&self, values: &[f64], recording: &Recording, weight: &[f64]) -> Vec<(usize, f64)> {
-        let (n, reach) = (values.len(), self.reach);
+        let (n, reach, floor) = (values.len(), self.reach, self.floor);
         let rate = recording.metadata.sample_rate_hz;
         let sizes = magnitudes(self.off);
         let typical = typical(self.off, reach);
@@ -195,7 +203,6 @@ impl Curve<'_> {
             alike[range(*v)].push(*size);
         }
         let alike: Vec<f64> = alike.iter().map(|a| ninth(a) / typical).collect();
-        let floor = 6.0 * recording.metadata.adc.cos.lsb;
         let far = |k: &usize| {
             let k = *k;
             // Most samples need no look at their surroundings.
@@ -247,10 +254,12 @@ pub(crate) fn find(recording: &Recording, checked: &mut Checked) {
         let radius = pair[0].hypot(pair[1]).max(f64::MIN_POSITIVE);
         pair.map(|p| p / radius)
     };
+    let floors = floors(recording);
     for (which, values) in channels.iter().enumerate() {
         let short = Curve {
             off: &off[which],
             reach: REACH,
+            floor: floors[which],
         };
         let mut own = short.far_off(values, recording, &checked.weight);
         own.retain(|(k, _)| {
@@ -261,6 +270,7 @@ pub(crate) fn find(recording: &Recording, checked: &mut Checked) {
             let long = Curve {
                 off: &longer[which],
                 reach: MORE,
+                floor: floors[which],
             };
             let mut more = long.far_off(values, recording, &checked.weight);
             // Such a one is hardly a pattern on the short curve; and what is far off itself bends the long one near it.

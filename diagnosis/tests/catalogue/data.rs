@@ -1,8 +1,11 @@
 //! Causes in the data: samples that are off, lost or doubled, and noise with the signal.
 
-use nonius_diagnosis::Cause;
-use rand::rngs::StdRng;
-use rand::{Rng, SeedableRng};
+use std::f64::consts::TAU;
+
+use nonius_diagnosis::{Cause, diagnose};
+use nonius_recording::{Overrides, Recording};
+use rand::{Rng, SeedableRng, rngs::StdRng};
+use rand_distr::{Distribution, StandardNormal};
 
 use crate::harness::{
     Case, LSB, NOISE, PLAIN, Rows, damaged, farthest, finds, finds_nothing, names, near, shows,
@@ -354,4 +357,24 @@ fn a_wild_sample_beside_one_that_comes_again() {
     );
     let (most, rms) = farthest(&found, &rows_then);
     assert!(most < 6.0 * NOISE && rms < 1.1 * NOISE, "{most} {rms}");
+}
+
+/// A channel with codes a tenth of the other's, or so: what is thirty of them off is a glitch, be it three of the other's.
+#[test]
+fn a_glitch_is_told_by_the_codes_of_its_own_channel() {
+    let mut random = StdRng::seed_from_u64(5);
+    let mut channel = |code: f64, quarter: f64| {
+        let value = |k: u32| {
+            let noise: f64 = StandardNormal.sample(&mut random);
+            let turns = f64::from(k) / 97.3 - quarter;
+            code * (500.0 * (TAU * turns).cos() + 2.0 * noise).round()
+        };
+        (0..8000).map(value).collect::<Vec<f64>>()
+    };
+    let (cos, mut sin) = (channel(0.0104, 0.0), channel(0.001, 0.25));
+    sin[2345] += 0.03;
+    let time = (0..8000).map(|k| f64::from(k) * 1e-4).collect();
+    let recording = Recording::from_samples(time, cos, sin, &Overrides::default());
+    let found = diagnose(&recording.expect("a recording")).expect("an ellipse");
+    assert_eq!(names(&found), [Cause::Glitches]);
 }
