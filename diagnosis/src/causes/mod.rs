@@ -24,7 +24,7 @@ use std::collections::BTreeMap;
 use crate::causes::candidate::{Candidate, Domain};
 use crate::context::Context;
 use crate::finding::Cause;
-use crate::model::{Residual, Weighed};
+use crate::model::{Residual, Weighed, atoms_of};
 use crate::shapes::block::Block;
 use crate::shapes::library::{Library, Place, Shape, Use};
 use crate::shapes::trig::{Trig, rotated};
@@ -74,23 +74,14 @@ impl Catalogue {
             candidate.id = *count;
             *count += 1;
         }
-        let shapes = this.generic.values().flatten().chain(&this.parameters);
-        this.broad = shapes.flat_map(|s| s.0.iter().map(|p| p.0)).collect();
-        this.broad.sort_unstable();
-        this.broad.dedup();
+        this.broad = atoms_of(this.generic.values().flatten().chain(&this.parameters));
         this.atoms = this.library.atoms.len();
         this
     }
 
     /// The basis of a domain; empty where it has none.
     pub(crate) fn basis(&self, domain: Domain) -> &[Shape] {
-        // What depends on the code depends on the angle too.
-        let domain = if domain == Domain::Code {
-            Domain::Angle
-        } else {
-            domain
-        };
-        self.generic.get(&domain).map_or(&[], |list| list)
+        self.generic.get(&domain.home()).map_or(&[], |list| list)
     }
 
     /// The cause of a name that has a number among those of that name.

@@ -15,7 +15,7 @@ use crate::shapes::generic::{BOTH, Modulation, Of, per_channel};
 use crate::shapes::library::{Shape, Use};
 
 /// Orders of the revolution that a generic error has.
-const ORDERS: usize = 12;
+pub(crate) const ORDERS: usize = 12;
 
 /// Orders of it that the channels' gains by themselves have, and their offsets: dirt over one channel, and a stray field that turns.
 const APART: [usize; 2] = [8, 1];

@@ -4,7 +4,7 @@
 //! spectrum: whitened by that, noise looks like a cause. So where no domain explains more than as many free numbers do of noise, the
 //! noise of a row is measured before they are taken off, and what the five parameters fit makes it no quieter.
 
-use super::{ROUNDING, System};
+use super::{ROUNDING, System, atoms_of};
 use crate::causes::{self, Catalogue};
 use crate::model::whiten::Whitener;
 use crate::noise::flicker;
@@ -30,7 +30,7 @@ impl System<'_> {
             self.flicker = flicker::find(context, &self.left_of_radius(&any));
         }
         let powers = self.moments(&[], every).powers();
-        let known = Known::new(self, catalogue, known, powers, (&along, &any));
+        let known = Baseline::new(self, catalogue, known, powers, (&along, &any));
         let mut more = self.samples.left(&known.amounts());
         let fast = if left[2].is_empty() {
             Row::Tangential
@@ -147,12 +147,12 @@ fn all(system: &System, of: Of) -> Vec<(usize, f64)> {
 }
 
 /// The five parameters and what is known, as they are taken off.
-struct Known {
+struct Baseline {
     rows: [Own; 3],
     noise: [bool; 3],
 }
 
-impl Known {
+impl Baseline {
     /// With causes that are `known`; `powers` are the squares of the data, `of` equations that hold all of them
     /// and every generic shape.
     fn new(
@@ -162,10 +162,6 @@ impl Known {
         powers: [f64; 3],
         of: Of,
     ) -> Self {
-        let atoms_of = |shapes: &[Shape]| -> Vec<usize> {
-            let all = shapes.iter().flat_map(|s| s.0.iter().map(|part| part.0));
-            all.collect()
-        };
         let atoms = [&atoms_of(&catalogue.parameters), known].concat();
         let rows = ROWS.map(|row| fitted(system, of, &atoms, row));
         let counts: f64 = system.context.weight.iter().sum();

@@ -353,8 +353,8 @@ impl Fit {
 }
 
 /// The atoms of shapes, in the order of their numbers.
-pub(crate) fn atoms_of(shapes: &[Shape]) -> Vec<usize> {
-    let all = shapes.iter().flat_map(|s| s.0.iter().map(|p| p.0));
+pub(crate) fn atoms_of<'a>(shapes: impl IntoIterator<Item = &'a Shape>) -> Vec<usize> {
+    let all = shapes.into_iter().flat_map(|s| s.0.iter().map(|p| p.0));
     let set: std::collections::BTreeSet<usize> = all.collect();
     set.into_iter().collect()
 }

@@ -82,11 +82,8 @@ impl Against {
                 let fold = 2i64.pow(bit.min(40) + 1);
                 let half = 1i64 << (context.bits.min(40) - 1);
                 let codes = context.codes[which].iter();
-                // Samples that were filled in have no codes.
-                let mut folded: Vec<f64> =
-                    codes.map(|c| (c + half).rem_euclid(fold) as f64).collect();
-                folded.resize(context.samples(), f64::NAN);
-                (folded, Some([0.0, fold as f64]))
+                let folded = codes.map(|c| (c + half).rem_euclid(fold) as f64);
+                (folded.collect(), Some([0.0, fold as f64]))
             }
             Self::Line(hertz) => {
                 let time = context.time.iter();

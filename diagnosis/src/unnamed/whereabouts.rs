@@ -8,6 +8,7 @@ use nonius_fourier::Complex;
 use nonius_quantity::{Unit, before_after, digits, periods_per_second, times};
 
 use crate::causes::candidate::Domain;
+use crate::causes::revolution;
 use crate::context::Context;
 use crate::numerics::repeated::repeated;
 
@@ -17,8 +18,9 @@ const WAVES: usize = 5;
 const PERIODS: f64 = 1.0;
 /// Bins of time and of speed.
 const BINS: usize = 24;
-/// Highest orders of the scale period and of the revolution: those of the bases that find such errors.
-const TOP: [usize; 2] = [15, 12];
+/// Highest order of the scale period, in the channels: the basis that finds such errors ends below it, at one more than
+/// [`crate::causes::ORDERS`], and what it finds may be a part of one beyond.
+const TOP: usize = 15;
 /// Share of all that is most of it.
 const MOST: f64 = 0.75;
 /// Share of the recording below which a time is told.
@@ -54,10 +56,10 @@ impl Left<'_> {
         match domain {
             Domain::Time => self.in_time(),
             Domain::Speed => self.over_speeds(),
-            Domain::Angle => self.order(&self.context.alpha, TOP[0], true),
+            Domain::Angle => self.order(&self.context.alpha, TOP, true),
             Domain::Revolution => {
                 let phi = self.context.phi.as_deref().unwrap_or_default();
-                self.order(phi, TOP[1], false)
+                self.order(phi, revolution::ORDERS, false)
             }
             Domain::Code | Domain::Line | Domain::Motion => Place::nowhere(),
         }

@@ -123,16 +123,24 @@ pub(crate) fn gathered(context: &Context, radial: &[f64]) -> Vec<Band> {
     bands(&lines)
 }
 
-/// Log-likelihood of a radial residual as white noise and flicker noise, but for a constant; none of too short a record.
-pub(crate) fn likelihood_of(context: &Context, radial: &[f64]) -> Option<f64> {
-    if radial.len() < 64 {
+/// The spectrum of a radial residual from so many cycles per recording on, without hum; none of too short a record.
+fn told(context: &Context, radial: &[f64], slowest: usize) -> Option<Vec<Line>> {
+    /// Fewest samples that have one.
+    const SAMPLES: usize = 64;
+    if radial.len() < SAMPLES {
         return None;
     }
-    let mut lines = spectrum(context, radial, SLOWEST);
+    let mut lines = spectrum(context, radial, slowest);
     if lines.len() < FEWEST {
         return None;
     }
     without_hum(&mut lines);
+    Some(lines)
+}
+
+/// Log-likelihood of a radial residual as white noise and flicker noise, but for a constant; none of too short a record.
+pub(crate) fn likelihood_of(context: &Context, radial: &[f64]) -> Option<f64> {
+    let lines = told(context, radial, SLOWEST)?;
     let corner = corner(&lines, &bands(&lines)).0;
     let power: f64 = radial.iter().map(|r| r * r).sum();
     let white = -0.5 * radial.len() as f64 * power.max(f64::MIN_POSITIVE).ln();
@@ -171,14 +179,7 @@ pub(crate) fn instead(seen: Channels, change: f64) -> Option<Flicker> {
 fn find_from(seen: Channels, slowest: usize) -> Option<Flicker> {
     let (context, radial) = (seen.context, seen.radial);
     let n = radial.len();
-    if n < 64 {
-        return None;
-    }
-    let mut lines = spectrum(context, radial, slowest);
-    if lines.len() < FEWEST {
-        return None;
-    }
-    without_hum(&mut lines);
+    let lines = told(context, radial, slowest)?;
     let bands = bands(&lines);
     let white = white_beside(&bands, 0.0).1;
     let best = corner(&lines, &bands);
