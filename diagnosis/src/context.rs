@@ -187,6 +187,12 @@ impl Context {
         self.samples() < FEWEST
     }
 
+    /// A code of the coarser channel, in amplitudes.
+    pub(crate) fn code(&self) -> f64 {
+        let (adc, e) = (self.adc, self.ellipse);
+        (adc.cos.lsb / e.a_c.abs()).max(adc.sin.lsb / e.a_s.abs())
+    }
+
     /// Scale periods travelled by the smooth motion, to and fro.
     #[must_use]
     pub fn periods_travelled(&self) -> f64 {

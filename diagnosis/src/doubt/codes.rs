@@ -55,12 +55,6 @@ impl Error {
     }
 }
 
-/// A code of the coarser channel, in amplitudes.
-fn code(context: &Context) -> f64 {
-    let (adc, e) = (context.adc, context.ellipse);
-    (adc.cos.lsb / e.a_c.abs()).max(adc.sin.lsb / e.a_s.abs())
-}
-
 /// Of even steps without noise: a bit that is lost half of the time makes one of half a step.
 fn even() -> f64 {
     12f64.sqrt().recip()
@@ -144,7 +138,7 @@ pub(crate) fn beside(
 ) -> Option<String> {
     let context = system.context;
     let known = known(system, digital);
-    let quiet = quiet(code(context), system.noise());
+    let quiet = quiet(context.code(), system.noise());
     // Values that show no steps are none.
     let stepped = context.adc.cos.source != AdcSource::Assumed;
     let error = if stepped && quiet.whole > IN_NOISE * system.noise() {

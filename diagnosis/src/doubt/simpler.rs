@@ -7,7 +7,6 @@ use crate::causes::Catalogue;
 use crate::causes::candidate::{Candidate, Domain};
 use crate::finding::Cause;
 use crate::model::{Fit, System};
-use crate::numerics::statistics::price;
 use crate::select::beside::Beside;
 use crate::select::rivals;
 use crate::select::score::{Scored, score};
@@ -98,9 +97,8 @@ fn swapped(system: &System, found: &Selection, wide: &Accepted, simple: &Candida
         return None;
     }
     let fit = system.fit(found.fit.with_in_place(wide.range(), &simple.shapes));
-    let samples: f64 = system.context.weight.iter().sum();
     let fewer = wide.candidate.shapes.len() - simple.shapes.len();
-    let price = price(samples.max(1.0)) * fewer as f64;
+    let price = system.price() * fewer as f64;
     (found.fit.solution.gain() - fit.solution.gain() <= price).then_some(fit)
 }
 

@@ -7,7 +7,6 @@ use nonius_quantity::{Quantity, Unit};
 
 use crate::context::Context;
 use crate::finding::Cause;
-use crate::numerics::ends::span;
 use crate::numerics::lines::median;
 use crate::numerics::statistics::after_trials;
 use crate::select::score::SHOWN;
@@ -101,16 +100,6 @@ fn kolmogorov(x: f64) -> f64 {
     (2.0 * (1..=20).map(term).sum::<f64>()).clamp(0.0, 1.0)
 }
 
-/// A code of the ADC, in amplitudes: that of the coarser channel.
-fn code(context: &Context) -> f64 {
-    let of = |(raw, codes): (&Vec<f64>, &Vec<i64>)| {
-        let codes = span(codes.iter().map(|c| *c as f64));
-        span(raw.iter().copied()) / codes.max(1.0)
-    };
-    let channels = context.raw.iter().zip(&context.codes).map(of);
-    channels.fold(0.0, f64::max) / context.ellipse.amplitude()
-}
-
 /// Which sector of the period a sample lies in.
 fn sector(context: &Context, k: usize) -> usize {
     let turns = context.alpha[k].rem_euclid(TAU) / TAU;
@@ -175,7 +164,7 @@ pub(crate) fn no_noise(context: &Context, radial: &[f64], coded: f64) -> Vec<Unn
         return vec![];
     }
     let sigma = spread(&sizes);
-    if sigma.is_nan() || sigma <= CODES * code(context) {
+    if sigma.is_nan() || sigma <= CODES * context.code() {
         return vec![];
     }
     let square: f64 = radial.iter().map(|r| r * r).sum();
