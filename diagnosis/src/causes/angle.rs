@@ -5,11 +5,11 @@ use std::rc::Rc;
 use super::{Catalogue, ORDERS};
 use nonius_quantity::ordinal;
 
-use crate::causes::candidate::{Adds, Candidate, Domain, Exact, Sign, each, polar};
+use crate::causes::candidate::{Adds, Candidate, Domain, Estimate, Exact, Sign, each, polar};
 use crate::context::Context;
 use crate::finding::{Cause, Chip, Parameter};
 use crate::shapes::block::Block;
-use crate::shapes::library::{Library, Shape, Use};
+use crate::shapes::library::{Library, Place, Shape, Use};
 use crate::shapes::trig::{Trig, normalised, raw};
 
 /// Orders of the scale period that have a name.
@@ -19,11 +19,58 @@ const THRESHOLDS: [f64; 7] = [0.5, 0.6, 0.7, 0.8, 0.85, 0.9, 0.95];
 /// How far a threshold may be off its grid.
 const GRID: f64 = 0.05;
 
-/// Rails that differ.
-const EACH: &str = "the rails, each at its own rate";
+/// Rails at which the signals saturate.
+#[derive(Clone, Copy, PartialEq)]
+enum Rails {
+    /// All, alike.
+    Both,
+    Upper,
+    Lower,
+    /// All, each at its own rate.
+    Each,
+}
 
-/// Shapes of a variant, of each channel's upper and lower rail.
-type Variant = fn(&[Shape]) -> Vec<Shape>;
+impl Rails {
+    const ALL: [Self; 4] = [Self::Both, Self::Upper, Self::Lower, Self::Each];
+
+    /// What sentences call them.
+    fn words(self) -> &'static str {
+        match self {
+            Self::Both => "both rails",
+            Self::Upper => "the upper rail",
+            Self::Lower => "the lower rail",
+            Self::Each => "the rails, each at its own rate",
+        }
+    }
+
+    /// Their shapes, of each channel's upper and lower rail.
+    fn shapes(self, r: &[Shape]) -> Vec<Shape> {
+        match self {
+            Self::Both => vec![r[0].plus(&r[2]).plus(&r[1].plus(&r[3]))],
+            Self::Upper => vec![r[0].plus(&r[2])],
+            Self::Lower => vec![r[1].plus(&r[3])],
+            Self::Each => r.to_vec(),
+        }
+    }
+
+    /// Compressions of single rails, as parameters.
+    fn single(self, e: &Estimate) -> Vec<Parameter> {
+        let one = |rail: &str, x: f64, error: f64| {
+            Parameter::measured(&format!("compression_{rail}"), x, error, "1")
+        };
+        match self {
+            Self::Both => vec![],
+            Self::Upper => vec![one("lower", 0.0, 0.0)],
+            Self::Lower => vec![one("upper", 0.0, 0.0)],
+            Self::Each => {
+                let names = ["cos_upper", "cos_lower", "sin_upper", "sin_lower"];
+                let rails = names.iter().zip(e.x).zip(e.error);
+                let rails = rails.map(|((name, x), error)| one(name, *x, *error));
+                rails.collect()
+            }
+        }
+    }
+}
 
 /// What is beyond a threshold, in amplitudes: cos above, cos below, sin above, sin below.
 fn rails(threshold: f64, library: &mut Library) -> Vec<Shape> {
@@ -84,7 +131,6 @@ pub(crate) fn is_a_circle(candidate: &Candidate, x: &[f64]) -> bool {
 }
 
 pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
-    let beta = context.ellipse.beta;
     let angle = catalogue.library.add(
         2 * ORDERS + 1,
         Use::Both,
@@ -93,18 +139,28 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
     catalogue.parameters = super::parameters(&angle);
     let basis = (1..=2 * ORDERS).flat_map(|i| [angle.radial(i), angle.tangential(i)]);
     catalogue.generic(Domain::Angle, basis);
-    // So many amounts, each of them one.
-    let shapes = |adds: &Adds, amounts: usize| -> Vec<Shape> {
-        let unit = |j: usize| {
-            (0..amounts)
-                .map(|i| f64::from(i == j))
-                .collect::<Vec<f64>>()
-        };
-        let added = (0..amounts).map(|j| adds(beta, &unit(j)));
-        added
-            .map(|[cos, sin]| angle.waves(&raw(beta, &cos, &sin), 0, ORDERS))
-            .collect()
+    let beta = context.ellipse.beta;
+    catalogue.candidates.extend(bends(beta, &angle));
+    catalogue.candidates.extend(harmonics(beta, &angle));
+    let saturations = saturations(&mut catalogue.library);
+    catalogue.candidates.extend(saturations);
+}
+
+/// Shapes of so many amounts, each of them one, by the phase error in radians.
+fn shapes(adds: &Adds, amounts: usize, beta: f64, angle: &Place) -> Vec<Shape> {
+    let unit = |j: usize| {
+        (0..amounts)
+            .map(|i| f64::from(i == j))
+            .collect::<Vec<f64>>()
     };
+    let added = (0..amounts).map(|j| adds(beta, &unit(j)));
+    added
+        .map(|[cos, sin]| angle.waves(&raw(beta, &cos, &sin), 0, ORDERS))
+        .collect()
+}
+
+/// Squares and cubes of the channels.
+fn bends(beta: f64, angle: &Place) -> [Candidate; 2] {
     let of = |name, adds: Adds, what: &'static str| Candidate {
         trials: 2.0,
         // By the bends of 8 and 9 parameters, or by the table of harmonics.
@@ -118,17 +174,20 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
                 p[1].brief()
             )
         }),
-        ..Candidate::new(name, Domain::Angle, shapes(&adds, 2))
+        ..Candidate::new(name, Domain::Angle, shapes(&adds, 2, beta, angle))
     };
-    let list = &mut catalogue.candidates;
-    list.extend([
+    [
         of(Cause::EvenNonlinearity, powers(2), "y + k·y²"),
         of(Cause::OddNonlinearity, powers(3), "y + k·y³"),
-    ]);
-    for order in HARMONICS {
+    ]
+}
+
+/// Harmonics of the scale period, of each channel by itself.
+fn harmonics(beta: f64, angle: &Place) -> impl Iterator<Item = Candidate> {
+    HARMONICS.map(move |order| {
         let adds = waves(order);
-        let shapes = shapes(&adds, 4);
-        list.push(Candidate {
+        let shapes = shapes(&adds, 4, beta, angle);
+        Candidate {
             trials: HARMONICS.count() as f64,
             order: Some(order),
             adds: Some(adds),
@@ -153,66 +212,51 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
                 )
             }),
             ..Candidate::new(Cause::SpatialHarmonic, Domain::Angle, shapes)
-        });
-    }
-    for threshold in THRESHOLDS {
-        let rails = rails(threshold, &mut catalogue.library);
-        let variants: [(&'static str, Variant); 4] = [
-            ("both rails", |r| {
-                vec![r[0].plus(&r[2]).plus(&r[1].plus(&r[3]))]
-            }),
-            ("the upper rail", |r| vec![r[0].plus(&r[2])]),
-            ("the lower rail", |r| vec![r[1].plus(&r[3])]),
-            (EACH, <[Shape]>::to_vec),
-        ];
-        let trials = variants.len() * THRESHOLDS.len();
-        for (where_, of) in variants {
-            catalogue.candidates.push(Candidate {
-                trials: trials as f64,
-                exact: Some(Exact {
-                    make: Rc::new(move |inner, library| of(&self::rails(inner[0], library))),
-                    inner: vec![threshold],
-                    steps: vec![0.005],
-                    follows: false,
-                }),
-                sign: Sign::Positive,
-                parameters: Rc::new(move |e| {
-                    let most = e.x.iter().copied().fold(0.0, f64::max);
-                    let error = e.error.iter().copied().fold(0.0, f64::max);
-                    let mut all = vec![
-                        Parameter::measured(
-                            "threshold",
-                            e.inner[0],
-                            e.inner_error.map_or(GRID, |d| d[0]),
-                            "amplitude",
-                        ),
-                        Parameter::measured("compression", most, error, "1"),
-                    ];
-                    let one = |rail: &str, x: f64, error: f64| {
-                        Parameter::measured(&format!("compression_{rail}"), x, error, "1")
-                    };
-                    // Of single rails.
-                    match where_ {
-                        "the upper rail" => all.push(one("lower", 0.0, 0.0)),
-                        "the lower rail" => all.push(one("upper", 0.0, 0.0)),
-                        "both rails" => {}
-                        _ => {
-                            let names = ["cos_upper", "cos_lower", "sin_upper", "sin_lower"];
-                            let rails = names.iter().zip(e.x).zip(e.error);
-                            all.extend(rails.map(|((name, x), error)| one(name, *x, *error)));
-                        }
-                    }
-                    all
-                }),
-                evidence: Rc::new(move |p| {
-                    format!(
-                        "the signals saturate at {where_}: beyond {} of the amplitude {}",
-                        p[0].brief(),
-                        loses(&p[1], where_ == EACH)
-                    )
-                }),
-                ..Candidate::new(Cause::Saturation, Domain::Angle, of(&rails))
-            });
         }
+    })
+}
+
+/// Rails at which the channels bend, from each threshold on.
+fn saturations(library: &mut Library) -> Vec<Candidate> {
+    let trials = Rails::ALL.len() * THRESHOLDS.len();
+    let mut list = vec![];
+    for threshold in THRESHOLDS {
+        let each = rails(threshold, library);
+        let one = |at: Rails| Candidate {
+            trials: trials as f64,
+            exact: Some(Exact {
+                make: Rc::new(move |inner, library| at.shapes(&rails(inner[0], library))),
+                inner: vec![threshold],
+                steps: vec![0.005],
+                follows: false,
+            }),
+            sign: Sign::Positive,
+            parameters: Rc::new(move |e| {
+                let most = e.x.iter().copied().fold(0.0, f64::max);
+                let error = e.error.iter().copied().fold(0.0, f64::max);
+                let mut all = vec![
+                    Parameter::measured(
+                        "threshold",
+                        e.inner[0],
+                        e.inner_error.map_or(GRID, |d| d[0]),
+                        "amplitude",
+                    ),
+                    Parameter::measured("compression", most, error, "1"),
+                ];
+                all.extend(at.single(e));
+                all
+            }),
+            evidence: Rc::new(move |p| {
+                format!(
+                    "the signals saturate at {}: beyond {} of the amplitude {}",
+                    at.words(),
+                    p[0].brief(),
+                    loses(&p[1], at == Rails::Each)
+                )
+            }),
+            ..Candidate::new(Cause::Saturation, Domain::Angle, at.shapes(&each))
+        };
+        list.extend(Rails::ALL.map(one));
     }
+    list
 }
