@@ -153,7 +153,7 @@ pub(crate) fn is_of_single_samples(context: &Context, radial: &[f64]) -> bool {
     let sizes = sizes(context, radial);
     let sigma = spread(&sizes);
     let far = || far_off(context, radial, sigma).len() as f64;
-    sigma > CODES * code(context) && far() > SINGLE * sizes.len() as f64
+    sigma > CODES * context.code() && far() > SINGLE * sizes.len() as f64
 }
 
 /// What of a radial residual, in amplitudes, is no white noise; nothing where the ADC is coarser than the noise, or the codes err by

@@ -367,7 +367,7 @@ fn a_glitch_is_told_by_the_codes_of_its_own_channel() {
         let value = |k: u32| {
             let noise: f64 = StandardNormal.sample(&mut random);
             let turns = f64::from(k) / 97.3 - quarter;
-            code * (500.0 * (TAU * turns).cos() + 2.0 * noise).round()
+            code * (500.0 * (TAU * turns).cos() + 0.5 * noise).round()
         };
         (0..8000).map(value).collect::<Vec<f64>>()
     };
