@@ -161,6 +161,22 @@ mod tests {
         (0..n).map(|k| (at(k).x, at(k).y)).unzip()
     }
 
+    /// One sample in twenty is part of the bulk that a first fit goes by, and all to one side they made an ellipse of five amplitudes.
+    #[test]
+    fn many_glitches_to_one_side_are_left_out() {
+        for (every, size) in [(20, 2.0), (20, 5.0), (10, 1.0)] {
+            let (mut cos, sin) = turning(4000, 9.3);
+            (0..4000).step_by(every).for_each(|k| cos[k] += size);
+            let samples = Samples::of(&cos, &sin).expect("an ellipse");
+            // Some come to lie on the ellipse.
+            assert!(samples.outliers >= 4000 / every * 9 / 10, "{every} {size}");
+            assert!(
+                (samples.start.a_c - SENSOR.a_c).abs() < 1e-3,
+                "{every} {size}"
+            );
+        }
+    }
+
     #[test]
     fn glitches_and_zeros_are_left_out_and_nothing_else() {
         let (mut cos, mut sin) = turning(2000, 3.3);

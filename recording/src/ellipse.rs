@@ -53,6 +53,11 @@ const OUTLIER_FLOOR: f64 = 1e-6;
 const OUTLIER: f64 = 4.0;
 /// Largest residual of samples that lie on an ellipse.
 const ROUND: f64 = 0.25;
+/// Share of the samples at each end of a channel that are not of its bulk; and where those that are left draw no clear ellipse.
+const BULK: f64 = 0.02;
+const NARROW: f64 = 0.1;
+/// Radial standard deviation, in fractions of the amplitude, from which on they do not.
+const ROUGH: f64 = 0.03;
 /// Largest arc without samples, in turns.
 const WIDEST_GAP: f64 = 0.5;
 
@@ -145,24 +150,15 @@ impl Ellipse {
 
 /// Fits, leaves out what lies far off, and fits again.
 fn robust(cos: &[f64], sin: &[f64], extremes: &Ellipse) -> Result<EllipseFit, &'static str> {
-    // Glitches beyond half a range outside the bulk of the samples would bend the first fit.
-    let (frame, bulk) = bulk(cos, sin, extremes);
-    let mut keep: Vec<bool> = pairs(cos, sin)
-        .map(|(c, s)| {
-            let (x, y) = frame.corrected(c, s);
-            x.abs() <= 2.0 * bulk.0 && y.abs() <= 2.0 * bulk.1
-        })
-        .collect();
-    let mut ellipse = *extremes;
-    let mut rho = Vec::new();
-    for _ in 0..4 {
-        let kept = pairs(cos, sin).zip(&keep).filter(|(_, keep)| **keep);
-        ellipse = conic(kept.map(|(y, _)| y), &frame).ok_or("the samples lie on no ellipse")?;
-        rho = residuals(&ellipse, cos, sin);
-        let sigma = 1.4826 * median(rho.iter().map(|r| r.abs()).collect());
-        let limit = f64::max(OUTLIER * sigma, OUTLIER_FLOOR);
-        keep = rho.iter().map(|r| r.abs() <= limit).collect();
-    }
+    let first = Kept::of(cos, sin, extremes, BULK);
+    // One glitch in twenty, all to one side, is part of that bulk.
+    let sigma = first.as_ref().map_or(ROUND, |kept| kept.sigma);
+    let narrow = || Kept::of(cos, sin, extremes, NARROW);
+    let better = (sigma > ROUGH).then(narrow).flatten();
+    let kept = better.filter(|kept| kept.sigma < sigma / 2.0).or(first);
+    let Kept {
+        ellipse, rho, keep, ..
+    } = kept.ok_or("the samples lie on no ellipse")?;
     let kept = keep.iter().filter(|k| **k).count();
     let residual_rms = rms(rho.iter().zip(&keep).filter(|(_, k)| **k).map(|(r, _)| *r));
     if kept * 2 < keep.len() || residual_rms.is_nan() || residual_rms > ROUND {
@@ -183,6 +179,45 @@ fn robust(cos: &[f64], sin: &[f64], extremes: &Ellipse) -> Result<EllipseFit, &'
     })
 }
 
+/// An ellipse through the samples that are near it.
+struct Kept {
+    ellipse: Ellipse,
+    /// Radial residuals of all samples.
+    rho: Vec<f64>,
+    keep: Vec<bool>,
+    /// Robust standard deviation of the residuals.
+    sigma: f64,
+}
+
+impl Kept {
+    /// Begins with those that are not far outside the bulk, without such a share of them at each end; `None` where there is no ellipse.
+    fn of(cos: &[f64], sin: &[f64], extremes: &Ellipse, share: f64) -> Option<Self> {
+        // Glitches beyond half a range outside the bulk of the samples would bend the first fit.
+        let (frame, bulk) = bulk(cos, sin, extremes, share);
+        // A bulk that leaves out more has less room for glitches beside it.
+        let room = if share > BULK { 1.2 } else { 2.0 };
+        let keep = pairs(cos, sin).map(|(c, s)| {
+            let (x, y) = frame.corrected(c, s);
+            x.abs() <= room * bulk.0 && y.abs() <= room * bulk.1
+        });
+        let mut this = Self {
+            ellipse: frame,
+            rho: vec![],
+            keep: keep.collect(),
+            sigma: 0.0,
+        };
+        for _ in 0..4 {
+            let kept = pairs(cos, sin).zip(&this.keep).filter(|(_, keep)| **keep);
+            this.ellipse = conic(kept.map(|(y, _)| y), &frame)?;
+            this.rho = residuals(&this.ellipse, cos, sin);
+            this.sigma = 1.4826 * median(this.rho.iter().map(|r| r.abs()).collect());
+            let limit = f64::max(OUTLIER * this.sigma, OUTLIER_FLOOR);
+            this.keep = this.rho.iter().map(|r| r.abs() <= limit).collect();
+        }
+        Some(this)
+    }
+}
+
 /// The least-squares conic through points, in a frame in which they are of order one.
 fn conic(points: impl Iterator<Item = (f64, f64)>, frame: &Ellipse) -> Option<Ellipse> {
     let mut conic = Conic::default();
@@ -201,8 +236,8 @@ fn conic(points: impl Iterator<Item = (f64, f64)>, frame: &Ellipse) -> Option<El
 }
 
 /// A frame in which the samples are of order one, and the half ranges of their bulk in it.
-fn bulk(cos: &[f64], sin: &[f64], extremes: &Ellipse) -> (Ellipse, (f64, f64)) {
-    let [c, s] = [cos, sin].map(|values| ends(values, 0.02));
+fn bulk(cos: &[f64], sin: &[f64], extremes: &Ellipse, share: f64) -> (Ellipse, (f64, f64)) {
+    let [c, s] = [cos, sin].map(|values| ends(values, share));
     if c.1 > c.0 && s.1 > s.0 {
         let half = |(low, high): (f64, f64)| high / 2.0 - low / 2.0;
         let (b_c, b_s) = (c.0 + half(c), s.0 + half(s));
