@@ -147,10 +147,8 @@ impl Nameless {
         } else if !rest.is_empty() {
             (noise, strange) = (vec![], vec![]);
         }
-        let single = left::is_of_single_samples(system.context, &residual.radial);
-        if single {
-            (noise, rest) = (vec![], &[]);
-            strange = left::no_noise(system.context, &residual.radial, selection.coded);
+        if let Some(single) = left::single_samples(system.context, &residual.radial) {
+            (noise, strange) = (vec![], vec![single]);
         }
         let mut unnamed = [selection.unnamed.as_slice(), rest].concat();
         let flicker = flicker(system, selection, &residual, &unnamed);

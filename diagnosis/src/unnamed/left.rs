@@ -148,12 +148,42 @@ fn sizes(context: &Context, radial: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// Whether so many samples stand out that they are what a kind of noise is made of.
-pub(crate) fn is_of_single_samples(context: &Context, radial: &[f64]) -> bool {
+/// Samples that stand out of a radial residual, in amplitudes, and are so many that they are what a kind of noise is made of.
+pub(crate) fn single_samples(context: &Context, radial: &[f64]) -> Option<Unnamed> {
     let sizes = sizes(context, radial);
     let sigma = spread(&sizes);
-    let far = || far_off(context, radial, sigma).len() as f64;
-    sigma > CODES * context.code() && far() > SINGLE * sizes.len() as f64
+    if sigma.is_nan() || sigma <= CODES * context.code() {
+        return None;
+    }
+    let far = far_off(context, radial, sigma);
+    let many = far.len() as f64 > SINGLE * sizes.len() as f64;
+    many.then(|| unlikely(&far, radial.len())).flatten()
+}
+
+/// Samples that stand out, of so many: too many for chance.
+fn unlikely(far: &[usize], samples: usize) -> Option<Unnamed> {
+    let first = far.first().filter(|_| far.len() >= FEWEST)?;
+    // Each is less likely than one in 10⁸.
+    let expected = 2e-9 * samples as f64;
+    let p_value = expected.min(1.0).powi(FEWEST as i32);
+    said(
+        p_value,
+        format!(
+            "{} samples deviate in the radius by more than {FAR} standard deviations of the noise, the first is sample {first}; {}",
+            far.len(),
+            like(Cause::Glitches, "the samples beside them deviate, too")
+        ),
+    )
+}
+
+/// What is told of what would be as far off in noise with this probability.
+fn said(p_value: f64, sentence: String) -> Option<Unnamed> {
+    let log_p = after_trials(p_value.max(f64::MIN_POSITIVE).ln(), TRIALS);
+    (log_p < SHOWN.ln()).then_some(Unnamed {
+        log_p,
+        gain: 0.0,
+        what: What::Said(sentence),
+    })
 }
 
 /// What of a radial residual, in amplitudes, is no white noise; nothing where the ADC is coarser than the noise, or the codes err by
@@ -173,33 +203,9 @@ pub(crate) fn no_noise(context: &Context, radial: &[f64], coded: f64) -> Vec<Unn
     if made_by_codes {
         return vec![];
     }
-    let mut found = vec![];
-    let mut tell = |p_value: f64, sentence: String| {
-        let log_p = after_trials(p_value.max(f64::MIN_POSITIVE).ln(), TRIALS);
-        if log_p < SHOWN.ln() {
-            found.push(Unnamed {
-                log_p,
-                gain: 0.0,
-                what: What::Said(sentence),
-            });
-        }
-    };
-    let far = far_off(context, radial, sigma);
-    if let Some(first) = far.first().filter(|_| far.len() >= FEWEST) {
-        // Each is less likely than one in 10⁸.
-        let expected = 2e-9 * radial.len() as f64;
-        let p_value = expected.min(1.0).powi(FEWEST as i32);
-        tell(
-            p_value,
-            format!(
-                "{} samples deviate in the radius by more than {FAR} standard deviations of the noise, the first is sample {first}; {}",
-                far.len(),
-                like(Cause::Glitches, "the samples beside them deviate, too")
-            ),
-        );
-    }
+    let far = unlikely(&far_off(context, radial, sigma), radial.len());
     let bartlett = Bartlett::of(radial);
-    tell(
+    let coloured = said(
         bartlett.p_value,
         format!(
             "the radial residual of {} of the amplitude rms is not white: {} (Bartlett's test)",
@@ -207,7 +213,7 @@ pub(crate) fn no_noise(context: &Context, radial: &[f64], coded: f64) -> Vec<Unn
             bartlett.words(context.rate)
         ),
     );
-    found
+    [far, coloured].into_iter().flatten().collect()
 }
 
 #[cfg(test)]
