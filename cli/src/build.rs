@@ -7,7 +7,7 @@ use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use nonius_model::spec::{Calibration, Multipliers, Spec};
 use nonius_package::{
-    DesignJson, Event, PackageError, PullIn, ROWS, may_write, package_followed, write,
+    DesignJson, Event, PackageError, PullIn, ROWS, SlowLock, may_write, package_followed, write,
 };
 use nonius_quantity::{counted, engineering, periods_per_second};
 use nonius_testvectors::stimulus;
@@ -168,6 +168,9 @@ fn summary(j: &DesignJson, output: &Path, shown: &str) {
     );
     say!("  position    {}", position(j));
     pulled_in(&j.pull_in);
+    if let Some(missed) = j.slow_lock.as_ref().and_then(SlowLock::missed) {
+        say!("  note        {missed}");
+    }
     if let Some(peak) = clipped(&j.spec) {
         say!(
             "  note        the sensor that the design promises reaches {peak:.3} of the ADC's range at its worst: it clips"

@@ -12,6 +12,7 @@ use crate::pull_in::PullIn;
 use crate::signals::Signal;
 use crate::simulation::Accuracy;
 use crate::sine::{SineError, sine_error};
+use crate::slow_lock::SlowLock;
 use crate::tracking::Tracking;
 
 /// The whole file.
@@ -56,6 +57,8 @@ pub struct DesignJson {
     pub simulated_weakest: Accuracy,
     /// From power-up into full speed, measured likewise.
     pub pull_in: PullIn,
+    /// How promised sensors are learned at slow speed, where bends are calibrated.
+    pub slow_lock: Option<SlowLock>,
     /// What was asked for.
     pub spec: Spec,
 }
@@ -239,6 +242,7 @@ impl DesignJson {
             simulated,
             simulated_weakest,
             pull_in,
+            slow_lock: SlowLock::of(design),
             spec: spec.clone(),
         }
     }

@@ -13,6 +13,7 @@ mod sensor;
 mod signals;
 mod simulation;
 mod sine;
+mod slow_lock;
 mod tracking;
 mod write;
 
@@ -23,6 +24,7 @@ pub use pull_in::{BOTH_WAYS, PullIn, Worst, pull_in, pull_in_followed};
 pub use signals::{Signal, signals};
 pub use simulation::{Accuracy, Simulation, simulate, simulate_weakest};
 pub use sine::{SineError, sine_error};
+pub use slow_lock::SlowLock;
 pub use write::{WriteError, may_write, write};
 
 use nonius_model::chip::Chip;

@@ -56,10 +56,10 @@ const PLACES: [f64; 4] = [0.0, 0.13, 0.4, 0.77];
 
 /// A start: of which sensor, at which speed (periods per sample), from where.
 #[derive(Clone, Copy)]
-struct Start {
-    signs: u32,
-    speed: f64,
-    place: f64,
+pub(crate) struct Start {
+    pub(crate) signs: u32,
+    pub(crate) speed: f64,
+    pub(crate) place: f64,
 }
 
 impl PullIn {
@@ -165,7 +165,7 @@ pub fn pull_in_followed(design: &Design, parts: &[f64], progress: Progress) -> P
 }
 
 /// Amplitudes, offsets and the phase error at either end; with 8 and 9 parameters the bends too.
-fn sensors(spec: &Spec) -> u32 {
+pub(crate) fn sensors(spec: &Spec) -> u32 {
     if spec.calibration.has_bend() {
         1 << 7
     } else {
@@ -198,7 +198,7 @@ fn patience(design: &Design) -> u64 {
 }
 
 /// Each bit turns one of the errors round.
-fn shares(spec: &Spec, signs: u32) -> Shares {
+pub(crate) fn shares(spec: &Spec, signs: u32) -> Shares {
     let sign = |bit: u32| if signs >> bit & 1 == 0 { 1.0 } else { -1.0 };
     Shares {
         gains: [sign(0), sign(1)],
@@ -243,7 +243,7 @@ fn samples_to_lock(design: &Design, start: &Start) -> Option<u64> {
 }
 
 impl Worst {
-    fn of(spec: &Spec, start: &Start, count: u32) -> Self {
+    pub(crate) fn of(spec: &Spec, start: &Start, count: u32) -> Self {
         let (s, shares) = (&spec.sensor, shares(spec, start.signs));
         Self {
             amplitudes: shares

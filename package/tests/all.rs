@@ -6,6 +6,7 @@ mod pull_in;
 mod shipped;
 mod shipped_designs;
 mod sine;
+mod slow_lock;
 mod words;
 
 /// A file that is not named above would never run.
