@@ -270,10 +270,13 @@ fn correct_bends(text: &str, found: &Diagnosis) -> Result<(String, Vec<Outcome>)
     if cubic && !behind.sees() {
         return unchanged(format!(
             "the channels bend by the third order, which the chip learns well where the bandwidth of its loop is up to {} times the signal \
-             frequency; this axis accelerates too much for that (the signals have {} Hz, usually, and the loop needs {} Hz), so the design keeps \
-             its parameters",
+             frequency; here the signals have {} Hz, usually, and the loop {} {} Hz, so the design keeps its parameters",
             Behind::WIDEST,
             digits(behind.usual, 2),
+            match spec.tracking.filter_type {
+                2 => "needs, where the axis accelerates as here,",
+                _ => "has",
+            },
             digits(behind.bandwidth, 3),
         ));
     }
