@@ -10,6 +10,7 @@ use crate::curves;
 use crate::design_json::DesignJson;
 use crate::diagram::Diagram;
 use crate::simulation::Simulation;
+use crate::slow_lock::SlowLock;
 use nonius_quantity::{engineering, periods_per_second};
 
 #[derive(Template)]
@@ -190,6 +191,7 @@ fn facts(design: &Design, j: &DesignJson) -> Vec<Fact> {
             corrected(spec),
         ),
     ];
+    list.extend(j.slow_lock.as_ref().and_then(slow_lock));
     list.extend(skew);
     list.extend(harmonics);
     list
@@ -235,6 +237,16 @@ fn pull_in(j: &DesignJson) -> Fact {
         ),
     };
     Fact::new("Pull-in", value, note).missed_where(!p.holds())
+}
+
+/// Sensors that are never learned in slow motion, where there are any.
+fn slow_lock(slow: &SlowLock) -> Option<Fact> {
+    let value = format!(
+        "{} of {} sensors never learned",
+        slow.not_learned, slow.sensors
+    );
+    let fact = |why| Fact::new("Slow motion", value, why).missed_where(true);
+    slow.missed().map(fact)
 }
 
 /// The closed loop's magnitude in dB over frequency.
