@@ -218,6 +218,14 @@ fn summary(j: &DesignJson, output: &Path, shown: &str) {
             j.spec.sensor.amplitude_tolerance
         );
     }
+    let held = !j.misses() && !j.misses_with_the_weakest();
+    if uncorrected.is_none() && held && j.budget.total > j.budget.asked {
+        say!(
+            "  note        {:.2e} periods rms are predicted, on the safe side, of {:.2e} asked; both runs keep it",
+            j.budget.total,
+            j.budget.asked
+        );
+    }
     let folder = output.display();
     say!("  written     {folder}: rtl, tb, vectors, waves, coefficients, design.json, report.html");
     say!("next: nonius verify {folder}");

@@ -48,6 +48,8 @@ struct Behind {
     narrowed: Option<f64>,
     /// Bandwidth of the loop then, Hz.
     bandwidth: f64,
+    /// What the acceleration of the axis needs of it, Hz, or what signals of that frequency do.
+    needed: f64,
 }
 
 impl Behind {
@@ -73,6 +75,7 @@ impl Behind {
             usual,
             narrowed,
             bandwidth: narrowed.unwrap_or(now),
+            needed: narrow,
         }
     }
 
@@ -268,16 +271,15 @@ fn correct_bends(text: &str, found: &Diagnosis) -> Result<(String, Vec<Outcome>)
         .iter()
         .any(|k| harmonics::is_of_third_order(&found.findings[*k]));
     if cubic && !behind.sees() {
+        let (has, hertz) = match spec.tracking.filter_type {
+            2 => ("needs, where the axis accelerates as here,", behind.needed),
+            _ => ("has", digits(behind.bandwidth, 3)),
+        };
         return unchanged(format!(
             "the channels bend by the third order, which the chip learns well where the bandwidth of its loop is up to {} times the signal \
-             frequency; here the signals have {} Hz, usually, and the loop {} {} Hz, so the design keeps its parameters",
+             frequency; here the signals have {} Hz, usually, and the loop {has} {hertz} Hz, so the design keeps its parameters",
             Behind::WIDEST,
             digits(behind.usual, 2),
-            match spec.tracking.filter_type {
-                2 => "needs, where the axis accelerates as here,",
-                _ => "has",
-            },
-            digits(behind.bandwidth, 3),
         ));
     }
     let mut document: DocumentMut = text.parse().context("the design is no TOML")?;

@@ -81,7 +81,7 @@ impl Context {
         tells
     }
 
-    /// What a sample counts for the motion: next to nothing where nothing tells the angle, but there it goes along the line that was
+    /// What a sample counts for the motion: next to nothing where nothing tells the angle, but there it goes along what was
     /// laid over it, whatever its knots could do.
     pub(crate) fn leads(&self) -> Vec<f64> {
         let tells = self.tells().into_iter();

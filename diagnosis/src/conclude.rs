@@ -6,8 +6,8 @@ use crate::context::Context;
 use crate::diagnose::{Diagnosis, Extended, sort};
 use crate::doubt::curves;
 use crate::drifts::channels::Channels;
-use crate::finding::Finding;
 use crate::finding::units;
+use crate::finding::{Cause, Finding};
 use crate::model::exact;
 use crate::model::{Fit, Residual, System};
 use crate::noise;
@@ -148,7 +148,8 @@ impl Nameless {
             (noise, strange) = (vec![], vec![]);
         }
         if let Some(single) = left::single_samples(system.context, &residual.radial) {
-            (noise, strange) = (vec![], vec![single]);
+            noise.retain(|noise| noise.cause != Cause::AmplitudeNoise);
+            strange.push(single);
         }
         let mut unnamed = [selection.unnamed.as_slice(), rest].concat();
         let flicker = flicker(system, selection, &residual, &unnamed);

@@ -174,7 +174,8 @@ impl DesignJson {
         weakest.rms_periods > self.budget.asked || !weakest.locked
     }
 
-    /// Everything that was asked for and promised is simulated to hold.
+    /// With half of the promised errors the accuracy holds, and every promised sensor locks into full speed; the weakest signals and slow
+    /// motion are only told.
     #[must_use]
     pub fn holds(&self) -> bool {
         !self.misses() && self.pull_in.holds()

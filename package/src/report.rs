@@ -120,7 +120,7 @@ fn facts(design: &Design, j: &DesignJson) -> Vec<Fact> {
                 }
             ),
         )
-        .missed_where(j.misses()),
+        .missed_where(j.misses() || j.misses_with_the_weakest()),
         pull_in(j),
         Fact::new(
             "Resolution",

@@ -11,6 +11,8 @@ use crate::sensor::Sensor;
 
 /// Part of the loop's bandwidth that is slow: the loop follows every bend of the signals.
 const SLOW: f64 = 0.1;
+/// Most samples of a period: a slower machine is simulated faster than it is.
+const LONGEST: f64 = 4000.0;
 /// Periods in a row in lock that show that it is learned, and how many it is given.
 const QUIET: u64 = 3;
 const PATIENCE: u64 = 24;
@@ -22,7 +24,7 @@ pub struct SlowLock {
     pub speed_periods_per_s: f64,
     /// Sensors: all combinations of the ends.
     pub sensors: u32,
-    /// Sensors of which lock is lost in nearly every period, so that nothing is learned.
+    /// Sensors that do not stay in lock for three periods in a row within 24: their ellipse is not learned.
     pub not_learned: u32,
     /// One of them.
     pub worst: Option<Worst>,
@@ -31,7 +33,7 @@ pub struct SlowLock {
 }
 
 impl SlowLock {
-    /// `None` where bends are not calibrated: fewer parameters are learned within a few periods, if with one loss.
+    /// `None` where bends are not calibrated: with fewer parameters no such sensor is known, and none is looked for.
     #[must_use]
     pub fn of(design: &Design) -> Option<Self> {
         let spec = &design.spec;
@@ -42,7 +44,10 @@ impl SlowLock {
         let helps = || {
             let mut spec = spec.clone();
             spec.calibration.start = CalibrationStart::LeastSquares;
-            Design::new(&spec).is_ok_and(|design| self::not_learned(&design).is_empty())
+            Design::new(&spec).is_ok_and(|design| {
+                let each = starts(&design);
+                each.all(|start| is_learned(&design, &start))
+            })
         };
         let lost = !not_learned.is_empty();
         Some(Self {
@@ -64,8 +69,8 @@ impl SlowLock {
             "promise less of amplitudes, offsets, phase or bends"
         };
         Some(format!(
-            "{} of the {} sensors at the ends of the promise lose lock in every period of slow motion and are not learned there, worst: {worst}; \
-             {way}",
+            "{} of the {} sensors at the ends of the promise do not stay in lock for {QUIET} periods within {PATIENCE} of slow motion, and are not \
+             learned: {worst}; {way}",
             self.not_learned, self.sensors
         ))
     }
@@ -75,16 +80,23 @@ impl SlowLock {
 fn speed(design: &Design) -> f64 {
     let spec = &design.spec;
     let slow = SLOW * spec.tracking.bandwidth_hz;
-    slow.min(spec.sensor.speed_max_periods_per_s) / spec.adc.sample_rate_hz
+    let slow = slow.min(spec.sensor.speed_max_periods_per_s);
+    (slow / spec.adc.sample_rate_hz).max(1.0 / LONGEST)
+}
+
+/// Of each sensor.
+fn starts(design: &Design) -> impl ParallelIterator<Item = Start> {
+    let speed = speed(design);
+    let each = (0..sensors(&design.spec)).into_par_iter();
+    each.map(move |signs| Start {
+        signs,
+        speed,
+        place: 0.0,
+    })
 }
 
 fn not_learned(design: &Design) -> Vec<Start> {
-    let start = |signs| Start {
-        signs,
-        speed: speed(design),
-        place: 0.0,
-    };
-    let each = (0..sensors(&design.spec)).into_par_iter().map(start);
+    let each = starts(design);
     each.filter(|start| !is_learned(design, start)).collect()
 }
 

@@ -55,7 +55,7 @@ const OUTLIER: f64 = 4.0;
 const ROUND: f64 = 0.25;
 /// Share of the samples at each end of a channel that are not of its bulk; and where those that are left draw no clear ellipse.
 const BULK: f64 = 0.02;
-const NARROW: f64 = 0.1;
+const NARROW: f64 = 0.15;
 /// Radial standard deviation, in fractions of the amplitude, from which on they do not.
 const ROUGH: f64 = 0.03;
 /// Largest arc without samples, in turns.
@@ -195,7 +195,7 @@ impl Kept {
         // Glitches beyond half a range outside the bulk of the samples would bend the first fit.
         let (frame, bulk) = bulk(cos, sin, extremes, share);
         // A bulk that leaves out more has less room for glitches beside it.
-        let room = if share > BULK { 1.2 } else { 2.0 };
+        let room = if share > BULK { 1.3 } else { 2.0 };
         let keep = pairs(cos, sin).map(|(c, s)| {
             let (x, y) = frame.corrected(c, s);
             x.abs() <= room * bulk.0 && y.abs() <= room * bulk.1

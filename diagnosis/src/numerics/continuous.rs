@@ -24,6 +24,10 @@ pub(crate) fn continuous(mut angle: Vec<f64>, tells: &[f64]) -> Vec<f64> {
         } else {
             let behind = behind(&angle[first..=last], since);
             let ahead = ahead(&angle[k..], &tells[k..], since);
+            // A few samples between two gaps know less of the speed than the other side.
+            let long = |way: &Way| 2 * way.samples >= over(since);
+            let one = behind.iter().chain(&ahead).any(long);
+            let [behind, ahead] = [behind, ahead].map(|way| way.filter(|way| !one || long(way)));
             let speeds = [behind, ahead].into_iter().flatten().map(|way| way.speed());
             let speed = speeds.clone().sum::<f64>() / speeds.count().max(1) as f64;
             angle[k] = near(angle[k], angle[last] + since as f64 * speed);
@@ -102,6 +106,9 @@ fn ahead(angle: &[f64], tells: &[f64], since: usize) -> Option<Way> {
 #[cfg(test)]
 mod tests {
     use super::continuous;
+    use rand::rngs::StdRng;
+    use rand::{Rng, SeedableRng};
+    use rand_distr::StandardNormal;
     use std::f64::consts::TAU;
 
     /// To and fro, up to a fifth of a period per sample, and what does not tell holds anything.
@@ -134,6 +141,24 @@ mod tests {
                 let off = found - angle;
                 let most = if tells[k] > 0.0 { 1e-9 } else { 0.05 };
                 assert!(off.abs() < most, "{every} {lost} {k}: {off}");
+            }
+        }
+    }
+
+    /// A link that comes back for a few samples between two long gaps.
+    #[test]
+    fn a_few_samples_between_gaps_lose_no_period() {
+        let mut random = StdRng::seed_from_u64(1);
+        for few in 1..12 {
+            for _ in 0..200 {
+                let told = |k: usize| k < 1000 || (1400..1400 + few).contains(&k) || k >= 1800;
+                let tells: Vec<f64> = (0..3000).map(|k| f64::from(u8::from(told(k)))).collect();
+                let mut noise = || -> f64 { 0.02 * random.sample::<f64, _>(StandardNormal) };
+                let angle: Vec<f64> = (0..3000).map(|k| 0.3 * k as f64 + noise()).collect();
+                let found = continuous(wrapped_but(&angle, &tells), &tells);
+                for (k, (found, angle)) in found.iter().zip(&angle).enumerate() {
+                    assert!((found - angle).abs() < 1.5, "{few} {k}");
+                }
             }
         }
     }

@@ -148,7 +148,8 @@ fn sizes(context: &Context, radial: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// Samples that stand out of a radial residual, in amplitudes, and are so many that they are what a kind of noise is made of.
+/// Samples that stand out of a radial residual, in amplitudes, each by itself, and are so many that noise which goes with the signal would be
+/// made of them.
 pub(crate) fn single_samples(context: &Context, radial: &[f64]) -> Option<Unnamed> {
     let sizes = sizes(context, radial);
     let sigma = spread(&sizes);
@@ -156,12 +157,15 @@ pub(crate) fn single_samples(context: &Context, radial: &[f64]) -> Option<Unname
         return None;
     }
     let far = far_off(context, radial, sigma);
-    let many = far.len() as f64 > SINGLE * sizes.len() as f64;
-    many.then(|| unlikely(&far, radial.len())).flatten()
+    // Noise that is louder at times has them side by side.
+    let beside = far.windows(2).filter(|pair| pair[1] == pair[0] + 1).count();
+    let many = far.len() as f64 > SINGLE * sizes.len() as f64 && 3 * beside < far.len();
+    many.then(|| unlikely(&far, radial.len(), "they are too many to be left out"))
+        .flatten()
 }
 
-/// Samples that stand out, of so many: too many for chance.
-fn unlikely(far: &[usize], samples: usize) -> Option<Unnamed> {
+/// Samples that stand out, of so many: too many for chance. `but` says why they are no glitches.
+fn unlikely(far: &[usize], samples: usize, but: &str) -> Option<Unnamed> {
     let first = far.first().filter(|_| far.len() >= FEWEST)?;
     // Each is less likely than one in 10⁸.
     let expected = 2e-9 * samples as f64;
@@ -171,7 +175,7 @@ fn unlikely(far: &[usize], samples: usize) -> Option<Unnamed> {
         format!(
             "{} samples deviate in the radius by more than {FAR} standard deviations of the noise, the first is sample {first}; {}",
             far.len(),
-            like(Cause::Glitches, "the samples beside them deviate, too")
+            like(Cause::Glitches, but)
         ),
     )
 }
@@ -203,7 +207,8 @@ pub(crate) fn no_noise(context: &Context, radial: &[f64], coded: f64) -> Vec<Unn
     if made_by_codes {
         return vec![];
     }
-    let far = unlikely(&far_off(context, radial, sigma), radial.len());
+    let but = "the samples beside them deviate, too";
+    let far = unlikely(&far_off(context, radial, sigma), radial.len(), but);
     let bartlett = Bartlett::of(radial);
     let coloured = said(
         bartlett.p_value,

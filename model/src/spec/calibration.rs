@@ -293,7 +293,8 @@ impl Calibration {
     }
 
     /// Periods of travel that recalled parameters are held before the search begins again: as the design says, or as a signal takes
-    /// that fades or comes back over some hundred periods. What is not known to be right is held for [`Self::HELD`].
+    /// that fades or comes back over some hundred periods. What is not known to be right is held for
+    /// [`Self::hold_unknown_periods`].
     #[must_use]
     pub fn hold_periods(&self) -> u32 {
         let known = self.recall.unwrap_or(true);
