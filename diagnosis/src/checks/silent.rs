@@ -8,11 +8,10 @@ use nonius_quantity::{agree, counted};
 use nonius_recording::{Ellipse, Recording};
 
 use crate::checks::first;
+use crate::numerics::continuous::continuous;
 
 /// A signal has a radius between these, in amplitudes. Where zero lies there, zeros may be a signal.
 const SIGNAL: Range<f64> = 0.5..1.5;
-/// Samples beside a run that tell how fast the scale moves there.
-const BESIDE: usize = 16;
 
 /// A recording whose rows without signal are filled along the ellipse, and which samples count.
 pub(crate) struct Heard {
@@ -52,7 +51,7 @@ pub(crate) fn left_out(recording: &Recording) -> Option<Heard> {
         return None;
     }
     let mut recording = recording.clone();
-    fill(&mut recording, &ellipse, &runs);
+    fill(&mut recording, &ellipse, &runs, &weight);
     recording.notes.push(said(&runs));
     Some(Heard { recording, weight })
 }
@@ -78,84 +77,18 @@ fn wrapped(angle: f64) -> f64 {
     angle - TAU * (angle / TAU).round()
 }
 
-/// How the scale moves at one side of a run: angle and angle per sample, radians, of the nearest sample that counts.
-#[derive(Clone, Copy)]
-struct Side {
-    angle: f64,
-    speed: f64,
-}
-
-impl Side {
-    /// From samples beside the run, in order of time; `last`: the nearest is the last of them.
-    fn of(angles: &[f64], last: bool) -> Option<Self> {
-        let first = *angles.first()?;
-        let mut along = vec![first];
-        for pair in angles.windows(2) {
-            along.push(along[along.len() - 1] + wrapped(pair[1] - pair[0]));
-        }
-        let middle = (along.len() - 1) as f64 / 2.0;
-        let (mut product, mut square) = (0.0, 0.0);
-        for (i, angle) in along.iter().enumerate() {
-            product += (i as f64 - middle) * angle;
-            square += (i as f64 - middle).powi(2);
-        }
-        let near = if last { along.len() - 1 } else { 0 };
-        Some(Self {
-            angle: along[near],
-            speed: if square > 0.0 { product / square } else { 0.0 },
-        })
-    }
-}
-
-/// The angle within a run of so many samples: what the scale does on either side goes on, with as many whole periods as
-/// that takes.
-fn within(count: usize, before: Option<Side>, after: Option<Side>) -> Vec<f64> {
-    let steps = (count + 1) as f64;
-    let place = |i: usize| (i + 1) as f64;
-    match (before, after) {
-        (Some(a), Some(b)) => {
-            let way = steps * (a.speed + b.speed) / 2.0;
-            let way = way + wrapped(b.angle - a.angle - way);
-            let at = |i: usize| {
-                let x = place(i) / steps;
-                let (start, end) = (x * (1.0 - x).powi(2), x * x * (x - 1.0));
-                let curve = x * x * (3.0 - 2.0 * x) * way;
-                a.angle + curve + steps * (start * a.speed + end * b.speed)
-            };
-            (0..count).map(at).collect()
-        }
-        (Some(a), None) => (0..count).map(|i| a.angle + place(i) * a.speed).collect(),
-        (None, Some(b)) => (0..count)
-            .map(|i| b.angle - place(count - 1 - i) * b.speed)
-            .collect(),
-        (None, None) => vec![0.0; count],
-    }
-}
-
 /// Fills runs along the ellipse, in codes of the ADC, and a reference that is zero there, too.
-fn fill(recording: &mut Recording, ellipse: &Ellipse, runs: &[Range<usize>]) {
-    let n = recording.samples();
+fn fill(recording: &mut Recording, ellipse: &Ellipse, runs: &[Range<usize>], weight: &[f64]) {
     let pairs = recording.cos.iter().zip(&recording.sin);
-    let mut angle: Vec<f64> = pairs.map(|(c, s)| TAU * ellipse.angle(*c, *s)).collect();
+    let angle = pairs.map(|(c, s)| TAU * ellipse.angle(*c, *s)).collect();
+    let angle = continuous(angle, weight);
     let adc = recording.metadata.adc;
-    let mut from = 0;
-    for (i, run) in runs.iter().enumerate() {
-        let to = runs.get(i + 1).map_or(n, |next| next.start);
-        let before = from.max(run.start.saturating_sub(BESIDE))..run.start;
-        let after = run.end..to.min(run.end + BESIDE);
-        let sides = [
-            Side::of(&angle[before], true),
-            Side::of(&angle[after], false),
-        ];
-        let inside = within(run.len(), sides[0], sides[1]);
-        for (k, alpha) in run.clone().zip(&inside) {
-            angle[k] = *alpha;
-            let cos = ellipse.a_c * alpha.cos() + ellipse.b_c;
-            let sin = ellipse.a_s * (alpha - ellipse.beta).sin() + ellipse.b_s;
-            recording.cos[k] = adc.cos.value(adc.cos.code(cos));
-            recording.sin[k] = adc.sin.value(adc.sin.code(sin));
-        }
-        from = run.end;
+    for k in runs.iter().cloned().flatten() {
+        let alpha = angle[k];
+        let cos = ellipse.a_c * alpha.cos() + ellipse.b_c;
+        let sin = ellipse.a_s * (alpha - ellipse.beta).sin() + ellipse.b_s;
+        recording.cos[k] = adc.cos.value(adc.cos.code(cos));
+        recording.sin[k] = adc.sin.value(adc.sin.code(sin));
     }
     if let Some(reference) = &mut recording.reference_rad {
         follow(reference, &angle, runs);
