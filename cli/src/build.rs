@@ -193,11 +193,20 @@ fn summary(j: &DesignJson, output: &Path, shown: &str) {
     if let Some(why) = unseen(&j.spec) {
         say!("  note        {why}");
     }
-    let uncorrected = uncorrected(j);
-    if let Some(why) = &uncorrected {
+    if let Some(why) = uncorrected(j).or_else(|| missed(j)) {
         say!("  note        {why}");
     }
-    if j.misses() && uncorrected.is_none() {
+    let folder = output.display();
+    say!("  written     {folder}: rtl, tb, vectors, waves, coefficients, design.json, report.html");
+    say!("next: nonius verify {folder}");
+    let waves = output.join("waves");
+    let [vcd, gtkw] = ["vcd", "gtkw"].map(|kind| waves.join(format!("{shown}.{kind}")));
+    say!("      gtkwave {} {}", vcd.display(), gtkw.display());
+}
+
+/// Why the accuracy is missed, or nearly.
+fn missed(j: &DesignJson) -> Option<String> {
+    if j.misses() {
         let why = if !j.simulated.locked {
             "the loop does not lock on the sensor that the design promises"
         } else if j.budget.arithmetic > j.budget.arithmetic_allowed {
@@ -209,29 +218,23 @@ fn summary(j: &DesignJson, output: &Path, shown: &str) {
             "noise of the calibration, noise of the loop and what it lags behind in this run add up; a smaller last gamma helps, \
              and where noise is most of it a narrower loop, where the lag is a wider one"
         };
-        say!("  note        the simulated accuracy misses what was asked for: {why}");
-    }
-    if uncorrected.is_none() && !j.misses() && j.misses_with_the_weakest() {
-        say!(
-            "  note        the weakest signals that are promised (sensor.amplitude_tolerance = {}) miss the accuracy that was asked for: noise and \
+        Some(format!(
+            "the simulated accuracy misses what was asked for: {why}"
+        ))
+    } else if j.misses_with_the_weakest() {
+        Some(format!(
+            "the weakest signals that are promised (sensor.amplitude_tolerance = {}) miss the accuracy that was asked for: noise and \
              steps of the ADC are larger beside them",
             j.spec.sensor.amplitude_tolerance
-        );
+        ))
+    } else {
+        (j.budget.total > j.budget.asked).then(|| {
+            format!(
+                "{:.2e} periods rms are predicted, on the safe side, of {:.2e} asked; both runs keep it",
+                j.budget.total, j.budget.asked
+            )
+        })
     }
-    let held = !j.misses() && !j.misses_with_the_weakest();
-    if uncorrected.is_none() && held && j.budget.total > j.budget.asked {
-        say!(
-            "  note        {:.2e} periods rms are predicted, on the safe side, of {:.2e} asked; both runs keep it",
-            j.budget.total,
-            j.budget.asked
-        );
-    }
-    let folder = output.display();
-    say!("  written     {folder}: rtl, tb, vectors, waves, coefficients, design.json, report.html");
-    say!("next: nonius verify {folder}");
-    let waves = output.join("waves");
-    let [vcd, gtkw] = ["vcd", "gtkw"].map(|kind| waves.join(format!("{shown}.{kind}")));
-    say!("      gtkwave {} {}", vcd.display(), gtkw.display());
 }
 
 /// What the sensor that the design promises reaches at its worst, of the ADC's range, where that is beyond it by more than its rounding.

@@ -44,12 +44,12 @@ fn learns_bends(spec: &Spec, found: &Diagnosis) -> bool {
 struct Behind {
     /// Median signal frequency, Hz.
     usual: f64,
-    /// Bandwidth to which the loop is narrowed for it, Hz, where the motion allows that.
-    narrowed: Option<f64>,
-    /// Bandwidth of the loop then, Hz.
-    bandwidth: f64,
-    /// What the acceleration of the axis needs of it, Hz, or what signals of that frequency do.
+    /// Bandwidth of the loop that the acceleration of the axis needs, or signals of that frequency, Hz.
     needed: f64,
+    /// The loop is narrowed to that: it is too wide, and the motion allows it.
+    narrows: bool,
+    /// Bandwidth of the loop as it was designed, Hz.
+    designed: f64,
 }
 
 impl Behind {
@@ -67,20 +67,24 @@ impl Behind {
         // A type 2 loop lags by the acceleration over the square of its bandwidth.
         let lag = TAU * spec.accuracy.rms_periods;
         let needed = (most / lag).sqrt() / TAU;
-        let narrow = digits(needed.max(Self::ENOUGH * usual), 3);
-        let now = spec.tracking.bandwidth_hz;
-        let narrows = spec.tracking.filter_type == 2 && now > Self::WIDEST * usual && narrow < now;
-        let narrowed = narrows.then_some(narrow);
+        let needed = digits(needed.max(Self::ENOUGH * usual), 3);
+        let designed = spec.tracking.bandwidth_hz;
+        let too_wide = designed > Self::WIDEST * usual;
         Self {
             usual,
-            narrowed,
-            bandwidth: narrowed.unwrap_or(now),
-            needed: narrow,
+            needed,
+            narrows: spec.tracking.filter_type == 2 && too_wide && needed < designed,
+            designed,
         }
     }
 
     fn sees(&self) -> bool {
-        self.bandwidth <= Self::WIDEST * self.usual
+        let bandwidth = if self.narrows {
+            self.needed
+        } else {
+            self.designed
+        };
+        bandwidth <= Self::WIDEST * self.usual
     }
 }
 
@@ -273,7 +277,7 @@ fn correct_bends(text: &str, found: &Diagnosis) -> Result<(String, Vec<Outcome>)
     if cubic && !behind.sees() {
         let (has, hertz) = match spec.tracking.filter_type {
             2 => ("needs, where the axis accelerates as here,", behind.needed),
-            _ => ("has", digits(behind.bandwidth, 3)),
+            _ => ("has", digits(behind.designed, 3)),
         };
         return unchanged(format!(
             "the channels bend by the third order, which the chip learns well where the bandwidth of its loop is up to {} times the signal \
@@ -287,11 +291,12 @@ fn correct_bends(text: &str, found: &Diagnosis) -> Result<(String, Vec<Outcome>)
     let bend_max = (ROOM * bend).clamp(0.02, 0.2);
     document["sensor"]["bend_max"] = value(digits(bend_max, 3));
     let mut narrowed = vec![];
-    if let Some(bandwidth) = behind.narrowed {
-        document["loop"]["bandwidth_hz"] = value(bandwidth);
+    if behind.narrows {
+        document["loop"]["bandwidth_hz"] = value(behind.needed);
         narrowed = said(format!(
-            "its loop is narrowed to {bandwidth} Hz, for signals that have {} Hz, usually: what a wider loop follows it \
+            "its loop is narrowed to {} Hz, for signals that have {} Hz, usually: what a wider loop follows it \
              cannot tell from motion",
+            behind.needed,
             digits(behind.usual, 2)
         ));
     }

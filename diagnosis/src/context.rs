@@ -12,7 +12,7 @@ use crate::model::known::Known;
 use crate::motion::in_step;
 use crate::motion::knots::{self, Told};
 use crate::motion::spline::Spline;
-use crate::numerics::continuous::continuous;
+use crate::numerics::continuous::{continuous, nearest};
 use crate::numerics::slopes::{around, fine_gradient, gradient};
 use crate::numerics::solve::dot;
 use crate::numerics::spread::standardised;
@@ -100,8 +100,7 @@ pub enum ContextError {
 /// Continuous angles in radians.
 pub(crate) fn unwrapped(mut angle: Vec<f64>) -> Vec<f64> {
     for k in 1..angle.len() {
-        let jump = angle[k] - angle[k - 1];
-        angle[k] -= TAU * (jump / TAU).round();
+        angle[k] = nearest(angle[k], angle[k - 1]);
     }
     angle
 }
@@ -115,9 +114,7 @@ pub(crate) fn against(angle: &[f64], reference: &[f64]) -> Vec<f64> {
     let sense = if alike < 0.0 { -1.0 } else { 1.0 };
     let first = a0 - sense * r0;
     let apart = pairs().map(|(a, r)| a - sense * r);
-    apart
-        .map(|d| d - TAU * ((d - first) / TAU).round())
-        .collect()
+    apart.map(|d| nearest(d, first)).collect()
 }
 
 impl Context {

@@ -189,6 +189,7 @@ impl DesignJson {
         (clocks, multipliers): (usize, usize),
         [simulated, simulated_weakest]: [Accuracy; 2],
         pull_in: PullIn,
+        slow_lock: Option<SlowLock>,
     ) -> Self {
         let (spec, b) = (&design.spec, &design.budget);
         let (rate, products) = (spec.adc.sample_rate_hz, design.graph.products());
@@ -243,7 +244,7 @@ impl DesignJson {
             simulated,
             simulated_weakest,
             pull_in,
-            slow_lock: SlowLock::of(design),
+            slow_lock,
             spec: spec.clone(),
         }
     }

@@ -107,9 +107,10 @@ pub fn package_followed(
     let simulation = simulate(design);
     let accuracies = [simulation.accuracy, simulate_weakest(design)];
     let pull_in = pull_in_followed(design, &BOTH_WAYS, progress);
+    let slow_lock = SlowLock::of(design);
     progress(Event::Writing);
     let size = (chip.clocks, chip.multipliers);
-    let json = DesignJson::of(design, &hash, size, accuracies, pull_in);
+    let json = DesignJson::of(design, &hash, size, accuracies, pull_in, slow_lock);
     let mut files: Vec<(String, Vec<u8>)> = chip
         .files
         .into_iter()

@@ -53,9 +53,10 @@ const OUTLIER_FLOOR: f64 = 1e-6;
 const OUTLIER: f64 = 4.0;
 /// Largest residual of samples that lie on an ellipse.
 const ROUND: f64 = 0.25;
-/// Share of the samples at each end of a channel that are not of its bulk; and where those that are left draw no clear ellipse.
-const BULK: f64 = 0.02;
-const NARROW: f64 = 0.15;
+/// Share of the samples at each end of a channel that are not of its bulk, and so many of its half ranges from which on a sample is a glitch.
+const BULK: (f64, f64) = (0.02, 2.0);
+/// The same where those that are left draw no clear ellipse.
+const NARROW: (f64, f64) = (0.15, 1.3);
 /// Radial standard deviation, in fractions of the amplitude, from which on they do not.
 const ROUGH: f64 = 0.03;
 /// Largest arc without samples, in turns.
@@ -191,11 +192,9 @@ struct Kept {
 
 impl Kept {
     /// Begins with those that are not far outside the bulk, without such a share of them at each end; `None` where there is no ellipse.
-    fn of(cos: &[f64], sin: &[f64], extremes: &Ellipse, share: f64) -> Option<Self> {
-        // Glitches beyond half a range outside the bulk of the samples would bend the first fit.
+    fn of(cos: &[f64], sin: &[f64], extremes: &Ellipse, (share, room): (f64, f64)) -> Option<Self> {
+        // Glitches far outside the bulk of the samples would bend the first fit.
         let (frame, bulk) = bulk(cos, sin, extremes, share);
-        // A bulk that leaves out more has less room for glitches beside it.
-        let room = if share > BULK { 1.3 } else { 2.0 };
         let keep = pairs(cos, sin).map(|(c, s)| {
             let (x, y) = frame.corrected(c, s);
             x.abs() <= room * bulk.0 && y.abs() <= room * bulk.1

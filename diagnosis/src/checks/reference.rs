@@ -8,6 +8,7 @@ use nonius_recording::Recording;
 use crate::checks::first;
 use crate::checks::jumps;
 use crate::context::{against, unwrapped};
+use crate::numerics::continuous::nearest;
 use crate::numerics::ends::span;
 
 /// Share of samples that may be farther than a quarter period from where the reference says.
@@ -52,7 +53,7 @@ fn follows(angle: &[f64], reference: &[f64]) -> bool {
         .iter()
         .fold((0.0, 0.0), |(s, c), d| (s + d.sin(), c + d.cos()));
     let middle = f64::atan2(sin, cos);
-    let off = |d: f64| d - TAU * (d / TAU).round();
+    let off = |d: f64| nearest(d, 0.0);
     let astray = apart.iter().filter(|d| off(*d - middle).abs() > FRAC_PI_2);
     if astray.count() as f64 > ASTRAY * apart.len() as f64 {
         return false;

@@ -8,7 +8,7 @@ use nonius_quantity::{agree, counted};
 use nonius_recording::{Ellipse, Recording};
 
 use crate::checks::first;
-use crate::numerics::continuous::continuous;
+use crate::numerics::continuous::{continuous, nearest};
 
 /// A signal has a radius between these, in amplitudes. Where zero lies there, zeros may be a signal.
 const SIGNAL: Range<f64> = 0.5..1.5;
@@ -72,11 +72,6 @@ fn said(runs: &[Range<usize>]) -> String {
     )
 }
 
-/// An angle brought to within half a period of zero.
-fn wrapped(angle: f64) -> f64 {
-    angle - TAU * (angle / TAU).round()
-}
-
 /// Fills runs along the ellipse, in codes of the ADC, and a reference that is zero there, too.
 fn fill(recording: &mut Recording, ellipse: &Ellipse, runs: &[Range<usize>], weight: &[f64]) {
     let pairs = recording.cos.iter().zip(&recording.sin);
@@ -97,7 +92,7 @@ fn fill(recording: &mut Recording, ellipse: &Ellipse, runs: &[Range<usize>], wei
 
 /// Fills a reference where it is zero as well, along the angle of the sensor.
 fn follow(reference: &mut [f64], angle: &[f64], runs: &[Range<usize>]) {
-    let change = |values: &[f64], k: usize| wrapped(values[k] - values[k - 1]);
+    let change = |values: &[f64], k: usize| nearest(values[k] - values[k - 1], 0.0);
     let silent = |k: usize| runs.iter().any(|run| run.contains(&k));
     let alike: f64 = (1..angle.len())
         .filter(|k| !silent(*k) && !silent(k - 1))
@@ -111,7 +106,7 @@ fn follow(reference: &mut [f64], angle: &[f64], runs: &[Range<usize>]) {
         let beside = [run.start.checked_sub(1), Some(run.end)];
         let apart = beside.map(|k| Some(reference.get(k?)? - sense * angle[k?]));
         let (from, by) = match apart {
-            [Some(a), Some(b)] => (a, wrapped(b - a)),
+            [Some(a), Some(b)] => (a, nearest(b - a, 0.0)),
             [Some(a), None] | [None, Some(a)] => (a, 0.0),
             [None, None] => continue,
         };

@@ -1,4 +1,4 @@
-//! An angle through samples that do not tell it.
+//! Angles from sample to sample, also through those that do not tell it.
 
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -7,6 +7,11 @@ use crate::numerics::slopes::lay_straight;
 
 /// Fewest samples over which a speed is taken.
 const FEWEST: usize = 4;
+
+/// The same angle, whole turns off it, that is nearest to another, radians.
+pub(crate) fn nearest(angle: f64, to: f64) -> f64 {
+    angle + TAU * ((to - angle) / TAU).round()
+}
 
 /// Continuous angles, radians. Whole periods may pass while nothing tells the angle: as many as the mean of the speeds on either side
 /// says, which is right for an axis that accelerates evenly. A cubic is laid over such samples, and beyond the ends it goes straight on.
@@ -18,9 +23,8 @@ pub(crate) fn continuous(mut angle: Vec<f64>, tells: &[f64]) -> Vec<f64> {
     let mut last = first;
     for k in (first + 1..angle.len()).filter(told) {
         let since = k - last;
-        let near = |angle: f64, to: f64| angle + TAU * ((to - angle) / TAU).round();
         if since == 1 {
-            angle[k] = near(angle[k], angle[last]);
+            angle[k] = nearest(angle[k], angle[last]);
         } else {
             let behind = behind(&angle[first..=last], since);
             let ahead = ahead(&angle[k..], &tells[k..], since);
@@ -30,7 +34,7 @@ pub(crate) fn continuous(mut angle: Vec<f64>, tells: &[f64]) -> Vec<f64> {
             let [behind, ahead] = [behind, ahead].map(|way| way.filter(|way| !one || long(way)));
             let speeds = [behind, ahead].into_iter().flatten().map(|way| way.speed());
             let speed = speeds.clone().sum::<f64>() / speeds.count().max(1) as f64;
-            angle[k] = near(angle[k], angle[last] + since as f64 * speed);
+            angle[k] = nearest(angle[k], angle[last] + since as f64 * speed);
             match (behind, ahead) {
                 (Some(behind), Some(ahead)) => lay_cubic(&mut angle, last..k, behind, ahead),
                 _ => lay_straight(&mut angle, last + 1..k),
@@ -99,7 +103,7 @@ fn ahead(angle: &[f64], tells: &[f64], since: usize) -> Option<Way> {
     let told = tells.iter().take_while(|tells| **tells > 0.0).count();
     let samples = over(since).min(told.saturating_sub(1));
     let steps = angle.windows(2).take(samples).map(|w| w[1] - w[0]);
-    let moved = steps.map(|step| step - TAU * (step / TAU).round()).sum();
+    let moved = steps.map(|step| nearest(step, 0.0)).sum();
     (samples > 0).then_some(Way { samples, moved })
 }
 

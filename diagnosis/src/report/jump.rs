@@ -1,13 +1,12 @@
 //! The picture of samples that are missing or doubled: the angle against the smooth motion, by the samples' numbers as they
 //! are and as they are once the time base is repaired.
 
-use std::f64::consts::TAU;
-
 use nonius_plot::{Axis, Look, Mark, Plot, Series};
 use nonius_recording::Recording;
 
 use crate::diagnose::Diagnosis;
 use crate::finding::{Finding, Place};
+use crate::numerics::continuous::nearest;
 use crate::numerics::solve::Normal;
 
 /// Samples on either side of the place that is shown.
@@ -47,7 +46,7 @@ fn continuous(angles: &mut [f64], times: &[f64]) {
             _ => (angles[k - 1] - angles[k - 2]) / (times[k - 1] - times[k - 2]),
         };
         let expected = angles[k - 1] + speed * (times[k] - times[k - 1]);
-        angles[k] += TAU * ((expected - angles[k]) / TAU).round();
+        angles[k] = nearest(angles[k], expected);
     }
 }
 
@@ -76,7 +75,7 @@ pub(super) fn of(finding: &Finding, found: &Diagnosis, recording: &Recording) ->
     };
     let off = |k: usize, time: f64| {
         let off = angle(k) - motion(time);
-        [k as f64, 1e3 * (off - TAU * (off / TAU).round())]
+        [k as f64, 1e3 * nearest(off, 0.0)]
     };
     let before: Vec<[f64; 2]> = near.iter().map(|(k, _)| off(*k, *k as f64)).collect();
     let after: Vec<[f64; 2]> = kept.iter().map(|(k, t)| off(*k, *t)).collect();

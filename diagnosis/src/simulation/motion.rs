@@ -52,18 +52,14 @@ impl Motion {
 
 /// Where samples tell nothing, the axis goes along its smooth motion from the one before to the one after.
 pub(crate) fn bridge(context: &Context, angle: &mut [f64]) {
-    let smooth = |k: usize| context.alpha[k];
-    let mut off: Vec<f64> = angle
-        .iter()
-        .enumerate()
-        .map(|(k, angle)| angle - smooth(k))
-        .collect();
+    let smooth = &context.alpha;
+    let mut off: Vec<f64> = angle.iter().zip(smooth).map(|(a, s)| a - s).collect();
     let mut from = 0;
     for run in context.tells().chunk_by(|a, b| (*a == 0.0) == (*b == 0.0)) {
         let to = from + run.len();
         if run.first() == Some(&0.0) {
             lay_straight(&mut off, from..to);
-            (from..to).for_each(|k| angle[k] = smooth(k) + off[k]);
+            (from..to).for_each(|k| angle[k] = smooth[k] + off[k]);
         }
         from = to;
     }
