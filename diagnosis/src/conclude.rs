@@ -136,8 +136,8 @@ impl Nameless {
         }
         let residual = system.residual(&selection.fit);
         // Only what is noise can be noise of a kind.
-        let (mut noise, mut strange) = if selection.unnamed.is_empty() && selection.coded == 0.0 {
-            noise::findings(system, &residual, selection.stepped)
+        let (mut noise, mut strange) = if selection.unnamed.is_empty() {
+            noise::findings(system, &residual, (selection.stepped, selection.coded))
         } else {
             (vec![], vec![])
         };

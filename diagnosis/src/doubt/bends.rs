@@ -18,6 +18,29 @@ const BENDS: [Cause; 4] = [
 /// Share of what all explain from which on one is not what the others leave.
 const STRONG: f64 = 0.1;
 
+/// A bend beside steps of the ADC may be the smooth part of the same converter's error, and nothing tells, unless the data has named
+/// another rival; a harmonic, which holds every bend, is less likely than that.
+pub(super) fn may_be_the_converters(found: &mut Selection) {
+    let is = |one: &Accepted, names: &[Cause]| !one.doubted && names.contains(&one.candidate.name);
+    if !found
+        .accepted
+        .iter()
+        .any(|one| is(one, &[Cause::AdcNonlinearity]))
+    {
+        return;
+    }
+    let bends = [Cause::EvenNonlinearity, Cause::OddNonlinearity];
+    for bend in found.accepted.iter_mut().filter(|one| is(one, &bends)) {
+        if bend
+            .confounded
+            .iter()
+            .all(|rival| *rival == Cause::SpatialHarmonic)
+        {
+            bend.confounded = vec![Cause::AdcNonlinearity];
+        }
+    }
+}
+
 /// Takes three saturations and more back, or a strong one with two other strong bends, where none is most of what they explain. Two
 /// saturations alone may be those of two channels.
 pub(super) fn of_no_one_kind(system: &System, found: &mut Selection) -> Option<Unnamed> {

@@ -168,7 +168,9 @@ pub(crate) fn beside(
                 .is_some_and(|hertz| is_an_order(context, hertz, error.step)),
             _ => false,
         };
-        if ordered {
+        // The last step before the turning point stands out as a flat top does.
+        let flat = candidate.name == Cause::Saturation;
+        if ordered || flat {
             error.whole
         } else if SLOW_DOMAINS.contains(&candidate.domain) || candidate.domain == Domain::Line {
             slow

@@ -80,6 +80,7 @@ pub(crate) fn doubt(system: &System, catalogue: &Catalogue, found: &mut Selectio
     }
     let traces = traces(system, found);
     found.unnamed.extend(traces);
+    bends::may_be_the_converters(found);
     closed
 }
 
@@ -234,6 +235,7 @@ fn leftovers(
 ) -> Option<Unnamed> {
     // A latency turns the pair by the speed, and its model leaves nothing else: beside it the others are what they are.
     let late = |i: &usize| found.accepted[*i].candidate.name == Cause::Latency;
+    let with_late = own;
     let own: Vec<usize> = own.iter().copied().filter(|i| !late(i)).collect();
     let everything = found.of(found.accepted.clone(), system);
     let all = all_gain_of(system, &everything, &own);
@@ -249,6 +251,12 @@ fn leftovers(
     // A wider one that holds the strongest was found after it.
     let strongest = strength.iter().position(|gain| *gain > ALIKE * most)?;
     let name = found.accepted[own[strongest]].candidate.name;
+    // The model of a crosstalk knows its fraction times its delay, and not the fraction by itself, which turns the pair by the speed, too.
+    let own = if name == Cause::DelayedCrosstalk {
+        with_late
+    } else {
+        &own
+    };
     // The smallest goes first: without it the others explain more by themselves.
     let mut largest: Option<(f64, Cause)> = None;
     loop {

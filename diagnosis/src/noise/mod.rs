@@ -7,15 +7,13 @@
 pub(crate) mod flicker;
 pub(crate) mod louder;
 mod variance;
-
-use nonius_quantity::{Quantity, Unit};
+mod wandering;
 
 use crate::context::Context;
 use crate::finding::{Cause, Chip, Finding, Gain, Parameter};
 use crate::model::whiten::Whitener;
 use crate::model::{ROUNDING, Residual, System};
-use crate::noise::variance::{ENOUGH, Fitted, Pairs, Products};
-use crate::numerics::lines;
+use crate::noise::variance::{ENOUGH, Fitted, Pairs, Products, Shapes};
 use crate::numerics::statistics::{at_most_of_noise, by_chance};
 use crate::select::score::SHOWN;
 use crate::shapes::generic::{HOLDS, hat};
@@ -27,13 +25,6 @@ const TRIALS: f64 = 30.0;
 const KNOTS: [usize; 2] = [8, 6];
 /// Orders of the period that noise may depend on.
 const ORDERS: [f64; 3] = [1.0, 2.0, 4.0];
-/// Probability below which the highest line of a spectrum is no noise.
-const A_LINE: f64 = 1e-4;
-/// Share of what jitter explains that such a line has to explain to be the reason for it: what is left of a shaking axis
-/// has weak ones.
-const MUCH: f64 = 0.2;
-/// Log-likelihood by which a line of the axis has to stand higher to be the reason for one of the clock.
-const CLEARLY: f64 = 3.0;
 /// Standard errors by which an amount that a part of the samples gives is below nothing for sure.
 const SURELY: f64 = 3.0;
 /// Standard errors below which an amount is shown by nothing.
@@ -46,6 +37,15 @@ const BASE: usize = 4;
 enum Kind {
     Amplitude,
     Jitter,
+}
+
+impl Kind {
+    fn other(self) -> Self {
+        match self {
+            Self::Amplitude => Self::Jitter,
+            Self::Jitter => Self::Amplitude,
+        }
+    }
 }
 
 /// What noise depends on, sample by sample.
@@ -80,6 +80,15 @@ impl Dependence<'_> {
         }
     }
 
+    /// What so much of a kind of noise does to a pair, rms in amplitudes.
+    fn rms(&self, kind: Kind, amount: f64) -> f64 {
+        let weight = &self.context.weight;
+        let power = |k: usize| weight[k] * (self.kind(kind, k).0[0] + self.kind(kind, k).0[1]);
+        let sum: f64 = (0..weight.len()).map(power).sum();
+        let total: f64 = weight.iter().sum();
+        (amount * sum / total).sqrt()
+    }
+
     /// Knots in time and over the speeds, of either residual's variance; then waves of the angle, of what they have in
     /// common, too.
     fn anything(&self, k: usize, out: &mut [Products]) {
@@ -111,10 +120,11 @@ impl Dependence<'_> {
 const ANYTHING: usize = 2 * (KNOTS[0] + KNOTS[1]) + 3 * 2 * ORDERS.len();
 
 /// Kinds of noise in a residual, and what depends on something and is none of them; `stepped`: the reference moves in steps that show.
+/// Where the codes err by `coded`, in amplitudes rms, that goes with angle and speed as well: only what is larger is told.
 pub(crate) fn findings(
     system: &System,
     residual: &Residual,
-    stepped: bool,
+    (stepped, coded): (bool, f64),
 ) -> (Vec<Finding>, Vec<Unnamed>) {
     let context = system.context;
     let whiteners = &system.samples.whiteners;
@@ -144,16 +154,44 @@ pub(crate) fn findings(
         weight: &context.weight,
         every: 1,
     };
-    let depends = Dependence { context };
+    let seen = Seen {
+        depends: Dependence { context },
+        pairs,
+        unit,
+        tangential: &white[1],
+        coded,
+    };
+    // Along the circle the rounding of a reference that moves in steps is louder wherever the axis is slow.
+    let kinds = [Kind::Amplitude, Kind::Jitter];
+    let kinds = kinds
+        .into_iter()
+        .filter(|kind| !(stepped && *kind == Kind::Jitter));
     let (mut list, mut unnamed) = (vec![], vec![]);
-    for (kind, other) in [
-        (Kind::Amplitude, Kind::Jitter),
-        (Kind::Jitter, Kind::Amplitude),
-    ] {
-        // Along the circle the rounding of a reference that moves in steps is louder wherever the axis is slow.
-        if stepped && kind == Kind::Jitter {
-            continue;
+    for judged in kinds.filter_map(|kind| seen.judge(kind)) {
+        match judged {
+            Ok(finding) => list.push(finding),
+            Err(one) => unnamed.push(one),
         }
+    }
+    (list, unnamed)
+}
+
+/// What is left, as noise is looked for in it.
+struct Seen<'a> {
+    depends: Dependence<'a>,
+    pairs: Pairs<'a>,
+    /// Mean products of white noise of unit variance in the channels.
+    unit: [f64; 3],
+    /// The same, whitened, along the circle.
+    tangential: &'a [f64],
+    /// Error of the codes, in amplitudes rms.
+    coded: f64,
+}
+
+impl Seen<'_> {
+    /// A kind of noise by its name, or noise that depends on something as it does and is not of that kind.
+    fn judge(&self, kind: Kind) -> Option<Result<Finding, Unnamed>> {
+        let (depends, pairs, unit) = (&self.depends, &self.pairs, &self.unit);
         // In units in which the shape of the kind has a mean near one in the row that shows it.
         let scale = unit[usize::from(kind == Kind::Jitter)];
         let whitened = |of: Products| Products([0, 1, 2].map(|i| of.0[i] * unit[i] / scale));
@@ -161,7 +199,7 @@ pub(crate) fn findings(
             out[0] = Products([1.0, 0.0, 0.0]);
             out[1] = Products([0.0, 1.0, 0.0]);
             out[2..BASE].copy_from_slice(&depends.channels(k).map(whitened));
-            out[BASE] = whitened(depends.kind(other, k));
+            out[BASE] = whitened(depends.kind(kind.other(), k));
             if let Some(own) = out.get_mut(BASE + 1) {
                 *own = whitened(depends.kind(kind, k));
             }
@@ -171,65 +209,101 @@ pub(crate) fn findings(
         // Less noise than none is of no kind.
         let unsure = if pairs.is_rough() { SURELY } else { 0.0 };
         if with[BASE + 1] <= -unsure * error[BASE + 1] {
-            continue;
+            return None;
         }
         let mut own = pairs.clone();
         own.cut(&with, &both);
         let with = own.fit(with, &both);
-        let sigma = with.covariance[(BASE + 1, BASE + 1)].max(0.0).sqrt();
-        if with.x[BASE + 1] <= FAINT * sigma {
-            continue;
+        let variance = with.covariance[(BASE + 1, BASE + 1)];
+        if with.x[BASE + 1] <= FAINT * variance.max(0.0).sqrt() {
+            return None;
         }
         let without = own.fit(plain.to_vec(), &both);
         // At constant speed the noise of a clock is white noise of the angle, and of the two one number is seen.
         if with.rank <= without.rank {
-            continue;
+            return None;
         }
         let gain = with.likelihood - without.likelihood;
         let log_p = |gain: f64| by_chance(gain, 1.0, 1, TRIALS);
         // What independent pairs do not show, others show less.
         if log_p(gain) > SHOWN.ln() {
-            continue;
+            return None;
         }
         let inflation = own.inflation(&with, &both);
         let gain = gain / inflation;
         let log_p = log_p(gain);
         if log_p > SHOWN.ln() {
-            continue;
+            return None;
         }
         let held_out = own.held_out(&with.x, &both) / inflation;
         // What data that was not fitted speaks against has no name.
         if held_out <= 0.0 {
-            continue;
-        }
-        let why = refusal(
-            &depends,
-            own,
-            kind,
-            &with,
-            [gain, inflation],
-            &white[1],
-            &both,
-        );
-        if let Some(why) = why {
-            unnamed.push(Unnamed {
-                log_p,
-                gain,
-                what: What::Said(why),
-            });
-            continue;
+            return None;
         }
         let amount = with.x[BASE + 1] / scale;
-        let error = (with.covariance[(BASE + 1, BASE + 1)] * inflation).sqrt() / scale;
-        list.push(finding(
+        let coded = self.coded > 0.0;
+        if coded && depends.rms(kind, amount) < self.coded {
+            return None;
+        }
+        if let Some(why) = self.refusal(own, kind, &with, [gain, inflation], &both) {
+            let what = What::Said(why);
+            return (!coded).then_some(Err(Unnamed { log_p, gain, what }));
+        }
+        let error = (variance * inflation).sqrt() / scale;
+        let top = depends.context.top_speed();
+        Some(Ok(finding(
             kind,
             [amount, error],
-            context.top_speed(),
+            top,
             [gain, held_out],
             log_p,
-        ));
+        )))
     }
-    (list, unnamed)
+
+    /// Why noise that depends on something is not of a kind, which explains `gain` where products that go together make
+    /// everything look so many times as sure as it is.
+    fn refusal(
+        &self,
+        mut pairs: Pairs,
+        kind: Kind,
+        with: &Fitted,
+        [gain, inflation]: [f64; 2],
+        shapes: &Shapes,
+    ) -> Option<String> {
+        let n = self.tangential.len();
+        let name = match kind {
+            Kind::Amplitude => Cause::AmplitudeNoise,
+            Kind::Jitter => Cause::ClockJitter,
+        };
+        pairs.every = n.div_ceil(ENOUGH);
+        let named = with.x.len();
+        let anything = |k: usize, out: &mut [Products]| {
+            shapes(k, &mut out[..named]);
+            self.depends.anything(k, &mut out[named..]);
+        };
+        let known = pairs.fit(with.x.clone(), shapes);
+        let any = pairs.fit([&with.x[..], &[0.0; ANYTHING]].concat(), &anything);
+        // What as many free numbers explain of noise that is of the kind does not count against it.
+        let chance = at_most_of_noise(any.rank.saturating_sub(known.rank));
+        let beyond = (any.likelihood - known.likelihood - chance).max(0.0) * pairs.every as f64;
+        let share = gain / (gain + beyond / inflation);
+        if share < HOLDS {
+            return Some(format!(
+                "the noise level varies with angle, speed or time, at a detection SNR of {:.0}; {}",
+                (2.0 * (gain + beyond / inflation)).sqrt(),
+                like(name, &explains_only(share))
+            ));
+        }
+        if kind == Kind::Jitter {
+            return wandering::how(self.depends.context, self.tangential, gain).map(|how| {
+                format!(
+                    "the sampling time wanders {how}; {}",
+                    like(name, "that is random")
+                )
+            });
+        }
+        None
+    }
 }
 
 /// Whether noise of a kind explains so much more than what looks like no cause that it is the reason for that: noise that
@@ -238,111 +312,6 @@ pub(crate) fn is_the_reason(noisy: &[Finding], left: &[Unnamed]) -> bool {
     const FAR_LOUDER: f64 = 20.0;
     let most = left.iter().map(|u| u.gain).fold(0.0, f64::max);
     noisy.iter().any(|f| f.weight > FAR_LOUDER * most)
-}
-
-/// Why noise that depends on something is not of a kind, which explains `gain` where products that go together make
-/// everything look so many times as sure as it is.
-fn refusal(
-    depends: &Dependence,
-    mut pairs: Pairs,
-    kind: Kind,
-    with: &Fitted,
-    [gain, inflation]: [f64; 2],
-    tangential: &[f64],
-    shapes: &crate::noise::variance::Shapes,
-) -> Option<String> {
-    let n = tangential.len();
-    let name = match kind {
-        Kind::Amplitude => Cause::AmplitudeNoise,
-        Kind::Jitter => Cause::ClockJitter,
-    };
-    pairs.every = n.div_ceil(ENOUGH);
-    let named = with.x.len();
-    let anything = |k: usize, out: &mut [Products]| {
-        shapes(k, &mut out[..named]);
-        depends.anything(k, &mut out[named..]);
-    };
-    let known = pairs.fit(with.x.clone(), shapes);
-    let any = pairs.fit([&with.x[..], &[0.0; ANYTHING]].concat(), &anything);
-    // What as many free numbers explain of noise that is of the kind does not count against it.
-    let chance = at_most_of_noise(any.rank.saturating_sub(known.rank));
-    let beyond = (any.likelihood - known.likelihood - chance).max(0.0) * pairs.every as f64;
-    let share = gain / (gain + beyond / inflation);
-    if share < HOLDS {
-        return Some(format!(
-            "the noise level varies with angle, speed or time, at a detection SNR of {:.0}; {}",
-            (2.0 * (gain + beyond / inflation)).sqrt(),
-            like(name, &explains_only(share))
-        ));
-    }
-    if kind == Kind::Jitter {
-        return wandering(depends.context, tangential, gain).map(|how| {
-            format!(
-                "the sampling time wanders {how}; {}",
-                like(name, "that is random")
-            )
-        });
-    }
-    None
-}
-
-/// How the sampling time wanders where it is not at random: in a line, or with the angle, that explains much of what jitter
-/// does.
-fn wandering(context: &Context, tangential: &[f64], gain: f64) -> Option<String> {
-    /// Highest order of the scale period.
-    const TOP: usize = 12;
-    let n = tangential.len();
-    // The sampling time's error, as far as the speed shows it.
-    let speeds = context.speed.iter().zip(tangential);
-    let time: Vec<f64> = speeds.map(|(v, t)| t * v / context.top_speed()).collect();
-    let by_chance = |power: f64, places: usize| places as f64 * (-power).exp();
-    let (power, length) = over_mean(&time);
-    let line = power.iter().copied().fold(0.0, f64::max);
-    let at = power.iter().position(|p| *p == line).unwrap_or(0);
-    // What a shaking axis leaves is coloured: a line of the clock stands out of what is near it. Half of noise is below
-    // ln 2 of its mean.
-    let near = lines::flattened(&power)[at] * std::f64::consts::LN_2;
-    let stands_out = by_chance(near.min(line), n) < A_LINE;
-    // The axis vibrates at any speed alike.
-    let vibrates = line_near(tangential, at) > line + CLEARLY;
-    if stands_out && line > MUCH * gain && !vibrates {
-        let hertz = Quantity::rounded(
-            at as f64 / length as f64 * context.rate,
-            3,
-            Unit::Prefixed("Hz"),
-        );
-        return Some(format!("periodically, at {}", hertz.brief()));
-    }
-    let total: f64 = time.iter().map(|t| t * t).sum();
-    let order = |m: usize| {
-        let pairs = time.iter().zip(&context.alpha);
-        let (c, s) = pairs.fold((0.0, 0.0), |(c, s), (t, alpha)| {
-            let (sin, cos) = (m as f64 * alpha).sin_cos();
-            (c + t * cos, s + t * sin)
-        });
-        (m, (c * c + s * s) / total)
-    };
-    let (m, most) = (1..=TOP).map(order).max_by(|a, b| a.1.total_cmp(&b.1))?;
-    (by_chance(most, TOP) < A_LINE && most > MUCH * gain)
-        .then(|| format!("with the angle, at order {m} of the scale period"))
-}
-
-/// The spectrum of values over its mean, and its length.
-fn over_mean(values: &[f64]) -> (Vec<f64>, usize) {
-    let (mut power, length) = lines::spectrum(values);
-    let mean = power.iter().sum::<f64>() / power.len() as f64;
-    power.iter_mut().for_each(|p| *p /= mean);
-    (power, length)
-}
-
-/// The highest line of a spectrum near a place in it, over the spectrum's mean.
-fn line_near(values: &[f64], at: usize) -> f64 {
-    /// Share of the frequency by which what changes with the speed is beside it.
-    const NEAR: f64 = 0.2;
-    let (power, _) = over_mean(values);
-    let reach = (NEAR * at as f64) as usize;
-    let near = at - reach..(at + reach + 1).min(power.len());
-    power[near].iter().copied().fold(0.0, f64::max)
 }
 
 /// `gain` and `held_out`: log-likelihood of all data, and of data that was not fitted.

@@ -4,7 +4,7 @@ use crate::causes::Catalogue;
 use crate::causes::candidate::{Candidate, Domain};
 use crate::finding::Cause;
 use crate::model::{Fit, System};
-use crate::numerics::statistics::{at_most_of_noise, log_tail};
+use crate::numerics::statistics::{after_trials, at_most_of_noise, log_tail};
 use crate::select::beside::Beside;
 use crate::select::both;
 use crate::select::score::{CLEAR, RIVALS, Scored};
@@ -101,7 +101,8 @@ pub(crate) fn opposite(best: &Scored, others: &[&Scored]) -> bool {
     own.domain == Domain::Angle && own.order.is_none() && orders.len() > 1
 }
 
-/// How much a cause adds to shapes that explain so much with so many numbers, where that is no less probable than `least`.
+/// How much a cause adds to shapes that explain so much with so many numbers, where that is no less probable than `least`: the best of
+/// many choices of one cause adds more by chance.
 fn adds(
     beside: &Beside,
     cause: &Candidate,
@@ -111,7 +112,8 @@ fn adds(
 ) -> Option<f64> {
     let (together, rank) = beside.gain(&both(shapes, &cause.shapes));
     let (adds, more) = (together - gain, rank.saturating_sub(freedom));
-    (more == 0 || log_tail(2.0 * adds, more) > least.ln()).then_some(adds)
+    let log_p = || after_trials(log_tail(2.0 * adds, more), cause.trials);
+    (more == 0 || log_p() > least.ln()).then_some(adds)
 }
 
 /// Whether the radius does not show what a cause adds to shapes: where the axis vibrates, that may be what its prediction does

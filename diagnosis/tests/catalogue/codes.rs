@@ -16,19 +16,19 @@ const RATE: f64 = 20e3;
 const AMPLITUDES: [f64; 2] = [0.81, 0.78];
 
 /// A sensor behind an ADC.
-struct Seen {
-    bits: u32,
-    amplitudes: [f64; 2],
+pub(crate) struct Seen {
+    pub(crate) bits: u32,
+    pub(crate) amplitudes: [f64; 2],
     /// Noise of each channel in the unit of the columns, and in parts of the channel.
-    noise: f64,
-    share: f64,
+    pub(crate) noise: f64,
+    pub(crate) share: f64,
     /// Scale periods after a time in seconds.
-    periods: fn(f64) -> f64,
+    pub(crate) periods: fn(f64) -> f64,
     /// What becomes of a code, counted from mid-scale, of channel 0 (cos) or 1 (sin).
-    code: fn(i64, usize) -> i64,
+    pub(crate) code: fn(i64, usize) -> i64,
 }
 
-const PLAIN: Seen = Seen {
+pub(crate) const PLAIN: Seen = Seen {
     bits: 14,
     amplitudes: AMPLITUDES,
     noise: 0.0008,
@@ -50,7 +50,7 @@ fn evenly(t: f64) -> f64 {
 }
 
 /// To and fro.
-fn reversing(t: f64) -> f64 {
+pub(crate) fn reversing(t: f64) -> f64 {
     2.5 * (TAU * 2.7 * t + 0.3).sin() + 3.0 * t
 }
 
@@ -77,7 +77,7 @@ fn recorded(seen: &Seen, seed: u64) -> Recording {
     read.expect("a recording")
 }
 
-fn diagnosed(seen: &Seen, seed: u64) -> Diagnosis {
+pub(crate) fn diagnosed(seen: &Seen, seed: u64) -> Diagnosis {
     let found = diagnose(&recorded(seen, seed)).expect("signals that draw an ellipse");
     crate::words::well_said(&found);
     found

@@ -96,7 +96,7 @@ fn a_glitch_that_rings() {
 }
 
 /// Every sample on the codes of a converter with steps of so many, one bit of which never changes.
-fn on_steps(rows: &mut Rows, step: i64, stuck: Option<u32>) {
+pub(crate) fn on_steps(rows: &mut Rows, step: i64, stuck: Option<u32>) {
     for v in rows.iter_mut().flat_map(|row| &mut row[1..3]) {
         let code = (*v / LSB).round() as i64 + (1 << 13);
         let code = code.div_euclid(step) * step;

@@ -3,6 +3,7 @@
 //! The simulation is direct: continuous motion, the effect as physics has it, noise, ADC. It shares no code with the
 //! diagnosis. Noise with a memory stands beside it, in `flicker.rs`.
 
+mod beside_codes;
 mod codes;
 mod data;
 mod harness;

@@ -126,6 +126,25 @@ fn crosstalk_and_hysteresis() {
     near(&found, "offset_cos", 0.002);
 }
 
+/// A fraction that appears in the other channel turns the pair by the speed as well, by its square: that is no latency of its own.
+#[test]
+fn a_large_crosstalk_is_not_late_as_well() {
+    let crosstalk = Case {
+        channels: |c, s, _, a, v| {
+            let (sin, cos) = (a - 2e-5 * v).sin_cos();
+            (c + 0.15 * sin, s + 0.12 * cos)
+        },
+        reference: true,
+        ..PLAIN
+    };
+    for seed in 0..2 {
+        assert_eq!(
+            names(&diagnosed(&crosstalk, seed)),
+            [Cause::DelayedCrosstalk]
+        );
+    }
+}
+
 /// On an axis that shakes, too, whose noise is higher about its mode: that is no line of the clock.
 #[test]
 fn clock_jitter() {
