@@ -15,7 +15,7 @@
 //! both from e = φ − α̂: it turns the estimate's direction by e, adds e²/2 to the radial residual, and counts the sectors that
 //! φ crosses. Each sample counts for the sectors since the last one, so that few samples a period are no error.
 
-use super::calibration::Gate;
+use super::calibration::{Gate, linear_parameters};
 use super::gather::over_a_period;
 use super::travel::{Measure, SECTOR_BITS, Travel};
 use super::{Coefficients, State, Structure};
@@ -142,13 +142,8 @@ pub fn start<S: Signal>(
 ) -> Start<S> {
     let mut gathered = super::gather::gathered(state);
     let mut mean = [k.zero; 5];
-    let linear = if structure.calibration.has_phase() {
-        5
-    } else {
-        4
-    };
     let components = gradient.into_iter().zip(&mut gathered).zip(&mut mean);
-    for ((gradient, gathered), mean) in components.take(linear) {
+    for ((gradient, gathered), mean) in components.take(linear_parameters(structure)) {
         let sum = over_a_period(gradient, *gathered, gate, k.zero, structure);
         *gathered = sum.next;
         *mean = sum.gradient.scale(-SECTORS_LOG2);
