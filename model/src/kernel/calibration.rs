@@ -3,7 +3,8 @@
 //! δΘ = −γ Mᵀ n ρ with n = (cos α̂, sin α̂) and ρ the radial residual, or what another search puts in the gradient's place.
 //! γ is a power of two and shifts gear.
 
-use super::gradient::{self, Bent, Seen};
+use super::gradient::{self, Bent};
+use super::seen::Seen;
 use super::sensitivity::Sensitivity;
 use super::start::Polar;
 use super::step::{Equaliser, Mover};

@@ -1,24 +1,10 @@
 //! The gradient of one sample, component by component.
 
-use super::detector;
+use super::seen::Seen;
 use super::sensitivity::{self, Names, Sensitivity, names};
-use super::sparse::Sparse;
-use super::start::Polar;
 use super::{Coefficients, State, Structure};
 use crate::signal::{Formula, Signal, Wide};
 use crate::spec::Calibration;
-
-static DIRECTION: Formula = Formula {
-    title: "Gradient along the radius",
-    equation: "rho_c = cos(alpha_hat) rho,  rho_s = sin(alpha_hat) rho",
-    source: "paper section 5.5.1: r + (sin, -cos) e = n (n^T r)",
-};
-
-static ALONG: Formula = Formula {
-    title: "Gradient along the squared radius",
-    equation: "rho_c = c epsilon,  rho_s = s epsilon",
-    source: "paper sections 5.2 and 5.3",
-};
 
 static BENDS: Formula = Formula {
     title: "Gradient by the bends",
@@ -37,67 +23,6 @@ static EXACT: Formula = Formula {
     equation: "M^T n rho + (w - grad alpha_hat)^T e, w = (-sin(alpha_hat), cos(alpha_hat)) M",
     source: "paper equations (8), (10) and (11)",
 };
-
-/// What a sample shows.
-#[derive(Clone, Copy, Debug)]
-pub struct Seen<S: Signal> {
-    /// Normalised pair.
-    pub y: (S, S),
-    /// (cos α̂, sin α̂), for the sum of squares the corrected pair.
-    pub frame: (S, S),
-    /// Phase error, radians.
-    pub e: S,
-    /// Radial residual as it moves the parameters, for the sum of squares half that of the squared radius; or what stands in its place.
-    pub rho: S,
-    /// n ρ, or n⊥ e.
-    pub along: (S, S),
-    /// θ1 … θ5 as they were applied.
-    pub theta: [S; 5],
-    /// Where the design has a start by least squares: what that sees.
-    pub start: Option<Polar<S>>,
-    /// Where speeds are promised at which the radius does not show all: what this sample teaches instead.
-    pub sparse: Option<Sparse<S>>,
-}
-
-/// ρ as it moves the parameters; where the design allows for what the loop lags, the radius less 1. More than a quarter of the radius is
-/// no measurement: the word holds it there, and every step after it is short.
-#[inline(always)]
-pub fn limited<S: Signal>(rho: S, e: Option<S>, structure: &Structure) -> S {
-    let residual = e.map_or_else(|| rho.widen(), |e| detector::radius(rho, e));
-    rho.begin(if structure.calibration.squares() {
-        &ALONG
-    } else {
-        &DIRECTION
-    });
-    residual
-        .quantise(&structure.formats.residual)
-        .named("rho_limited")
-}
-
-/// n ρ, or for the sum of squares (c, s) ε.
-#[inline(always)]
-pub fn along<S: Signal>(rho: S, (cos, sin): (S, S), structure: &Structure) -> (S, S) {
-    let to = &structure.formats.along;
-    ((cos * rho).quantise(to), (sin * rho).quantise(to))
-}
-
-impl<S: Signal> Seen<S> {
-    /// Gains and phase are taught along the circle.
-    fn ellipse_by_e(&self) -> Option<S::Bool> {
-        self.sparse?.ellipse
-    }
-
-    /// n ρ as it moves the offsets: what is seen along the circle does not.
-    fn by_offset(&self, k: &Coefficients<S>) -> (S, S) {
-        let (rho_c, rho_s) = self.along;
-        self.ellipse_by_e().map_or((rho_c, rho_s), |by_e| {
-            (
-                S::select(by_e, k.zero, rho_c).named("offset_residual_c"),
-                S::select(by_e, k.zero, rho_s).named("offset_residual_s"),
-            )
-        })
-    }
-}
 
 /// By θ1 … θ5 in the final form: Mᵀ n ρ. The last is 0 without phase. While the start runs, by δ1 … δ5 of a pair of
 /// amplitude 1. Where the phase is moved by less once γ has `settled`, by so much of it then: a part of the step would have to be

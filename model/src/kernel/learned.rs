@@ -1,12 +1,11 @@
-//! What the search makes of a sample: which samples count, where they move the parameters, and when those are applied.
+//! What the search makes of a sample: where it moves the parameters, and when those are applied.
 
 use super::followed::Followed;
 use super::measured::Measured;
-use super::sparse::Sparse;
 use super::{Coefficients, Input, State, Structure};
 use super::{
-    bend, calibration, catch_up, completion, gears, gradient, lock, recall, start, step, strays,
-    sum_of_squares, travel, waits,
+    bend, calibration, catch_up, completion, counted, gears, recall, seen, step, strays, travel,
+    waits,
 };
 use crate::signal::{Logic, Signal};
 
@@ -43,135 +42,40 @@ pub fn learn<S: Signal, const PLAIN: bool>(
     k: &Coefficients<S>,
     structure: &Structure,
 ) -> Learned<S> {
-    let (e, rho, weak) = (measured.e, measured.rho, measured.weak);
-    let (pair, estimate, window) = (measured.pair, measured.estimate, followed.window);
-    let counting = travel::counting(input, state);
-    let starting = (!PLAIN && structure.calibration.starts()).then(|| start::running(state, k));
-    let measure = starting.map(|running| start::measure(e, running, k));
-    let waits = waits::Waits::of(state, k, structure);
-    let travel = travel::travel(counting, (measure, waits), state, k, structure);
-    let catch_up = catch_up::catch_up(e, starting, state, k, structure);
-    let follows = catch_up.map_or(window.inside, |catch_up| {
-        window.inside.and(catch_up.now.not()).named("loop_follows")
-    });
-    let counts = counting.and(follows).named("sample_counts");
-    let counted = counts.and(travel.new_sector).named("counted");
-    let tick = counted.and(travel.whole_period).named("period_tick");
-    let hold = gears::hold(
-        rho,
-        counts,
-        (
-            lock::present_anywhere(window, e, rho, k, structure),
-            followed.lock.full,
-        ),
-        state,
-        k,
-        structure,
-    );
-    let free = counted.and(hold.held.not());
-    let early = catch_up.and_then(|catch_up| catch_up.teaches);
-    let taught = early.map_or(free, |teaches| free.named("counted_and_free").and(teaches));
-    let dropped = catch_up.and_then(|catch_up| catch_up.drops(travel.clear, state, structure));
-    let fresh = dropped.map_or(taught, |dropped| {
-        taught.named("sample_teaches").and(dropped.not())
-    });
-    let mut polar = None;
+    let way = counted::way::<S, PLAIN>(measured.e, input, state, k, structure);
+    let counted = counted::counted(&way, (measured, followed), state, k, structure);
     let bends_shown = if PLAIN {
         None
     } else {
         bend::shown(state, k, structure)
     };
-    let sparse = if PLAIN {
-        None
-    } else {
-        Sparse::of(e, &travel, (starting, bends_shown), state, k, structure)
-    };
-    let along_which = |residual: S, direction: (S, S)| {
-        sparse.map_or((residual, direction), |of| of.along(residual, direction, k))
-    };
-    // What the gradient is made of: the residual, and the pair or its estimate.
-    let (residual, frame, along) = if !PLAIN && structure.calibration.squares() {
-        let epsilon = sum_of_squares::half_square(pair.0, pair.1, k.half, structure);
-        let limited = gradient::limited(epsilon, None, structure);
-        let (residual, direction) = along_which(limited, pair);
-        let along = gradient::along(residual, direction, structure);
-        (residual, pair, along)
-    } else {
-        let lags = structure.calibration.allows_for_lag().then_some(e);
-        let limited = gradient::limited(rho, lags, structure);
-        polar = starting
-            .map(|running| start::polar((rho, limited, e), estimate, running, &travel, structure));
-        let (rho, direction) = match &polar {
-            Some(polar) => (polar.residual, polar.direction),
-            None => (limited, estimate),
-        };
-        let (rho, direction) = along_which(rho, direction);
-        let along = gradient::along(rho, direction, structure);
-        let residual = match (sparse, starting) {
-            (None, _) => limited,
-            (Some(_), None) => rho,
-            // The start's own is weighed.
-            (Some(_), Some(running)) => {
-                S::select(running, limited, rho).named("residual_not_weighed")
-            }
-        };
-        (residual, estimate, along)
-    };
-    let seen = gradient::Seen {
-        y: measured.y,
-        frame,
-        e,
-        rho: residual,
-        along,
-        theta: measured.theta,
-        start: polar,
-        sparse,
-    };
+    let seen = seen::seen::<S, PLAIN>(measured, &way, bends_shown, state, k, structure);
     let gate = calibration::Gate {
-        fresh,
-        tick,
-        whole_period: travel.whole_period,
-        clear: travel.clear,
-        dropped,
+        fresh: counted.fresh,
+        tick: counted.tick,
+        whole_period: way.travel.whole_period,
+        clear: way.travel.clear,
+        dropped: counted.dropped,
         bends_taught: bend::taught(bends_shown, state, k, structure),
     };
-    let searched = catch_up::searched(dropped, state, structure);
+    let searched = catch_up::searched(gate.dropped, state, structure);
     let mut updated = calibration::update::<S, PLAIN>(&seen, searched, gate, state, k, structure);
-    let completion = if PLAIN {
-        None
-    } else {
-        structure.calibration.completed()
-    };
-    let completed = completion.map(|_| {
-        let open = counting.and(hold.held.not()).named("parameters_free");
-        let open = gate.for_bends(open, "bends_free");
-        let seen = (updated.w_null, e, rho);
-        completion::complete(
-            seen,
-            open,
-            counting,
-            (&travel, catch_up),
-            state,
-            k,
-            structure,
-        )
-    });
-    if let Some(completed) = &completed {
-        let (old, nominal) = (state.theta_9_deviation, gears::nominal(state, k, structure));
-        updated.theta[8] = step::moved(old, completed.step, 8, nominal, k, structure);
-    }
-    let mut gears = gears::gears(hold, gate, (counting, starting), state, k, structure);
+    let (hold, of) = (counted.hold, (state, k, structure));
+    let completed = complete::<S, PLAIN>(&mut updated, measured, (&way, gate, hold), of);
+    let running = (way.counting, way.starting);
+    let mut gears = gears::gears(hold, gate, running, state, k, structure);
     let memory = hold
         .recall
         .map(|recall| recall::recall(&mut updated, recall, &mut gears, state, k, structure));
     let recalled = memory.as_ref().map(|memory| memory.recalled);
-    let astray = catch_up.map(|catch_up| catch_up.after(gate, counting, state));
-    let failures = strays::failures((input.calibrate, weak, gears.restart), state, k, structure);
-    let applied = waits::apply(updated.theta, waits, gate, recalled, state);
+    let astray = way.catch_up.map(|of| of.after(gate, way.counting, state));
+    let troubles = (input.calibrate, measured.weak, gears.restart);
+    let failures = strays::failures(troubles, state, k, structure);
+    let applied = waits::apply(updated.theta, way.waits, gate, recalled, state);
     Learned {
-        along,
-        fresh,
-        travel,
+        along: seen.along,
+        fresh: counted.fresh,
+        travel: way.travel,
         gears,
         failures,
         astray,
@@ -180,6 +84,27 @@ pub fn learn<S: Signal, const PLAIN: bool>(
         completed,
         memory,
     }
+}
+
+/// Moves θ9, which no radius shows, where the design completes the gradient.
+#[inline(always)]
+fn complete<S: Signal, const PLAIN: bool>(
+    updated: &mut calibration::Update<S>,
+    measured: &Measured<S>,
+    (way, gate, hold): (&counted::Way<S>, calibration::Gate<S>, gears::Hold<S>),
+    (state, k, structure): (&State<S>, &Coefficients<S>, &Structure),
+) -> Option<completion::Completion<S>> {
+    if PLAIN || structure.calibration.completed().is_none() {
+        return None;
+    }
+    let open = way.counting.and(hold.held.not()).named("parameters_free");
+    let open = gate.for_bends(open, "bends_free");
+    let seen = (updated.w_null, measured.e, measured.rho);
+    let motion = (&way.travel, way.catch_up);
+    let completed = completion::complete(seen, open, way.counting, motion, state, k, structure);
+    let (old, nominal) = (state.theta_9_deviation, gears::nominal(state, k, structure));
+    updated.theta[8] = step::moved(old, completed.step, 8, nominal, k, structure);
+    Some(completed)
 }
 
 impl<S: Signal> Learned<S> {
