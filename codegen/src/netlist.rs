@@ -70,115 +70,142 @@ pub(crate) struct Netlist {
 
 impl Netlist {
     pub(crate) fn new(w: &Writer) -> Self {
-        let (graph, schedule) = (w.graph, w.schedule);
-        let commit = schedule.clocks - 1;
-        let mut sections: Vec<Section> = graph
-            .formulas
-            .iter()
-            .map(|f| Section {
-                title: f.title.into(),
-                equation: layout::wrap("", f.equation, layout::COMMENT - 6),
-                source: f.source.into(),
-                lines: vec![],
-            })
-            .collect();
-        let mut captures: Vec<(usize, Vec<String>)> =
-            (0..schedule.clocks).map(|c| (c, vec![])).collect();
-        let mut kept = vec![];
-        for id in graph.ids() {
-            let node = graph.node(id);
-            if matches!(node.op, Op::Input | Op::Constant(_))
-                || w.moved(id).is_some()
-                || crate::quantise::fused(w, graph, id)
-            {
-                continue;
-            }
-            let (mut lines, with) = w.with_coefficients(|| expression::lines(w, id));
-            let with = with.join(", ");
-            if let (Some(last), false) = (lines.last_mut(), with.is_empty()) {
-                *last += &format!(", with {with}");
-            }
-            sections[node.formula]
-                .lines
-                .extend(layout::laid_out(&lines));
+        let graph = w.graph;
+        let mut this = Self {
+            sections: sections(graph),
+            captures: (0..w.schedule.clocks).map(|step| (step, vec![])).collect(),
+            kept: vec![],
+            state: vec![],
+            commits: vec![],
+            held: vec![],
+        };
+        for id in graph.ids().filter(|id| has_statement(w, *id)) {
+            this.write_statement(w, id);
             if w.kept(id) {
-                let name = w.name(id);
-                w.declare(name, width(graph, id));
-                w.read(&w.wire(id), width(graph, id) - 1, 0);
-                captures[schedule.ready[id.index()]]
-                    .1
-                    .push(format!("{name} <= {};", w.wire(id)));
-                kept.push(Register {
-                    range: range(graph, id),
-                    name: name.into(),
-                    meaning: String::new(),
-                });
+                this.keep_value(w, id);
             }
         }
-        // A probe that shows a register shows what it was before the sample.
         for (name, id) in &graph.probes {
             if graph.node(*id).op == Op::Input {
-                let bits = width(graph, *id);
-                w.read(w.name(*id), bits - 1, 0);
-                w.declare(name, bits);
-                let sampled = SAMPLED.contains(&w.name(*id));
-                let (step, form) = if sampled { (1, "_held") } else { (0, "") };
-                captures[step]
-                    .1
-                    .push(format!("{name} <= {}{form};", w.name(*id)));
-                kept.push(Register {
-                    range: range(graph, *id),
-                    name: name.clone(),
-                    meaning: String::new(),
-                });
+                this.keep_register(w, name, *id);
             }
         }
-        captures.retain(|c| !c.1.is_empty());
-        sections.retain(|s| !s.lines.is_empty());
-        let (mut state, mut commits, mut held) = (vec![], vec![], vec![]);
+        this.captures.retain(|c| !c.1.is_empty());
+        this.sections.retain(|s| !s.lines.is_empty());
         for (name, id) in &graph.inputs {
-            let sampled = SAMPLED.contains(&name.as_str());
-            // A pin that no formula reads needs no register: `calibrate` of a chip without calibration.
-            let read = graph.is_read(*id);
-            let form = if sampled && read {
-                format!("{name}_held")
+            if SAMPLED.contains(&name.as_str()) {
+                this.hold_pin(w, name, *id);
             } else {
-                name.clone()
-            };
-            w.declare(&form, width(graph, *id));
-            let register = Register {
-                range: range(graph, *id),
-                name: name.clone(),
-                meaning: meaning(name),
-            };
-            if sampled {
-                held.extend(read.then_some(register));
-                continue;
-            }
-            state.push(register);
-            let next = graph.next.iter().find(|(n, _)| n == name);
-            if let Some(&(_, next)) = next {
-                let bits = width(graph, *id);
-                let text = match graph.node(next).kind {
-                    Kind::Flag => w.condition_of(next, commit),
-                    _ => w.fit(
-                        &w.at(next, commit),
-                        graph.node(next).format.fraction,
-                        bits,
-                        None,
-                    ),
-                };
-                commits.push((name.clone(), text));
+                this.declare_register(w, name, *id);
             }
         }
-        Self {
-            sections,
-            captures,
-            kept,
-            state,
-            commits,
-            held,
+        this
+    }
+
+    /// The statement that computes a value, in its formula's section, with the coefficients in it.
+    fn write_statement(&mut self, w: &Writer, id: NodeId) {
+        let (mut lines, with) = w.with_coefficients(|| expression::lines(w, id));
+        let with = with.join(", ");
+        if let (Some(last), false) = (lines.last_mut(), with.is_empty()) {
+            *last += &format!(", with {with}");
         }
+        self.sections[w.graph.node(id).formula]
+            .lines
+            .extend(layout::laid_out(&lines));
+    }
+
+    /// A value that is read after its step, in a register of its own.
+    fn keep_value(&mut self, w: &Writer, id: NodeId) {
+        let (name, bits) = (w.name(id), width(w.graph, id));
+        w.declare(name, bits);
+        w.read(&w.wire(id), bits - 1, 0);
+        let step = w.schedule.ready[id.index()];
+        self.capture(step, name, &w.wire(id), range(w.graph, id));
+    }
+
+    /// A probe that shows a register shows what it was before the sample.
+    fn keep_register(&mut self, w: &Writer, name: &str, id: NodeId) {
+        let bits = width(w.graph, id);
+        w.read(w.name(id), bits - 1, 0);
+        w.declare(name, bits);
+        let sampled = SAMPLED.contains(&w.name(id));
+        let (step, form) = if sampled { (1, "_held") } else { (0, "") };
+        let shown = format!("{}{form}", w.name(id));
+        self.capture(step, name, &shown, range(w.graph, id));
+    }
+
+    /// Register `name` takes `value` at the end of `step`.
+    fn capture(&mut self, step: usize, name: &str, value: &str, range: String) {
+        self.captures[step].1.push(format!("{name} <= {value};"));
+        self.kept.push(Register {
+            range,
+            name: name.into(),
+            meaning: String::new(),
+        });
+    }
+
+    /// A pin, held while its sample is worked on. One that no formula reads needs no register: `calibrate` of a chip without
+    /// calibration.
+    fn hold_pin(&mut self, w: &Writer, name: &str, id: NodeId) {
+        let read = w.graph.is_read(id);
+        let form = if read {
+            format!("{name}_held")
+        } else {
+            name.to_owned()
+        };
+        w.declare(&form, width(w.graph, id));
+        self.held.extend(read.then(|| register(w.graph, name, id)));
+    }
+
+    /// A register of the chip, and what it becomes at the end of a sample.
+    fn declare_register(&mut self, w: &Writer, name: &str, id: NodeId) {
+        w.declare(name, width(w.graph, id));
+        self.state.push(register(w.graph, name, id));
+        let next = w.graph.next.iter().find(|(n, _)| n == name);
+        if let Some(&(_, next)) = next {
+            let value = next_value(w, next, width(w.graph, id));
+            self.commits.push((name.to_owned(), value));
+        }
+    }
+}
+
+/// The formulas, without statements as yet.
+fn sections(graph: &Graph) -> Vec<Section> {
+    let formulas = graph.formulas.iter();
+    formulas
+        .map(|f| Section {
+            title: f.title.into(),
+            equation: layout::wrap("", f.equation, layout::COMMENT - 6),
+            source: f.source.into(),
+            lines: vec![],
+        })
+        .collect()
+}
+
+/// Whether a value is computed by a statement of its own: it is not there from the start, nor another one with its point moved, nor
+/// written inside its only reader.
+fn has_statement(w: &Writer, id: NodeId) -> bool {
+    !matches!(w.graph.node(id).op, Op::Input | Op::Constant(_))
+        && w.moved(id).is_none()
+        && !crate::quantise::fused(w, w.graph, id)
+}
+
+/// A register or a pin of the chip.
+fn register(graph: &Graph, name: &str, id: NodeId) -> Register {
+    Register {
+        range: range(graph, id),
+        name: name.to_owned(),
+        meaning: meaning(name),
+    }
+}
+
+/// What a register of so many `bits` takes when the sample ends.
+fn next_value(w: &Writer, next: NodeId, bits: u32) -> String {
+    let commit = w.schedule.clocks - 1;
+    let node = w.graph.node(next);
+    match node.kind {
+        Kind::Flag => w.condition_of(next, commit),
+        _ => w.fit(&w.at(next, commit), node.format.fraction, bits, None),
     }
 }
 
