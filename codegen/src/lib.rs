@@ -13,6 +13,7 @@ mod expression;
 mod layout;
 mod names;
 pub mod netlist;
+mod ports;
 mod quantise;
 pub mod schedule;
 mod settle;

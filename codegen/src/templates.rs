@@ -2,12 +2,12 @@
 
 use askama::Template;
 use nonius_model::design::Design;
-use nonius_model::graph::{Graph, Kind, NodeId};
-use nonius_model::registers::STATUS;
+use nonius_model::graph::{Graph, NodeId};
 
 use crate::layout;
-use crate::netlist::{Netlist, Register, Section, meaning, width};
-use crate::schedule::schedule_for;
+use crate::netlist::{Netlist, Register, Section, width};
+use crate::ports::{has_port, ports};
+use crate::schedule::{Schedule, schedule_for};
 use crate::shifter::Unit;
 use crate::units::{Multiplier, Table};
 use crate::writer::{Writer, range};
@@ -126,101 +126,10 @@ fn flow(graph: &Graph, columns: &[(String, NodeId, u32)]) -> Vec<Signal> {
         .collect()
 }
 
-/// Registers and probes that have a port of their own.
-pub(crate) fn has_port(name: &str) -> bool {
-    let parameter = name
-        .strip_prefix("theta_")
-        .is_some_and(|n| n.chars().all(|c| c.is_ascii_digit()));
-    parameter || STATUS.contains(&name)
-}
-
 /// Format and variables of some columns.
 fn scan(columns: &[(String, NodeId, u32)]) -> (String, String) {
     let variables: Vec<_> = columns.iter().map(|c| format!("expect_{}", c.0)).collect();
     (vec!["%h"; columns.len()].join(" "), variables.join(", "))
-}
-
-fn ports(
-    design: &Design,
-    clocks: usize,
-    columns: &[(String, NodeId, u32)],
-) -> Vec<(String, String, String)> {
-    let f = &design.structure.formats;
-    let adc = format!("[{}:0] ", design.spec.adc.bits - 1);
-    let coding = if design.structure.offset_binary {
-        "offset binary"
-    } else {
-        "two's complement"
-    };
-    let input = |range: &str, name: &str, what: String| {
-        (format!("input  wire {range}"), format!("{name},"), what)
-    };
-    let mut list = vec![
-        input(
-            "",
-            "clk",
-            "every register changes at the rising edge".into(),
-        ),
-        input("", "rst_n", "asynchronous reset, active low".into()),
-        input(
-            "",
-            "sample_valid",
-            format!(
-                "one clock per sample, {clocks} clocks apart or more; the inputs below are valid"
-            ),
-        ),
-        input(
-            &adc,
-            "adc_cos",
-            format!("code of the cosine channel, {coding}"),
-        ),
-        input(
-            &adc,
-            "adc_sin",
-            format!("code of the sine channel, {coding}"),
-        ),
-        input(
-            "",
-            "preset",
-            "this sample's period becomes number 0; clears lock_lost".into(),
-        ),
-        input(
-            "",
-            "calibrate",
-            crate::about::calibrate(&design.spec).into(),
-        ),
-        (
-            format!(
-                "output wire signed [{}:0] ",
-                f.count.format.width + f.alpha.format.width - 1
-            ),
-            "position,".into(),
-            format!(
-                "periods, s{}.{}: whole periods and alpha_hat for the next sample",
-                f.count.format.width + f.alpha.format.width,
-                f.alpha.format.width
-            ),
-        ),
-    ];
-    for (name, id, _) in columns.iter().filter(|c| has_port(&c.0)) {
-        let node = design.graph.node(*id);
-        let format = if node.kind == Kind::Flag {
-            String::new()
-        } else {
-            format!(" {}", node.format)
-        };
-        list.push((
-            format!("output reg {}", range(&design.graph, *id)),
-            format!("{name},"),
-            format!("{}{format}", meaning(name)),
-        ));
-    }
-    list.push((
-        "output reg ".into(),
-        "valid".into(),
-        "one clock per sample: the outputs are those of the sample".into(),
-    ));
-    list
 }
 
 /// Writes the Verilog of a design; `stimuli` are the names of the vector files and their rows.
@@ -232,138 +141,214 @@ pub fn generate(
     hash: &str,
     stimuli: &[(String, usize)],
 ) -> Result<Files, askama::Error> {
-    let graph = &design.graph;
-    let schedule = schedule_for(graph, design.spec.chip.multipliers);
-    let writer = Writer::new(graph, &schedule);
-    let tables = crate::units::tables(&writer);
-    let netlist = Netlist::new(&writer);
-    let multipliers = crate::units::multipliers(&writer);
-    for m in &multipliers {
-        writer.declare(&format!("product_{}", m.index), m.a + m.b);
-    }
-    let shifters = crate::shifter::units(&writer);
-    let columns = columns(design);
-    let name = design.spec.name.as_str();
-    let kind = crate::about::kind(&design.spec);
-    let description = design.spec.description.as_str();
-    let separator = if description.is_empty() { "." } else { ": " };
-    let title = layout::users_comment(&format!("{name}: {kind}{separator}{description}"));
-    let adc_msb = design.spec.adc.bits - 1;
-    let f = &design.structure.formats;
-    for (port, id, bits) in &columns {
-        if has_port(port) {
-            writer.read(port, bits - 1, 0);
-        }
-        // Both parts of the position.
-        if ["count", "alpha_hat"].contains(&port.as_str()) {
-            writer.read(port, design.graph.node(*id).format.width - 1, 0);
-        }
-    }
-    let offset_binary = design.structure.offset_binary;
-    let loads = netlist.held.iter().map(|r| {
-        let code = offset_binary && r.name.starts_with("adc_");
-        let load = if code {
-            format!("{{1'b0, {}}}", r.name)
-        } else {
-            r.name.clone()
-        };
-        (r.name.clone(), load)
-    });
-    let (clocks, rate) = (schedule.clocks, design.spec.adc.sample_rate_hz);
-    let clock = rate * clocks as f64;
-    let chip = Chip {
-        name,
-        title,
-        hash,
-        summary: format!(
-            "{} products on {} multiplier{}, {clocks} clocks per sample",
-            graph.products(),
-            schedule.multipliers,
-            if schedule.multipliers == 1 { "" } else { "s" }
-        ),
-        timetable: crate::units::timetable(&writer),
-        purpose: crate::about::purpose(&design.spec),
-        constants: crate::constants::listed(graph),
-        ports: ports(design, clocks, &columns),
-        state: &netlist
-            .state
-            .iter()
-            .filter(|r| !has_port(&r.name))
-            .cloned()
-            .collect::<Vec<_>>(),
-        held: &netlist.held,
-        loads: loads.collect(),
-        kept: netlist.kept.iter().filter(|r| !has_port(&r.name)).collect(),
-        multipliers: &multipliers,
-        shifters: &shifters,
-        tables: &tables,
-        sections: &netlist.sections,
-        captures: &netlist.captures,
-        commits: &netlist.commits,
-        clocks,
-        step_bits: crate::units::step_bits(&writer),
-        alpha_bits: f.alpha.format.width,
-        unread: writer.unread(),
-    };
-    let signals: Vec<Signal> = columns
-        .iter()
-        .map(|(name, id, bits)| (range(graph, *id), name.clone(), *bits))
-        .collect();
-    let outputs: Vec<Signal> = signals.iter().filter(|s| has_port(&s.1)).cloned().collect();
-    let testbench = Testbench {
-        name,
-        clocks,
-        adc_msb,
-        count_bits: f.count.format.width,
-        alpha_bits: f.alpha.format.width,
-        outputs: &outputs,
-        flow: flow(graph, &columns),
-        columns: &signals,
-        fields: columns.len() + 5,
-        scans: columns.chunks(3).map(scan).collect(),
-        stimuli,
-    };
-    let example = Example {
-        name,
-        subject: layout::no_order(name),
-        clocks,
-        rate,
-        clock,
-        adc_msb,
-        count_bits: f.count.format.width,
-        alpha_bits: f.alpha.format.width,
-        outputs: &outputs,
-        idle: outputs
-            .iter()
-            .map(|o| o.1.clone())
-            .filter(|n| n != "locked" && n != "signal_lost")
-            .collect(),
-    };
-    let given = design.spec.chip.clock_hz.unwrap_or(clock).max(clock);
-    let constraints = Constraints {
-        name,
-        hash,
-        clocks,
-        rate,
-        clock,
-        // Neither may be slower than what is needed: up for the frequency, down for the period.
-        megahertz: format!("{:.3}", (given / 1e3).ceil() / 1e3),
-        period: format!("{:.3}", (1e12 / given).floor() / 1e3),
-    };
+    let schedule = schedule_for(&design.graph, design.spec.chip.multipliers);
+    let (name, columns) = (design.spec.name.as_str(), columns(design));
+    let texts = Texts::new(design, hash, &schedule, &columns);
     let mut files = vec![
-        (format!("rtl/{name}.v"), chip.render()? + "\n"),
-        (format!("rtl/{name}.sdc"), constraints.render()? + "\n"),
-        (
-            format!("example/{name}_example.v"),
-            example.render()? + "\n",
-        ),
-        ("tb/chip_tb.v".into(), testbench.render()? + "\n"),
+        (format!("rtl/{name}.v"), texts.chip()? + "\n"),
+        (format!("rtl/{name}.sdc"), texts.constraints()? + "\n"),
+        (format!("example/{name}_example.v"), texts.example()? + "\n"),
+        ("tb/chip_tb.v".into(), texts.testbench(stimuli)? + "\n"),
     ];
-    files.extend(crate::tables::files(name, hash, graph));
+    files.extend(crate::tables::files(name, hash, &design.graph));
     Ok(Files {
         files,
-        clocks,
+        clocks: schedule.clocks,
         multipliers: schedule.multipliers,
         columns,
     })
+}
+
+/// What the text files of a chip are written from.
+struct Texts<'a> {
+    design: &'a Design,
+    hash: &'a str,
+    schedule: &'a Schedule,
+    columns: &'a [(String, NodeId, u32)],
+    /// The columns as the templates have them.
+    signals: Vec<Signal>,
+    /// Those that have a port.
+    outputs: Vec<Signal>,
+    name: &'a str,
+    clocks: usize,
+    /// Samples per second.
+    rate: f64,
+    /// Clocks per second that these need.
+    clock: f64,
+    adc_msb: u32,
+    count_bits: u32,
+    alpha_bits: u32,
+}
+
+impl<'a> Texts<'a> {
+    fn new(
+        design: &'a Design,
+        hash: &'a str,
+        schedule: &'a Schedule,
+        columns: &'a [(String, NodeId, u32)],
+    ) -> Self {
+        let signal = |(name, id, bits): &(String, NodeId, u32)| {
+            (range(&design.graph, *id), name.clone(), *bits)
+        };
+        let signals: Vec<Signal> = columns.iter().map(signal).collect();
+        let outputs = signals.iter().filter(|s| has_port(&s.1)).cloned().collect();
+        let (clocks, rate) = (schedule.clocks, design.spec.adc.sample_rate_hz);
+        let formats = &design.structure.formats;
+        Self {
+            design,
+            hash,
+            schedule,
+            columns,
+            signals,
+            outputs,
+            name: &design.spec.name,
+            clocks,
+            rate,
+            clock: rate * clocks as f64,
+            adc_msb: design.spec.adc.bits - 1,
+            count_bits: formats.count.format.width,
+            alpha_bits: formats.alpha.format.width,
+        }
+    }
+
+    /// The chip itself. What its parts declare and read is noted on the way: `unread` is asked last.
+    fn chip(&self) -> Result<String, askama::Error> {
+        let (design, graph) = (self.design, &self.design.graph);
+        let writer = Writer::new(graph, self.schedule);
+        let tables = crate::units::tables(&writer);
+        let netlist = Netlist::new(&writer);
+        let multipliers = crate::units::multipliers(&writer);
+        for m in &multipliers {
+            writer.declare(&format!("product_{}", m.index), m.a + m.b);
+        }
+        let shifters = crate::shifter::units(&writer);
+        self.read_at_ports(&writer);
+        let without_port = |r: &&Register| !has_port(&r.name);
+        let state: Vec<_> = netlist.state.iter().filter(without_port).cloned().collect();
+        let chip = Chip {
+            name: self.name,
+            title: title(design),
+            hash: self.hash,
+            summary: self.summary(),
+            timetable: crate::units::timetable(&writer),
+            purpose: crate::about::purpose(&design.spec),
+            constants: crate::constants::listed(graph),
+            ports: ports(design, self.clocks, self.columns),
+            state: &state,
+            held: &netlist.held,
+            loads: loads(&netlist.held, design.structure.offset_binary),
+            kept: netlist.kept.iter().filter(without_port).collect(),
+            multipliers: &multipliers,
+            shifters: &shifters,
+            tables: &tables,
+            sections: &netlist.sections,
+            captures: &netlist.captures,
+            commits: &netlist.commits,
+            clocks: self.clocks,
+            step_bits: crate::units::step_bits(&writer),
+            alpha_bits: self.alpha_bits,
+            unread: writer.unread(),
+        };
+        chip.render()
+    }
+
+    /// Notes that what has a port is read there, and both parts of the position.
+    fn read_at_ports(&self, writer: &Writer) {
+        for (port, id, bits) in self.columns {
+            if has_port(port) {
+                writer.read(port, bits - 1, 0);
+            }
+            if ["count", "alpha_hat"].contains(&port.as_str()) {
+                writer.read(port, self.design.graph.node(*id).format.width - 1, 0);
+            }
+        }
+    }
+
+    /// What the chip is made of, in a line.
+    fn summary(&self) -> String {
+        let multipliers = self.schedule.multipliers;
+        format!(
+            "{} products on {multipliers} multiplier{}, {} clocks per sample",
+            self.design.graph.products(),
+            if multipliers == 1 { "" } else { "s" },
+            self.clocks
+        )
+    }
+
+    /// The testbench, which plays the vector files.
+    fn testbench(&self, stimuli: &[(String, usize)]) -> Result<String, askama::Error> {
+        let testbench = Testbench {
+            name: self.name,
+            clocks: self.clocks,
+            adc_msb: self.adc_msb,
+            count_bits: self.count_bits,
+            alpha_bits: self.alpha_bits,
+            outputs: &self.outputs,
+            flow: flow(&self.design.graph, self.columns),
+            columns: &self.signals,
+            fields: self.columns.len() + 5,
+            scans: self.columns.chunks(3).map(scan).collect(),
+            stimuli,
+        };
+        testbench.render()
+    }
+
+    /// A module that has the chip in it, to begin with.
+    fn example(&self) -> Result<String, askama::Error> {
+        let idle = self.outputs.iter().map(|output| output.1.clone());
+        let example = Example {
+            name: self.name,
+            subject: layout::no_order(self.name),
+            clocks: self.clocks,
+            rate: self.rate,
+            clock: self.clock,
+            adc_msb: self.adc_msb,
+            count_bits: self.count_bits,
+            alpha_bits: self.alpha_bits,
+            outputs: &self.outputs,
+            idle: idle
+                .filter(|name| name != "locked" && name != "signal_lost")
+                .collect(),
+        };
+        example.render()
+    }
+
+    /// The constraints of a synthesis: the clock that is there, which is as fast as the samples need or faster.
+    fn constraints(&self) -> Result<String, askama::Error> {
+        let clock = self.clock;
+        let given = self.design.spec.chip.clock_hz.unwrap_or(clock).max(clock);
+        let constraints = Constraints {
+            name: self.name,
+            hash: self.hash,
+            clocks: self.clocks,
+            rate: self.rate,
+            clock,
+            // Neither may be slower than what is needed: up for the frequency, down for the period.
+            megahertz: format!("{:.3}", (given / 1e3).ceil() / 1e3),
+            period: format!("{:.3}", (1e12 / given).floor() / 1e3),
+        };
+        constraints.render()
+    }
+}
+
+/// Name, kind and description, as a comment.
+fn title(design: &Design) -> Vec<String> {
+    let (name, description) = (&design.spec.name, design.spec.description.as_str());
+    let kind = crate::about::kind(&design.spec);
+    let separator = if description.is_empty() { "." } else { ": " };
+    layout::users_comment(&format!("{name}: {kind}{separator}{description}"))
+}
+
+/// What each held register takes of its pin: codes of offset binary as they are, without a sign.
+fn loads(held: &[Register], offset_binary: bool) -> Vec<(String, String)> {
+    let load = |name: &String| {
+        let code = offset_binary && name.starts_with("adc_");
+        let load = if code {
+            format!("{{1'b0, {name}}}")
+        } else {
+            name.clone()
+        };
+        (name.clone(), load)
+    };
+    held.iter().map(|register| load(&register.name)).collect()
 }

@@ -71,7 +71,7 @@ impl<'a> Writer<'a> {
                 Op::Constant(_) => true,
                 Op::Mul(..) | Op::Lookup { .. } | Op::QuantiseGeared { .. } => false,
                 // A port is a register.
-                _ if crate::templates::has_port(&names[id.index()]) => false,
+                _ if crate::ports::has_port(&names[id.index()]) => false,
                 _ => op.operands().all(|o| stable[o.index()]),
             };
         }
