@@ -8,7 +8,7 @@ use crate::causes::{settling, tells};
 use crate::drifts::channels::Channels;
 use crate::drifts::steps::{self, Change};
 use crate::finding::Cause;
-use crate::model::exact::{self, FITTED};
+use crate::model::tuned::{FITTED, tuned};
 use crate::model::{Fit, System};
 use crate::numerics::polynomial::DEGREE;
 use crate::select::beside::Beside;
@@ -97,7 +97,7 @@ fn exponentials(system: &mut System, fit: &Fit, like: &Polynomial) -> Vec<(f64, 
         let beside = Beside::new(&system.total, &fit.shapes);
         let gain = beside.gain(&candidate.shapes).0;
         let mut cause = Accepted::new(candidate);
-        exact::tuned(system, &fit.shapes, &mut cause, gain);
+        tuned(system, &fit.shapes, &mut cause, gain);
         system.extend();
         if cause.inner_error.is_none() {
             continue;

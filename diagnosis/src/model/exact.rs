@@ -1,4 +1,4 @@
-//! Large effects: numbers that are no amounts are fitted, and the recording is looked at anew where a cause stands.
+//! Large effects: the recording is looked at anew where a cause stands.
 //!
 //! Shapes are tangents. Where a cause is large, its second order is above the noise and would be given the name of
 //! something else: then what it does is taken off the signals themselves, the angle followed again, and the tangents
@@ -10,26 +10,13 @@ use nonius_recording::Recording;
 use crate::causes::Catalogue;
 use crate::context::{Context, unwrapped};
 use crate::model::known::{effects, periodic};
-use crate::model::{Fit, System, above_motion, atoms_of};
+use crate::model::{Fit, System, above_motion};
 use crate::motion::spline::Spline;
-use crate::select::beside::Beside;
 use crate::select::selection::Accepted;
-use crate::shapes::library::{Row, Shape};
+use crate::shapes::library::Row;
 
-/// Gain in log-likelihood from which on inner numbers can be fitted.
-pub(crate) const FITTED: f64 = 30.0;
-/// Steps of a fit of them.
-const STEPS: usize = 8;
-/// Share of what its shapes explained that those of a number that is known twice have to explain once it is fitted.
-const AS_MUCH: f64 = 0.9;
-/// Standard errors from which on a number is told from zero.
-const TOLD: f64 = 3.0;
-/// Small changes that one step may go.
-const REACH: f64 = 12.0;
 /// Samples that are enough to find what is large, and to see the colour of the noise.
 const ENOUGH: usize = 25_000;
-/// Share of its standard error by which a number may still move when its fit ends.
-const AT_REST: f64 = 0.2;
 /// Detection SNR of a remainder from which on a recording is looked at anew before anything else can be named for it.
 pub(crate) const NAMED: f64 = 3.0;
 /// The same once the search is at its end.
@@ -40,118 +27,6 @@ const SETTLED: f64 = 0.3;
 const FOLLOWED: (usize, usize) = (3, 20);
 /// Change of the angle, radians rms, below which it has come to rest.
 const STILL: f64 = 1e-5;
-
-/// Fits the inner numbers of a cause beside a fit; its shapes are new functions of the system then.
-pub(crate) fn tuned(system: &mut System, fit: &[Shape], cause: &mut Accepted, gain: f64) {
-    let Some(exact) = cause.candidate.exact.clone() else {
-        return;
-    };
-    if gain < FITTED || exact.inner.is_empty() {
-        return;
-    }
-    let mut inner = exact.inner.clone();
-    let mut errors = None;
-    let mark = system.samples.library.atoms.len();
-    for step in 0..STEPS {
-        let library = &mut system.samples.library;
-        let own = (exact.make)(&inner, library);
-        let mut beside_them = vec![];
-        for (j, small) in exact.steps.iter().enumerate() {
-            let moved = |by: f64| {
-                let mut moved = inner.clone();
-                moved[j] += by;
-                moved
-            };
-            let plus = (exact.make)(&moved(*small), library);
-            let minus = (exact.make)(&moved(-small), library);
-            beside_them.push((plus, minus, *small));
-        }
-        let all: Vec<Shape> = beside_them
-            .iter()
-            .flat_map(|(p, m, _)| p.iter().chain(m))
-            .chain(&own)
-            .chain(fit)
-            .cloned()
-            .collect();
-        let atoms = atoms_of(&all);
-        let whole = system.among(&atoms);
-        let among = |shapes: &[Shape]| Shape::all_among(shapes, &atoms);
-        let beside = Beside::new(&whole, &among(fit));
-        let mut shapes = among(&own);
-        let x = beside.solve(&shapes).x;
-        for (plus, minus, small) in &beside_them {
-            let mut slope = Shape::default();
-            let pairs = among(plus).into_iter().zip(among(minus)).zip(&x);
-            for ((plus, minus), x) in pairs {
-                let by = x / (2.0 * small);
-                slope = slope.plus(&plus.scaled(by)).plus(&minus.scaled(-by));
-            }
-            shapes.push(slope);
-        }
-        let solution = beside.solve(&shapes);
-        system.retain(|i| i < mark);
-        let error = |i: usize| solution.covariance[(i, i)].max(0.0).sqrt();
-        let first = own.len();
-        let moves: Vec<(f64, f64)> = if exact.follows && exact.steps.is_empty() {
-            vec![(x[0] - inner[0], error(0))]
-        } else if exact.follows {
-            // The number is known twice, as an amount and by the shapes.
-            let known = [
-                (x[0] - inner[0], error(0)),
-                (solution.x[first], error(first)),
-            ];
-            let weight = |e: f64| e.powi(-2).min(1e30);
-            let total: f64 = known.iter().map(|k| weight(k.1)).sum();
-            let by = known.iter().map(|k| k.0 * weight(k.1)).sum::<f64>() / total;
-            let most = 0.5 * inner[0];
-            vec![(by.clamp(-most, most), total.sqrt().recip())]
-        } else {
-            (0..inner.len())
-                .map(|j| {
-                    let most = REACH * exact.steps[j];
-                    (solution.x[first + j].clamp(-most, most), error(first + j))
-                })
-                .collect()
-        };
-        if moves.iter().any(|m| !m.0.is_finite()) {
-            break;
-        }
-        let (by, error) = moves[0];
-        if inner == [0.0] && !exact.steps.is_empty() && by.abs() < TOLD * error {
-            // It is not told from none, and its fit would run away.
-            return;
-        }
-        if !exact.steps.is_empty() {
-            errors = Some(moves.iter().map(|m| m.1).collect());
-        }
-        let rests = moves.iter().all(|(by, error)| by.abs() < AT_REST * error);
-        if rests && step == 0 {
-            // Its shapes are good as they are.
-            cause.inner_error = errors.or(cause.inner_error.take());
-            return;
-        }
-        for (value, (by, _)) in inner.iter_mut().zip(&moves) {
-            *value += by;
-        }
-        if rests {
-            break;
-        }
-    }
-    let shapes = (exact.make)(&inner, &mut system.samples.library);
-    system.extend();
-    // A fit that went astray is none. Where the number is known twice, shapes of a wrong one with an amount that is not it may
-    // explain a little more, as the tangents of a large cause are off.
-    let share = if exact.follows { AS_MUCH } else { 1.0 };
-    let beside = Beside::new(&system.total, fit);
-    if beside.gain(&shapes).0 < share * beside.gain(&cause.candidate.shapes).0 - 1.0 {
-        return;
-    }
-    cause.candidate.shapes = shapes;
-    cause.inner_error = errors;
-    if let Some(exact) = &mut cause.candidate.exact {
-        exact.inner = inner;
-    }
-}
 
 /// What a cause does, along the radius and along the circle, where functions are tried.
 fn effect(system: &System, amounts: &[(usize, f64)]) -> [Vec<f64>; 2] {

@@ -8,6 +8,7 @@ mod part;
 mod residual;
 pub(crate) mod sweep;
 mod taken;
+pub(crate) mod tuned;
 mod uneven;
 pub(crate) mod whiten;
 

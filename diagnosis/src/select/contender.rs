@@ -6,7 +6,7 @@ use crate::causes::candidate::{Candidate, Domain, Sign};
 use crate::drifts::courses;
 use crate::drifts::stairs;
 use crate::finding::Cause;
-use crate::model::exact;
+use crate::model::tuned::tuned;
 use crate::model::{Fit, Residual, System};
 use crate::select::beside::Beside;
 use crate::select::examined::{Examined, Nameless};
@@ -147,7 +147,7 @@ fn off_the_grid(system: &mut System, fit: &Fit, scored: &mut [Scored]) {
             continue;
         };
         let mut cause = Accepted::new(best.candidate.clone());
-        exact::tuned(system, &fit.shapes, &mut cause, best.gain);
+        tuned(system, &fit.shapes, &mut cause, best.gain);
         let beside = Beside::new(&system.total, &fit.shapes);
         if let Some(fitted) = score(&beside, cause.candidate) {
             *best = fitted;

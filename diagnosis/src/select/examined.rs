@@ -8,7 +8,7 @@ use crate::context::Context;
 use crate::drifts::channels::Channels;
 use crate::drifts::stairs;
 use crate::finding::Cause;
-use crate::model::exact;
+use crate::model::tuned::tuned;
 use crate::model::{Fit, Residual, System};
 use crate::select::ahead;
 use crate::select::beside::Beside;
@@ -76,7 +76,7 @@ impl Examined {
         (best, rest): (&Scored, &[&Scored]),
     ) -> Self {
         let mut cause = Accepted::new(best.candidate.clone());
-        exact::tuned(system, &fit.shapes, &mut cause, best.gain);
+        tuned(system, &fit.shapes, &mut cause, best.gain);
         system.extend();
         let beside = Beside::new(&system.total, &fit.shapes);
         let own = Scored {

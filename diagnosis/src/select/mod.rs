@@ -16,6 +16,7 @@ pub(crate) mod speed_anew;
 
 use crate::causes::Catalogue;
 use crate::model::exact::{self, Start};
+use crate::model::tuned::tuned;
 use crate::model::{Fit, System, atoms_of};
 use crate::select::rounds::Anew;
 use crate::select::search::search;
@@ -54,7 +55,7 @@ fn tune(system: &mut System, catalogue: &Catalogue, found: &mut Selection) {
         let gain = found.fit.solution.gain() - system.fit(others.clone()).solution.gain();
         // What all samples tell where they are tried, as far as a part of them shows it.
         let gain = gain * (system.every() / system.tried()) as f64;
-        exact::tuned(system, &others, one, gain);
+        tuned(system, &others, one, gain);
         found.fit = system.fit(found.fit.with_in_place(range, &one.candidate.shapes));
     }
     // Functions that were made for the known causes and that no shape uses.
