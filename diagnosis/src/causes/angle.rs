@@ -19,6 +19,9 @@ const THRESHOLDS: [f64; 7] = [0.5, 0.6, 0.7, 0.8, 0.85, 0.9, 0.95];
 /// How far a threshold may be off its grid.
 const GRID: f64 = 0.05;
 
+/// What harmonics and bends are, about, in amplitudes: larger ones show clearly, and what of one hardly shows is not larger.
+const LIKELY: f64 = 0.03;
+
 /// Rails at which the signals saturate.
 #[derive(Clone, Copy, PartialEq)]
 enum Rails {
@@ -155,7 +158,7 @@ fn shapes(adds: &Adds, amounts: usize, beta: f64, angle: &Place) -> Vec<Shape> {
     };
     let added = (0..amounts).map(|j| adds(beta, &unit(j)));
     added
-        .map(|[cos, sin]| angle.waves(&raw(beta, &cos, &sin), 0, ORDERS))
+        .map(|[cos, sin]| angle.waves(&raw(beta, &cos, &sin), 0, ORDERS).about(LIKELY))
         .collect()
 }
 
