@@ -20,7 +20,7 @@ const THRESHOLDS: [f64; 7] = [0.5, 0.6, 0.7, 0.8, 0.85, 0.9, 0.95];
 const GRID: f64 = 0.05;
 
 /// What harmonics are, about, in amplitudes: larger ones show clearly, and what of one hardly shows is not larger.
-const LIKELY: f64 = 0.01;
+const LIKELY: f64 = 0.008;
 
 /// Rails at which the signals saturate.
 #[derive(Clone, Copy, PartialEq)]
