@@ -19,9 +19,6 @@ const THRESHOLDS: [f64; 7] = [0.5, 0.6, 0.7, 0.8, 0.85, 0.9, 0.95];
 /// How far a threshold may be off its grid.
 const GRID: f64 = 0.05;
 
-/// What harmonics are, about, in amplitudes: larger ones show clearly, and what of one hardly shows is not larger.
-const LIKELY: f64 = 0.008;
-
 /// Rails at which the signals saturate.
 #[derive(Clone, Copy, PartialEq)]
 enum Rails {
@@ -150,7 +147,7 @@ pub(crate) fn enter(context: &Context, catalogue: &mut Catalogue) {
 }
 
 /// Shapes of so many amounts, each of them one, by the phase error in radians.
-fn shapes(adds: &Adds, (amounts, about): (usize, f64), beta: f64, angle: &Place) -> Vec<Shape> {
+fn shapes(adds: &Adds, amounts: usize, beta: f64, angle: &Place) -> Vec<Shape> {
     let unit = |j: usize| {
         (0..amounts)
             .map(|i| f64::from(i == j))
@@ -158,34 +155,30 @@ fn shapes(adds: &Adds, (amounts, about): (usize, f64), beta: f64, angle: &Place)
     };
     let added = (0..amounts).map(|j| adds(beta, &unit(j)));
     added
-        .map(|[cos, sin]| angle.waves(&raw(beta, &cos, &sin), 0, ORDERS).about(about))
+        .map(|[cos, sin]| angle.waves(&raw(beta, &cos, &sin), 0, ORDERS))
         .collect()
 }
 
 /// Squares and cubes of the channels.
 fn bends(beta: f64, angle: &Place) -> [Candidate; 2] {
-    let of = |name, (power, likely), what: &'static str| {
-        let adds = powers(power);
-        Candidate {
-            trials: 2.0,
-            // By the bends of 8 and 9 parameters, or by the table of harmonics.
-            chip: Chip::Corrects,
-            adds: Some(adds.clone()),
-            parameters: each(&["k_cos", "k_sin"], "amplitude"),
-            evidence: Rc::new(move |p| {
-                format!(
-                    "the channels follow {what} instead of y, with k = {} (cos) and {} (sin) for y in amplitudes",
-                    p[0].brief(),
-                    p[1].brief()
-                )
-            }),
-            ..Candidate::new(name, Domain::Angle, shapes(&adds, (2, likely), beta, angle))
-        }
+    let of = |name, adds: Adds, what: &'static str| Candidate {
+        trials: 2.0,
+        // By the bends of 8 and 9 parameters, or by the table of harmonics.
+        chip: Chip::Corrects,
+        adds: Some(adds.clone()),
+        parameters: each(&["k_cos", "k_sin"], "amplitude"),
+        evidence: Rc::new(move |p| {
+            format!(
+                "the channels follow {what} instead of y, with k = {} (cos) and {} (sin) for y in amplitudes",
+                p[0].brief(),
+                p[1].brief()
+            )
+        }),
+        ..Candidate::new(name, Domain::Angle, shapes(&adds, 2, beta, angle))
     };
-    // A half of the amount of a square is its second harmonic, and a quarter of that of a cube its third.
     [
-        of(Cause::EvenNonlinearity, (2, 2.0 * LIKELY), "y + k·y²"),
-        of(Cause::OddNonlinearity, (3, 4.0 * LIKELY), "y + k·y³"),
+        of(Cause::EvenNonlinearity, powers(2), "y + k·y²"),
+        of(Cause::OddNonlinearity, powers(3), "y + k·y³"),
     ]
 }
 
@@ -193,7 +186,7 @@ fn bends(beta: f64, angle: &Place) -> [Candidate; 2] {
 fn harmonics(beta: f64, angle: &Place) -> impl Iterator<Item = Candidate> {
     HARMONICS.map(move |order| {
         let adds = waves(order);
-        let shapes = shapes(&adds, (4, LIKELY), beta, angle);
+        let shapes = shapes(&adds, 4, beta, angle);
         Candidate {
             trials: HARMONICS.count() as f64,
             order: Some(order),

@@ -41,8 +41,8 @@ pub(super) fn may_be_the_converters(found: &mut Selection) {
     }
 }
 
-/// Takes three saturations and more back, or a strong one with two other strong bends, where none is most of what they explain, and with them
-/// what is weaker and goes with the angle. Two saturations alone may be those of two channels.
+/// Takes three saturations and more back, or a strong one with two other strong bends, where none is most of what they explain. Two
+/// saturations alone may be those of two channels.
 pub(super) fn of_no_one_kind(system: &System, found: &mut Selection) -> Option<Unnamed> {
     let named = |name: Cause| -> Vec<usize> {
         let own = |one: &Accepted| !one.doubted && one.candidate.name == name;
@@ -70,13 +70,7 @@ pub(super) fn of_no_one_kind(system: &System, found: &mut Selection) -> Option<U
         return None;
     };
     let all = gain(own);
-    // What is weaker and goes with the angle as well may be another part of the same curve.
-    let with_angle = |i: &usize| found.accepted[*i].candidate.domain.home() == Domain::Angle;
-    let parts = (0..found.accepted.len()).filter(with_angle);
-    let parts: Vec<usize> = parts.filter(|i| gain(&[*i]) < all).collect();
-    for i in own.iter().chain(&parts) {
-        found.accepted[*i].doubted = true;
-    }
+    own.iter().for_each(|i| found.accepted[*i].doubted = true);
     let but = "several bends together follow what none of them does, as a converter's smooth error may be";
     Some(unnamed(Domain::Angle, Cause::Saturation, all, but))
 }

@@ -88,12 +88,18 @@ fn rivals_anew(system: &System, catalogue: &Catalogue, found: &mut Selection) {
     }
 }
 
+/// So many times as large as a wide cause a simple one may be that is the same: a bend is three times its third harmonic, most of which is
+/// the channel's gain.
+const LARGER: f64 = 10.0;
+
 /// The fit with a simpler cause in the place of a wide one, if that holds it and explains no more.
 fn swapped(system: &System, found: &Selection, wide: &Accepted, simple: &Candidate) -> Option<Fit> {
     let beside = Beside::new(&system.total, &found.fit.others(&wide.range()));
-    // It has to be one that can be.
-    score(&beside, simple.clone())?;
-    if !beside.holds(&wide.candidate.shapes, &simple.shapes) {
+    // It has to be one that can be, and not so much larger that the gains make up for most of it.
+    let simple_size = score(&beside, simple.clone())?.size;
+    let shapes = &wide.candidate.shapes;
+    let wide_size = beside.size(shapes, &beside.solve(shapes).x);
+    if simple_size > LARGER * wide_size || !beside.holds(&wide.candidate.shapes, &simple.shapes) {
         return None;
     }
     let fit = system.fit(found.fit.with_in_place(wide.range(), &simple.shapes));

@@ -98,7 +98,7 @@ impl System<'_> {
         let every = self.every.div_ceil(MORE);
         let moments = self.moments(&own, every);
         let normal = self.units(&moments, &own, every);
-        let shapes: Vec<Shape> = (0..own.len()).map(|i| Shape::new(vec![(i, 1.0)])).collect();
+        let shapes: Vec<Shape> = (0..own.len()).map(|i| Shape(vec![(i, 1.0)])).collect();
         let x = normal.of(&shapes).solve().x;
         let amounts: Vec<(usize, f64)> = own.into_iter().zip(x).collect();
         let [radial, ..] = self.samples.left(&amounts);
@@ -131,7 +131,7 @@ fn fitted(system: &System, (normal, all): Of, atoms: &[usize], row: Row) -> Own 
     let mut atoms: Vec<usize> = atoms.iter().filter(own).copied().collect();
     atoms.sort_unstable();
     atoms.dedup();
-    let shape = |i: &usize| Shape::new(vec![(*i, 1.0)]).among(all);
+    let shape = |i: &usize| Shape(vec![(*i, 1.0)]).among(all);
     let shapes: Vec<Shape> = atoms.iter().map(shape).collect();
     let solution = normal.of(&shapes).solve();
     Own {

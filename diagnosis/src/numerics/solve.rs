@@ -52,8 +52,6 @@ pub(crate) struct Normal {
     pub(crate) power: f64,
     /// Squares of the columns before anything was taken off them.
     norms: DVector<f64>,
-    /// One over the square of what each amount may be without any data; zero where it may be anything.
-    prior: DVector<f64>,
 }
 
 /// Their solution.
@@ -61,7 +59,7 @@ pub(crate) struct Normal {
 pub(crate) struct Solution {
     /// One number per column.
     pub(crate) x: Vec<f64>,
-    /// Covariance for data of unit noise, and for amounts that may be what they may.
+    /// Covariance for data of unit noise.
     pub(crate) covariance: DMatrix<f64>,
     /// What the columns explain of the sum of squares.
     pub(crate) explained: f64,
@@ -80,7 +78,6 @@ impl Normal {
     pub(crate) fn new(gram: DMatrix<f64>, right: DVector<f64>, power: f64) -> Self {
         Self {
             norms: gram.diagonal(),
-            prior: DVector::zeros(right.len()),
             gram,
             right,
             power,
@@ -116,7 +113,6 @@ impl Normal {
             right: DVector::zeros(m),
             power: self.power,
             norms: DVector::zeros(m),
-            prior: DVector::zeros(m),
         };
         for (i, shape) in shapes.iter().enumerate() {
             small.right[i] = shape.0.iter().map(|(a, x)| x * self.right[*a]).sum();
@@ -126,7 +122,6 @@ impl Normal {
                 small.gram[(j, i)] = value;
             }
             small.norms[i] = small.gram[(i, i)];
-            small.prior[i] = shape.prior();
         }
         small
     }
@@ -155,7 +150,6 @@ impl Normal {
             right: &self.right - &along * x,
             power: self.power - solution.explained,
             norms: self.norms.clone(),
-            prior: self.prior.clone(),
         }
     }
 
@@ -168,7 +162,7 @@ impl Normal {
         small.solve()
     }
 
-    /// The likeliest amounts, of least squares where they may be anything; directions that the columns hardly have are left at zero.
+    /// The least-squares solution; directions that the columns hardly have are left at zero.
     pub(crate) fn solve(&self) -> Solution {
         let m = self.right.len();
         // A column of nothing gets no amount, and has no place among the others: where most are nothing, as knots at speeds
@@ -185,13 +179,9 @@ impl Normal {
                 rank: 0,
             };
         }
-        let prior = DVector::from_fn(count, |i, _| self.prior[kept[i]] * scale[i].powi(2));
-        let mut unit = DMatrix::from_fn(count, count, |i, j| {
+        let unit = DMatrix::from_fn(count, count, |i, j| {
             self.gram[(kept[i], kept[j])] * scale[i] * scale[j]
         });
-        for (i, prior) in prior.iter().enumerate() {
-            unit[(i, i)] += prior;
-        }
         let right = DVector::from_fn(count, |i, _| self.right[kept[i]] * scale[i]);
         let eigen = unit.symmetric_eigen();
         let largest = eigen.eigenvalues.amax().max(1.0);
@@ -202,8 +192,7 @@ impl Normal {
             .iter()
             .zip(eigen.eigenvectors.column_iter())
         {
-            let of_data = value - vector.component_mul(&vector).dot(&prior);
-            if of_data < DEPENDENT * largest {
+            if *value < DEPENDENT * largest {
                 continue;
             }
             let along = vector.dot(&right);

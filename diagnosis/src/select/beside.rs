@@ -61,7 +61,7 @@ impl<'a> Beside<'a> {
         let Some((radius, radial)) = &self.radius else {
             return true;
         };
-        let part = Shape::new(amounts(shapes, x)).only(radial);
+        let part = Shape(amounts(shapes, x)).only(radial);
         let claimed = radius.product(&part, &part).max(0.0).sqrt();
         let shown: f64 = part.0.iter().map(|(i, x)| x * radius.right[*i]).sum();
         let seen = shown.max(0.0) / claimed.max(f64::MIN_POSITIVE);
@@ -99,7 +99,7 @@ impl<'a> Beside<'a> {
     /// Size of all that shapes in these amounts do, what the fit and the motion can do as well included, in units of the
     /// noise.
     pub(crate) fn size(&self, shapes: &[Shape], x: &[f64]) -> f64 {
-        let all = Shape::new(amounts(shapes, x));
+        let all = Shape(amounts(shapes, x));
         self.whole.product(&all, &all).max(0.0).sqrt()
     }
 }

@@ -66,40 +66,23 @@ pub(crate) fn among(
 /// Share of the gain that tangents of what is large are off by.
 pub(crate) const INEXACT: f64 = 0.01;
 
-/// The same of an order whose seen half looks like the best.
-const HALF_SEEN: f64 = 0.15;
-
-/// Whether a harmonic turns with the angle, and hardly against it, by its amounts.
-fn turns_one_way(x: &[f64]) -> bool {
-    /// So many times as much.
-    const TIMES: f64 = 3.0;
-    let [c, c_late, s, s_late] = x else {
-        return false;
-    };
-    (c + s_late).hypot(s - c_late) > TIMES * (c - s_late).hypot(s + c_late)
-}
-
 /// The order of the scale period that a harmonic may have as well. Of order n, turning backwards, it does to the radius what one of order
 /// n + 2 does that turns forwards: along the circle they are opposite, and the motion may hide that. Of a `clear` one without a reference the
-/// tangents are not as exact as what it explains, and what they prefer is no proof. A harmonic that turns one way only, which both channels
-/// have to share for that, is what one of two orders less looks like whose other half the motion hides.
+/// tangents are not as exact as what it explains, and what they prefer is no proof.
 pub(crate) fn other_order(
     beside: &Beside,
     (best, clear): (&Scored, bool),
     others: &[&Scored],
 ) -> Option<usize> {
     let own = &best.candidate;
-    let order = own.order?;
-    let one_way = turns_one_way(&beside.solve(&own.shapes).x);
+    own.order?;
     let alike = others.iter().filter(|other| {
         let less = best.gain - other.gain;
-        let seen_half = one_way && other.candidate.order.is_some_and(|n| n + 2 == order);
-        let inexact = if seen_half { HALF_SEEN } else { INEXACT };
         let known = (other.gain, other.freedom);
         let adds_nothing =
             || adds(beside, own, &other.candidate.shapes, known, NOTHING_NEW).is_some();
         other.candidate.order.is_some()
-            && (less < BEATEN && adds_nothing() || clear && less < inexact * best.gain)
+            && (less < BEATEN && adds_nothing() || clear && less < INEXACT * best.gain)
     });
     let nearest = alike.max_by(|a, b| a.gain.total_cmp(&b.gain))?;
     nearest.candidate.order

@@ -93,10 +93,9 @@ pub(crate) struct Atom {
     pub(crate) function: usize,
 }
 
-/// A weighted sum of atoms, and how sure it is without any data that its amount is small: one over the square of what it may be. Of what
-/// hardly shows, as a harmonic along the circle of a slow axis, that leaves nothing, where the data would ask for any amount.
+/// A weighted sum of atoms.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Shape(pub(crate) Vec<(usize, f64)>, f64);
+pub(crate) struct Shape(pub(crate) Vec<(usize, f64)>);
 
 /// Every function there is.
 #[derive(Clone, Default)]
@@ -182,7 +181,6 @@ impl Place {
                 .map(|first| (first + i, 1.0))
                 .into_iter()
                 .collect(),
-            0.0,
         )
     }
 
@@ -193,7 +191,6 @@ impl Place {
                 .map(|first| (first + i, 1.0))
                 .into_iter()
                 .collect(),
-            0.0,
         )
     }
 
@@ -226,33 +223,20 @@ impl Place {
 }
 
 impl Shape {
-    /// A sum of atoms, of any amount.
-    pub(crate) fn new(atoms: Vec<(usize, f64)>) -> Self {
-        Self(atoms, 0.0)
-    }
-
-    /// The same, of an amount that is about as large as this, or less.
-    pub(crate) fn about(self, amount: f64) -> Self {
-        Self(self.0, amount.powi(-2))
-    }
-
-    /// One over the square of what its amount may be.
-    pub(crate) fn prior(&self) -> f64 {
-        self.1
-    }
-
     /// With other atom numbers.
     pub(crate) fn mapped(&self, map: &[Option<usize>]) -> Self {
         let kept = self.0.iter();
-        let kept = kept.filter_map(|(i, x)| map[*i].map(|new| (new, *x)));
-        Self(kept.collect(), self.1)
+        Self(
+            kept.filter_map(|(i, x)| map[*i].map(|new| (new, *x)))
+                .collect(),
+        )
     }
 
     /// The same by places in an ordered list of atoms, those that are there.
     pub(crate) fn among(&self, atoms: &[usize]) -> Self {
         let at = |i: &usize| atoms.binary_search(i).ok();
         let known = self.0.iter().filter_map(|(i, x)| Some((at(i)?, *x)));
-        Self(known.collect(), self.1)
+        Self(known.collect())
     }
 
     /// The same of several.
@@ -263,16 +247,16 @@ impl Shape {
     /// What of it stands in these atoms.
     pub(crate) fn only(&self, kept: &[bool]) -> Self {
         let list = self.0.iter().copied();
-        Self(list.filter(|(i, _)| kept[*i]).collect(), self.1)
+        Self(list.filter(|(i, _)| kept[*i]).collect())
     }
 
-    /// So many times the shape, as an effect: nothing is known of its amount.
+    /// So many times the shape.
     pub(crate) fn scaled(&self, by: f64) -> Self {
-        Self::new(self.0.iter().map(|(i, x)| (*i, x * by)).collect())
+        Self(self.0.iter().map(|(i, x)| (*i, x * by)).collect())
     }
 
-    /// The sum of two effects.
+    /// The sum of two.
     pub(crate) fn plus(&self, other: &Self) -> Self {
-        Self::new(self.0.iter().chain(&other.0).copied().collect())
+        Self(self.0.iter().chain(&other.0).copied().collect())
     }
 }

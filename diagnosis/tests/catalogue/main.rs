@@ -18,7 +18,6 @@ mod revolution;
 mod speed;
 mod statics;
 mod time;
-mod turned_by_hand;
 mod words;
 
 use harness::{Case, PLAIN, arc, damaged, diagnosed, finds_nothing, names};
