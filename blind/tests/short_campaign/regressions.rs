@@ -317,3 +317,20 @@ fn what_two_names_explain_keeps_one() {
         assert!(!verdict.unexplained, "{seed}: {}", verdict.signature);
     });
 }
+
+/// What another cause does has no name of its own: a flat top beside a stuck bit, a latency beside a large crosstalk, the bend of a converter
+/// beside its heavy bit, and the best of many saturations where a bend does as much. And jitter beside coarse steps was silent.
+#[test]
+fn what_another_cause_looks_like_has_no_name_of_its_own() {
+    let seeds = [
+        185_001_372,
+        186_000_441,
+        186_000_362,
+        186_001_653,
+        186_004_036,
+    ];
+    seeds.into_par_iter().for_each(|seed| {
+        let found = |o: &Outcome| matches!(o, Outcome::First | Outcome::Later | Outcome::Group);
+        none_wrong(seed, &told(seed, found));
+    });
+}

@@ -21,22 +21,20 @@ const STRONG: f64 = 0.1;
 /// A bend beside steps of the ADC may be the smooth part of the same converter's error, and nothing tells, unless the data has named
 /// another rival; a harmonic, which holds every bend, is less likely than that.
 pub(super) fn may_be_the_converters(found: &mut Selection) {
-    let is = |one: &Accepted, names: &[Cause]| !one.doubted && names.contains(&one.candidate.name);
-    if !found
-        .accepted
-        .iter()
-        .any(|one| is(one, &[Cause::AdcNonlinearity]))
-    {
+    let converter = Cause::AdcNonlinearity;
+    let sure = found.accepted.iter_mut().filter(|one| !one.doubted);
+    let (steps, others): (Vec<_>, Vec<_>) = sure.partition(|one| one.candidate.name == converter);
+    if steps.is_empty() {
         return;
     }
-    let bends = [Cause::EvenNonlinearity, Cause::OddNonlinearity];
-    for bend in found.accepted.iter_mut().filter(|one| is(one, &bends)) {
-        if bend
-            .confounded
-            .iter()
-            .all(|rival| *rival == Cause::SpatialHarmonic)
-        {
-            bend.confounded = vec![Cause::AdcNonlinearity];
+    let alone = |one: &Accepted| one.confounded.iter().all(|r| *r == Cause::SpatialHarmonic);
+    for one in others {
+        let bend = matches!(
+            one.candidate.name,
+            Cause::EvenNonlinearity | Cause::OddNonlinearity
+        );
+        if bend && alone(one) {
+            one.confounded = vec![converter];
         }
     }
 }

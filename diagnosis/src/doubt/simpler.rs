@@ -12,6 +12,10 @@ use crate::select::rivals;
 use crate::select::score::{Scored, score};
 use crate::select::selection::{Accepted, Selection};
 
+/// So many times as large as a wide cause a simple one may be that is the same: a bend is three times its third harmonic, most of which is
+/// the channel's gain.
+const LARGER: f64 = 10.0;
+
 /// Drops names to which the others leave nothing, then puts the simpler cause in the place of each wider one that holds it
 /// and explains no more. Whether one of these was off the signals, which have to be looked at anew then: the amounts of a large one depend
 /// on the ellipse, which is another. In the `last` look those stay what they are.
@@ -88,18 +92,14 @@ fn rivals_anew(system: &System, catalogue: &Catalogue, found: &mut Selection) {
     }
 }
 
-/// So many times as large as a wide cause a simple one may be that is the same: a bend is three times its third harmonic, most of which is
-/// the channel's gain.
-const LARGER: f64 = 10.0;
-
 /// The fit with a simpler cause in the place of a wide one, if that holds it and explains no more.
 fn swapped(system: &System, found: &Selection, wide: &Accepted, simple: &Candidate) -> Option<Fit> {
     let beside = Beside::new(&system.total, &found.fit.others(&wide.range()));
     // It has to be one that can be, and not so much larger that the gains make up for most of it.
     let simple_size = score(&beside, simple.clone())?.size;
-    let shapes = &wide.candidate.shapes;
-    let wide_size = beside.size(shapes, &beside.solve(shapes).x);
-    if simple_size > LARGER * wide_size || !beside.holds(&wide.candidate.shapes, &simple.shapes) {
+    let all = &wide.candidate.shapes;
+    let wide_size = beside.size(all, &beside.solve(all).x);
+    if simple_size > LARGER * wide_size || !beside.holds(all, &simple.shapes) {
         return None;
     }
     let fit = system.fit(found.fit.with_in_place(wide.range(), &simple.shapes));

@@ -83,7 +83,10 @@ impl Dependence<'_> {
     /// What so much of a kind of noise does to a pair, rms in amplitudes.
     fn rms(&self, kind: Kind, amount: f64) -> f64 {
         let weight = &self.context.weight;
-        let power = |k: usize| weight[k] * (self.kind(kind, k).0[0] + self.kind(kind, k).0[1]);
+        let power = |k: usize| {
+            let [radial, tangential, _] = self.kind(kind, k).0;
+            weight[k] * (radial + tangential)
+        };
         let sum: f64 = (0..weight.len()).map(power).sum();
         let total: f64 = weight.iter().sum();
         (amount * sum / total).sqrt()
@@ -182,7 +185,7 @@ struct Seen<'a> {
     pairs: Pairs<'a>,
     /// Mean products of white noise of unit variance in the channels.
     unit: [f64; 3],
-    /// The same, whitened, along the circle.
+    /// What is left along the circle, whitened, in amplitudes.
     tangential: &'a [f64],
     /// Error of the codes, in amplitudes rms.
     coded: f64,
@@ -241,13 +244,12 @@ impl Seen<'_> {
             return None;
         }
         let amount = with.x[BASE + 1] / scale;
-        let coded = self.coded > 0.0;
-        if coded && depends.rms(kind, amount) < self.coded {
+        if depends.rms(kind, amount) < self.coded {
             return None;
         }
         if let Some(why) = self.refusal(own, kind, &with, [gain, inflation], &both) {
             let what = What::Said(why);
-            return (!coded).then_some(Err(Unnamed { log_p, gain, what }));
+            return (self.coded == 0.0).then_some(Err(Unnamed { log_p, gain, what }));
         }
         let error = (variance * inflation).sqrt() / scale;
         let top = depends.context.top_speed();

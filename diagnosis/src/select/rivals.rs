@@ -4,7 +4,7 @@ use crate::causes::Catalogue;
 use crate::causes::candidate::{Candidate, Domain};
 use crate::finding::Cause;
 use crate::model::{Fit, System};
-use crate::numerics::statistics::{after_trials, at_most_of_noise, log_tail};
+use crate::numerics::statistics::{at_most_of_noise, by_chance};
 use crate::select::beside::Beside;
 use crate::select::both;
 use crate::select::score::{CLEAR, RIVALS, Scored};
@@ -112,8 +112,7 @@ fn adds(
 ) -> Option<f64> {
     let (together, rank) = beside.gain(&both(shapes, &cause.shapes));
     let (adds, more) = (together - gain, rank.saturating_sub(freedom));
-    let log_p = || after_trials(log_tail(2.0 * adds, more), cause.trials);
-    (more == 0 || log_p() > least.ln()).then_some(adds)
+    (by_chance(adds, 1.0, more, cause.trials) > least.ln()).then_some(adds)
 }
 
 /// Whether the radius does not show what a cause adds to shapes: where the axis vibrates, that may be what its prediction does

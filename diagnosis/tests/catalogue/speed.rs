@@ -145,17 +145,19 @@ fn a_large_crosstalk_is_not_late_as_well() {
     }
 }
 
+/// The clock jitters by 600 ns.
+pub(crate) const JITTERING: Case = Case {
+    noise: |_, slope, v, n| NOISE * n[0] + slope * v * 6e-7 * n[1],
+    ..PLAIN
+};
+
 /// On an axis that shakes, too, whose noise is higher about its mode: that is no line of the clock.
 #[test]
 fn clock_jitter() {
-    let jitter = Case {
-        noise: |_, slope, v, n| NOISE * n[0] + slope * v * 6e-7 * n[1],
-        ..PLAIN
-    };
-    finds(Cause::ClockJitter, &jitter);
+    finds(Cause::ClockJitter, &JITTERING);
     let shaking = Case {
         motion: |t, _| rumble(t),
-        ..jitter
+        ..JITTERING
     };
     finds(Cause::ClockJitter, &shaking);
 }
