@@ -10,7 +10,7 @@ use std::process::ExitCode;
 use anyhow::{Context, Result, bail};
 use clap::Parser;
 use indicatif::{ProgressBar, ProgressStyle};
-use nonius_blind::{Case, Kind, Score, page, page_of_many, seal, verdict};
+use nonius_blind::{Case, Drive, Kind, Score, page, page_of_many, seal, verdict};
 use rayon::prelude::*;
 
 /// Hides causes in simulated recordings and scores what the diagnosis says.
@@ -29,8 +29,9 @@ struct Arguments {
     /// which every seed stands.
     #[arg(long, value_parser = kind)]
     kind: Option<Kind>,
-    /// Only recordings of this drive: constant, sweeping, reversing or stopandgo; the others are drawn and left out.
-    #[arg(long, value_parser = ["constant", "sweeping", "reversing", "stopandgo"])]
+    /// Only recordings of this drive: constant, sweeping, reversing or stopandgo, the others are drawn and left out; or hand, by which a
+    /// scale is turned over a few periods: then all are.
+    #[arg(long, value_parser = ["constant", "sweeping", "reversing", "stopandgo", "hand"])]
     drive: Option<String>,
     /// Only seeds of which the first cause has this name; may be repeated.
     #[arg(long, value_name = "NAME", value_parser = cause, conflicts_with = "docs")]
@@ -148,7 +149,9 @@ fn hides(seed: u64, arguments: &Arguments) -> bool {
 
 /// One case: sealed, judged, opened, scored; `None` if another drive is wanted.
 fn case(seed: u64, arguments: &Arguments, folder: &Path) -> Result<Option<Score>> {
-    let case = Case::of_kind(arguments.kind_of(seed), seed, arguments.samples)?;
+    let by_hand = arguments.drive.as_deref() == Some("hand");
+    let drive = by_hand.then_some(Drive::Hand);
+    let case = Case::of_kind(arguments.kind_of(seed), drive, seed, arguments.samples)?;
     let wanted = arguments.drive.as_ref();
     let first = case.truth.hidden.first();
     let weak = |below: f64| first.is_some_and(|hidden| hidden.snr < below);

@@ -81,20 +81,28 @@ impl Case {
     /// # Errors
     /// Where no experiment shows the cause as asked.
     pub fn draw(seed: u64, samples: usize) -> Result<Self, Unreachable> {
-        Self::of_kind(Kind::of_seed(seed), seed, samples)
+        Self::of_kind(Kind::of_seed(seed), None, seed, samples)
     }
 
-    /// The same where the seed stands for this kind: for [`Kind::Many`] any can, and none does by itself.
+    /// The same where the seed stands for this kind: for [`Kind::Many`] any can, and none does by itself. The axis is driven this way, or any
+    /// way but by hand.
     ///
     /// # Errors
     /// Where no experiment shows the causes as asked.
-    pub fn of_kind(kind: Kind, seed: u64, samples: usize) -> Result<Self, Unreachable> {
+    pub fn of_kind(
+        kind: Kind,
+        drive: Option<Drive>,
+        seed: u64,
+        samples: usize,
+    ) -> Result<Self, Unreachable> {
         let mut random = source(seed);
         let (choices, mut snrs) = plan(seed, kind, &mut random);
         for _ in 0..HALVINGS {
             for _ in 0..ATTEMPTS {
                 let mut random = StdRng::seed_from_u64(random.random());
-                if let Some(case) = attempted(seed, kind, samples, &choices, &snrs, &mut random) {
+                let mut wish = wish(&choices, samples, &mut random);
+                wish.drive = drive.unwrap_or(wish.drive);
+                if let Some(case) = attempted((seed, kind), &wish, &choices, &snrs, &mut random) {
                     return Ok(case);
                 }
             }
@@ -218,15 +226,13 @@ fn wish(choices: &[Choice], samples: usize, random: &mut StdRng) -> Wish {
 }
 
 fn attempted(
-    seed: u64,
-    kind: Kind,
-    samples: usize,
+    (seed, kind): (u64, Kind),
+    wish: &Wish,
     choices: &[Choice],
     snrs: &[f64],
     random: &mut StdRng,
 ) -> Option<Case> {
-    let wish = wish(choices, samples, random);
-    let world = World::draw(random, &wish);
+    let world = World::draw(random, wish);
     let noise_seed = random.random();
     let mut effects = vec![];
     let mut truths = vec![];
@@ -279,7 +285,7 @@ fn attempted(
         seed,
         kind,
         hidden: truths,
-        samples,
+        samples: wish.samples,
         drive: format!("{:?}", wish.drive).to_lowercase(),
         vibration_rad: world.vibration.as_ref().map(|v| v.rms),
         reference: wish.reference,

@@ -17,6 +17,8 @@ pub enum Drive {
     Reversing,
     /// Jerk-limited moves between standstills.
     StopAndGo,
+    /// Turned by hand: moves to and fro over a few periods, with little rests. Drawn only where it is asked for.
+    Hand,
 }
 
 /// The axis at one time, before vibration.
@@ -105,6 +107,19 @@ impl Motion {
                 });
                 Parts::Moves(moves.collect())
             }
+            Drive::Hand => {
+                let count = random.random_range(2..=6);
+                let slot = seconds / f64::from(count);
+                let moves = (0..count).map(|k| {
+                    let takes = slot * random.random_range(0.6..0.95);
+                    let begins = slot * (f64::from(k) + random.random_range(0.0..0.05));
+                    let periods = random.random_range(0.3..2.5);
+                    let far = (TAU * periods).min(fastest * takes * 8.0 / 15.0);
+                    let sign = if random.random_bool(0.6) { way } else { -way };
+                    Move(begins, takes, sign * far)
+                });
+                Parts::Moves(moves.collect())
+            }
         };
         Self {
             drive,
@@ -166,6 +181,7 @@ mod tests {
             Drive::Sweeping,
             Drive::Reversing,
             Drive::StopAndGo,
+            Drive::Hand,
         ] {
             let motion = Motion::draw(&mut random, drive, 0.4, 5000.0);
             for k in 1..40 {

@@ -12,10 +12,15 @@ pub fn page(scores: &[Score]) -> String {
     let mut text = String::new();
     let all = Summary::new(scores.iter());
     let reversing = Summary::new(scores.iter().filter(|s| s.truth.drive == "reversing"));
-    let mut columns = vec![("reversing", &reversing)];
-    if reversing.scores.len() < all.scores.len() {
-        columns.insert(0, ("all drives", &all));
-    }
+    let first = all
+        .scores
+        .first()
+        .map_or("reversing", |s| s.truth.drive.as_str());
+    let columns = if all.scores.iter().all(|s| s.truth.drive == first) {
+        vec![(first, &all)]
+    } else {
+        vec![("all drives", &all), ("reversing", &reversing)]
+    };
     let mut row = |what: &str, target: &str, cell: &dyn Fn(&(&str, &Summary)) -> String| {
         let cells: Vec<String> = columns.iter().map(cell).collect();
         let _ = writeln!(text, "| {what} | {target} | {} |", cells.join(" | "));

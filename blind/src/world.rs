@@ -88,7 +88,12 @@ pub struct World {
 impl World {
     /// Draws an experiment.
     pub fn draw(random: &mut impl Rng, wish: &Wish) -> Self {
-        let rate = [2e4, 5e4, 1e5][random.random_range(0..3)];
+        // A hand takes seconds for what a drive does in parts of one.
+        let rates = match wish.drive {
+            Drive::Hand => [2e3, 5e3, 1e4],
+            _ => [2e4, 5e4, 1e5],
+        };
+        let rate = rates[random.random_range(0..3)];
         let seconds = wish.samples as f64 / rate;
         let fastest = TAU * rate * random.random_range(0.006..0.03);
         let motion = Motion::draw(random, wish.drive, seconds, fastest);

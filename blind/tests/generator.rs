@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use nonius_blind::{Case, Kind, Truth, names, seal, stranger_names};
+use nonius_blind::{Case, Drive, Kind, Truth, names, seal, stranger_names};
 use rayon::prelude::*;
 
 const SAMPLES: usize = 5000;
@@ -131,4 +131,21 @@ fn the_reference_shows_the_axis() {
         }
     }
     assert_eq!(shown.len(), 4);
+}
+
+/// A hand goes a few periods; any other case of the seed is not driven by one.
+#[test]
+fn a_scale_is_turned_by_hand_over_a_few_periods() {
+    for seed in [0, 3, 7] {
+        let kind = Kind::of_seed(seed);
+        let case = Case::of_kind(kind, Some(Drive::Hand), seed, SAMPLES);
+        let case = case.expect("a case can be drawn");
+        assert_eq!(case.truth.drive, "hand");
+        let alpha = case.rows.alpha.iter();
+        let (least, most) = alpha.fold((f64::MAX, f64::MIN), |(l, m), a| (l.min(*a), m.max(*a)));
+        let periods = (most - least) / std::f64::consts::TAU;
+        assert!((0.2..15.0).contains(&periods), "{seed}: {periods} periods");
+        let driven = Case::draw(seed, SAMPLES).expect("a case can be drawn");
+        assert_ne!(driven.truth.drive, "hand");
+    }
 }
