@@ -2,6 +2,7 @@
 //!
 //! The long one, with its table: `cargo run --release -p nonius-blind --example campaign -- --help`.
 
+mod by_hand;
 mod independent;
 mod kept;
 mod regressions;

@@ -116,13 +116,14 @@ fn waves(order: usize) -> Adds {
 }
 
 /// Whether amounts of a second harmonic, of cosine and sine in either channel, are those of a circle that is drawn twice a period. Beside
-/// offsets that is a motion of the axis once a period, and no sensor draws a large one: its channels have harmonics of their own.
-pub(crate) fn is_a_circle(candidate: &Candidate, x: &[f64]) -> bool {
+/// offsets that is a motion of the axis once a period, and no sensor draws a large one: its channels have harmonics of their own. Where the
+/// axis vibrates, a third harmonic may be one, too: beside other gains and phase, a motion twice a period.
+pub(crate) fn is_a_circle(candidate: &Candidate, x: &[f64], vibrates: bool) -> bool {
     /// In amplitudes: what is smaller moves no position far.
     const LARGE: f64 = 0.02;
     /// So many times as large as the circle that is drawn the other way, which the radius sees.
     const TIMES: f64 = 10.0;
-    if candidate.order != Some(2) {
+    if candidate.order != Some(2) && !(vibrates && candidate.order == Some(3)) {
         return false;
     }
     let turns = (x[0] + x[3]).hypot(x[2] - x[1]) / 2.0;

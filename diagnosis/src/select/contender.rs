@@ -11,7 +11,7 @@ use crate::model::{Fit, Residual, System};
 use crate::select::beside::Beside;
 use crate::select::examined::{Examined, Nameless};
 use crate::select::locked;
-use crate::select::rivals::INEXACT;
+use crate::select::rivals::{self, INEXACT};
 use crate::select::score::{CLEAR, ITSELF, RIVALS, Scored, score};
 use crate::select::selection::Accepted;
 use crate::select::{astray, both};
@@ -34,13 +34,14 @@ pub(crate) enum Contender {
     Unnamed(Nameless),
 }
 
-/// The best cause that holds; one that explains nearly as much may hold where the first does not. `left` is what the fit leaves.
+/// The best cause that holds; one that explains nearly as much may hold where the first does not. `left` is what the fit leaves;
+/// `only_rivals` are not named themselves, but may be what another cannot be told from.
 pub(crate) fn contender(
     system: &mut System,
     catalogue: &Catalogue,
     fit: &Fit,
     left: &Residual,
-    mut scored: Vec<Scored>,
+    (mut scored, only_rivals): (Vec<Scored>, &[Scored]),
 ) -> Contender {
     order(system, fit, &mut scored);
     let most = scored[0].gain;
@@ -69,7 +70,8 @@ pub(crate) fn contender(
         }
         tried.push(one);
         let rest: Vec<&Scored> = scored[..i].iter().chain(&scored[i + 1..]).collect();
-        let examined = Examined::of(system, catalogue, fit, left, (best, &rest));
+        let alike: Vec<&Scored> = rest.iter().copied().chain(only_rivals).collect();
+        let examined = Examined::of(system, catalogue, fit, left, (best, &rest, &alike));
         if examined.steps.is_some() {
             stepped.get_or_insert(i);
         }
@@ -111,6 +113,7 @@ fn order(system: &mut System, fit: &Fit, scored: &mut Vec<Scored>) {
     let near = NEARLY * scored.first().map_or(0.0, |best| best.gain);
     courses::join(system, fit, scored, near);
     fewer_first(scored);
+    bends_first(system, fit, scored);
 }
 
 /// Whether a cause is a drift, or what a drift is taken for: one of those that explain nearly as much (`nearly`) says it.
@@ -168,6 +171,21 @@ fn fewer_first(scored: &mut [Scored]) {
     };
     let others = (0..scored.len()).filter(|i| other(&scored[*i]));
     if let Some(at) = others.min_by_key(|i| scored[*i].freedom) {
+        scored[..=at].rotate_right(1);
+    }
+}
+
+/// Where the axis vibrates, what that does along the circle is in every shape that stands there, and prefers a harmonic to the bend that
+/// does the same to the radius with fewer numbers: that goes first.
+fn bends_first(system: &System, fit: &Fit, scored: &mut [Scored]) {
+    let Some(best) = scored.first().filter(|s| s.candidate.order.is_some()) else {
+        return;
+    };
+    let is_bend = |name| matches!(name, Cause::EvenNonlinearity | Cause::OddNonlinearity);
+    let fewer = |s: &Scored| is_bend(s.candidate.name) && s.freedom < best.freedom;
+    let as_much = |s: &Scored| rivals::as_much_of_the_radius(system, fit, best, s);
+    let bends = (0..scored.len()).filter(|i| fewer(&scored[*i]) && as_much(&scored[*i]));
+    if let Some(at) = bends.max_by(|a, b| scored[*a].gain.total_cmp(&scored[*b].gain)) {
         scored[..=at].rotate_right(1);
     }
 }

@@ -67,13 +67,14 @@ pub(crate) struct Examined {
 }
 
 impl Examined {
-    /// Examines a cause; `rest` are the others that explain something, `left` is what the fit leaves.
+    /// Examines a cause; `rest` are the others that explain something, `alike` are those and what it may be that is not named itself; `left`
+    /// is what the fit leaves.
     pub(crate) fn of(
         system: &mut System,
         catalogue: &Catalogue,
         fit: &Fit,
         left: &Residual,
-        (best, rest): (&Scored, &[&Scored]),
+        (best, rest, alike): (&Scored, &[&Scored], &[&Scored]),
     ) -> Self {
         let mut cause = Accepted::new(best.candidate.clone());
         tuned(system, &fit.shapes, &mut cause, best.gain);
@@ -99,10 +100,10 @@ impl Examined {
         }
         let listed = |name: &Cause| name.is_listed();
         let richer = rivals::richer(&beside, &own, rest).filter(listed);
-        let wider = rivals::wider(&beside, &own, rest).filter(listed);
+        let wider = rivals::wider(&beside, &own, alike).filter(listed);
         let clear = own.gain > CLEAR && system.context.against_reference.is_none();
-        let other_order = rivals::other_order(&beside, (&own, clear), rest);
-        let hidden = clear && rivals::opposite(&own, rest);
+        let other_order = rivals::other_order((system, fit), &beside, (&own, clear), alike);
+        let hidden = clear && rivals::opposite(&own, alike);
         let mark = system.samples.library.atoms.len();
         let held = holds(system, catalogue, fit, &own, rest);
         let steps = match own.candidate.domain {

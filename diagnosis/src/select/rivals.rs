@@ -40,7 +40,8 @@ pub(crate) fn among(
         }
         let own = (other.gain, other.freedom);
         let shapes = &other.candidate.shapes;
-        let as_much = best.gain - other.gain < BEATEN;
+        let of_radius = || as_much_of_the_radius(system, fit, best, other);
+        let as_much = best.gain - other.gain < BEATEN || of_radius();
         let least = if as_much && best.gain > CLEAR {
             HARDLY_NEW
         } else {
@@ -66,10 +67,14 @@ pub(crate) fn among(
 /// Share of the gain that tangents of what is large are off by.
 pub(crate) const INEXACT: f64 = 0.01;
 
+/// Share of the gain that vibration may have in it, where what explains less does as much to the radius.
+const VIBRATION: f64 = 0.15;
+
 /// The order of the scale period that a harmonic may have as well. Of order n, turning backwards, it does to the radius what one of order
 /// n + 2 does that turns forwards: along the circle they are opposite, and the motion may hide that. Of a `clear` one without a reference the
 /// tangents are not as exact as what it explains, and what they prefer is no proof.
 pub(crate) fn other_order(
+    (system, fit): (&System, &Fit),
     beside: &Beside,
     (best, clear): (&Scored, bool),
     others: &[&Scored],
@@ -82,7 +87,9 @@ pub(crate) fn other_order(
         let adds_nothing =
             || adds(beside, own, &other.candidate.shapes, known, NOTHING_NEW).is_some();
         other.candidate.order.is_some()
-            && (less < BEATEN && adds_nothing() || clear && less < INEXACT * best.gain)
+            && (less < BEATEN && adds_nothing()
+                || clear && less < INEXACT * best.gain
+                || as_much_of_the_radius(system, fit, best, other))
     });
     let nearest = alike.max_by(|a, b| a.gain.total_cmp(&b.gain))?;
     nearest.candidate.order
@@ -113,6 +120,24 @@ fn adds(
     let (together, rank) = beside.gain(&both(shapes, &cause.shapes));
     let (adds, more) = (together - gain, rank.saturating_sub(freedom));
     (by_chance(adds, 1.0, more, cause.trials) > least.ln()).then_some(adds)
+}
+
+/// Whether the axis vibrates and another bend or harmonic explains nearly as much as the best, and of the radius no less: what either does along
+/// the circle is where the vibration is.
+pub(crate) fn as_much_of_the_radius(
+    system: &System,
+    fit: &Fit,
+    best: &Scored,
+    other: &Scored,
+) -> bool {
+    let waves = |s: &Scored| s.candidate.domain == Domain::Angle && s.candidate.adds.is_some();
+    let nearly = other.gain > (1.0 - VIBRATION) * best.gain;
+    if !(system.vibrates() && waves(best) && waves(other) && nearly) {
+        return false;
+    }
+    let beside = Beside::new(&system.total, &system.sure(&fit.shapes));
+    let of_radius = |s: &Scored| beside.gain(&system.sure(&s.candidate.shapes)).0;
+    of_radius(best) - of_radius(other) < BEATEN
 }
 
 /// Whether the radius does not show what a cause adds to shapes: where the axis vibrates, that may be what its prediction does

@@ -111,8 +111,9 @@ pub(crate) fn score(beside: &Beside, candidate: Candidate) -> Option<Scored> {
 
 /// Drops causes that cannot be so large. Where little of it is seen, as of a delay at a speed that hardly changes, the rest would
 /// have to be made up for by opposite errors of offset, gain and phase. Not so of a high pass: it turns and shrinks both
-/// channels alike, which nobody sees.
-pub(crate) fn retain_likely(system: &System, list: &mut Vec<Scored>) {
+/// channels alike, which nobody sees. Returns harmonics of the scale period among them: of those the motion may hide a half, which the fit
+/// makes of any size, and another may be the half that is seen.
+pub(crate) fn retain_likely(system: &System, list: &mut Vec<Scored>) -> Vec<Scored> {
     let samples: f64 = system.context.weight.iter().sum();
     let large = LARGEST * (2.0 * samples).sqrt() / system.noise();
     let kept = list.iter().filter(|s| is_likely(s, large));
@@ -120,7 +121,12 @@ pub(crate) fn retain_likely(system: &System, list: &mut Vec<Scored>) {
     // One that is hardly smaller has no more right to be than they have.
     let gain = best.filter(|s| !is_likely(s, NEARLY * large));
     let gain = gain.map(|s| s.gain);
-    list.retain(|s| is_likely(s, large) || gain.is_some_and(|gain| s.gain > RIVALS * gain));
+    let likely =
+        |s: &Scored| is_likely(s, large) || gain.is_some_and(|gain| s.gain > RIVALS * gain);
+    let (kept, mut dropped) = std::mem::take(list).into_iter().partition(likely);
+    *list = kept;
+    dropped.retain(|s| s.candidate.order.is_some());
+    dropped
 }
 
 /// The same for one that is large from a size on.

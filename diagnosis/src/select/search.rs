@@ -45,8 +45,8 @@ const FAINT: f64 = 300.0;
 struct Closed {
     domains: Vec<Domain>,
     names: Vec<Cause>,
-    /// Second harmonics, one of which is a circle.
-    second_order: bool,
+    /// Orders of which a harmonic would be a circle: it is no cause, but what is seen of it may look like another.
+    circles: Vec<usize>,
 }
 
 impl Closed {
@@ -55,7 +55,7 @@ impl Closed {
         let mut closed = Self {
             domains: vec![],
             names: vec![],
-            second_order: false,
+            circles: vec![],
         };
         if system.flicker.is_some() {
             closed.close_slow();
@@ -73,9 +73,13 @@ impl Closed {
     fn admits(&self, candidate: &Candidate, accepted: &[Accepted]) -> bool {
         let one = |c: &Candidate| c.name == candidate.name;
         let again = || ONCE.contains(&candidate.name) && accepted.iter().any(|a| one(&a.candidate));
-        let circle = self.second_order && candidate.order == Some(2);
         let closed = self.domains.contains(&candidate.domain);
-        !(closed || circle || self.names.contains(&candidate.name) || again())
+        !(closed || self.names.contains(&candidate.name) || again())
+    }
+
+    /// Whether a cause is looked for only as another that what is accepted may be.
+    fn is_a_circle(&self, candidate: &Candidate) -> bool {
+        candidate.order.is_some_and(|n| self.circles.contains(&n))
     }
 }
 
@@ -96,7 +100,7 @@ pub(super) fn search(
     let partial = system.every() > 1;
     while found.accepted.len() + found.unnamed.len() < MOST {
         let residual = system.residual(&found.fit);
-        let scored = candidates(system, catalogue, &found, &closed, &residual);
+        let (scored, only_rivals) = candidates(system, catalogue, &found, &closed, &residual);
         if scored.first().is_none_or(|best| best.log_p > SHOWN.ln()) {
             // Weak noise that is slow explains more than any slow change, where no such change is to be seen.
             let known = !found.unnamed.is_empty() || closed.domains.contains(&Domain::Time);
@@ -114,7 +118,8 @@ pub(super) fn search(
         if most < BEYOND_UNKNOWN * unknown || partial && most < CLEAR {
             break;
         }
-        match contender(system, catalogue, &found.fit, &residual, scored) {
+        let all = (scored, &only_rivals[..]);
+        match contender(system, catalogue, &found.fit, &residual, all) {
             Contender::Unnamed(_) if partial => break,
             Contender::Unnamed(one) => {
                 leave_unnamed(system, catalogue, &mut found, &mut closed, &residual, one);
@@ -148,14 +153,14 @@ pub(super) fn search(
     found
 }
 
-/// Every cause that is open and explains something, the likeliest first.
+/// Every cause that is open and explains something, the likeliest first; and harmonics that cannot be what they seem, but that another may be.
 fn candidates(
     system: &mut System,
     catalogue: &Catalogue,
     found: &Selection,
     closed: &Closed,
     residual: &Residual,
-) -> Vec<Scored> {
+) -> (Vec<Scored>, Vec<Scored>) {
     let (fixed, fit) = (catalogue.atoms, &found.fit);
     let open = |c: &Candidate| closed.admits(c, &found.accepted);
     let (context, coloured) = (system.context, system.flicker.is_some());
@@ -163,17 +168,19 @@ fn candidates(
     shown.retain(open);
     let beside = Beside::all_that_moves(system, &fit.shapes);
     let known = catalogue.candidates.iter().filter(|c| open(c));
-    let mut scored: Vec<Scored> = known.filter_map(|c| score(&beside, c.clone())).collect();
+    let (mut only_rivals, mut scored): (Vec<Scored>, Vec<Scored>) = known
+        .filter_map(|c| score(&beside, c.clone()))
+        .partition(|s| closed.is_a_circle(&s.candidate));
     let most = scored.iter().map(|s| s.gain).fold(0.0, f64::max);
     let worth = worth(system, fit, shown, most);
     scored.extend(take_in(system, fixed, fit, worth));
-    retain_likely(system, &mut scored);
+    only_rivals.extend(retain_likely(system, &mut scored));
     scored.sort_by(|a, b| a.log_p.total_cmp(&b.log_p));
     scored = with_weighed(system, fixed, fit, residual, open, scored);
     if system.every() == 1 {
         scored = beyond_uneven_noise(system, fit, scored);
     }
-    scored
+    (scored, only_rivals)
 }
 
 /// Where a line or motion is the best that was found, or nothing was: what stands out of the noise as it is weighed may
@@ -254,8 +261,9 @@ fn accept(
     let halves = system.halves(&shapes);
     let fit = system.fit(shapes);
     let amounts = &fit.solution.x[cause.first..];
-    if system.context.against_reference.is_none() && is_a_circle(&cause.candidate, amounts) {
-        closed.second_order = true;
+    let circle = || is_a_circle(&cause.candidate, amounts, system.vibrates());
+    if system.context.against_reference.is_none() && circle() {
+        closed.circles.extend(cause.candidate.order);
         return;
     }
     let slow = cause.candidate.domain == Domain::Time;

@@ -48,7 +48,7 @@ pub(crate) fn decided_anew(
     }
     let left = system.residual(&found.fit);
     let Contender::Named(mut cause, rivals) =
-        contender(&mut system, &catalogue, &found.fit, &left, scored)
+        contender(&mut system, &catalogue, &found.fit, &left, (scored, &[]))
     else {
         return None;
     };
