@@ -1,6 +1,7 @@
 //! How the axis is driven: smooth motion, known at every time.
 
 use std::f64::consts::TAU;
+use std::ops::Range;
 
 use rand::Rng;
 use serde::Serialize;
@@ -95,30 +96,16 @@ impl Motion {
                 )
             }
             Drive::StopAndGo => {
-                let count = random.random_range(3..=6);
-                let slot = seconds / f64::from(count);
-                let moves = (0..count).map(|k| {
-                    let takes = slot * random.random_range(0.5..0.85);
-                    let begins = slot * (f64::from(k) + random.random_range(0.02..0.14));
-                    // The fastest point of the quintic is 15/8 of the mean speed.
-                    let peak = fastest * random.random_range(0.3..1.0);
-                    let sign = if random.random_bool(0.6) { way } else { -way };
-                    Move(begins, takes, sign * peak * takes * 8.0 / 15.0)
-                });
-                Parts::Moves(moves.collect())
+                let slots = (seconds, random.random_range(3..=6));
+                moves(random, slots, (0.5..0.85, 0.02..0.14), |random, takes| {
+                    way * reach(fastest * random.random_range(0.3..1.0), takes)
+                })
             }
             Drive::Hand => {
-                let count = random.random_range(2..=6);
-                let slot = seconds / f64::from(count);
-                let moves = (0..count).map(|k| {
-                    let takes = slot * random.random_range(0.6..0.95);
-                    let begins = slot * (f64::from(k) + random.random_range(0.0..0.05));
-                    let periods = random.random_range(0.3..2.5);
-                    let far = (TAU * periods).min(fastest * takes * 8.0 / 15.0);
-                    let sign = if random.random_bool(0.6) { way } else { -way };
-                    Move(begins, takes, sign * far)
-                });
-                Parts::Moves(moves.collect())
+                let slots = (seconds, random.random_range(2..=6));
+                moves(random, slots, (0.6..0.95, 0.0..0.05), |random, takes| {
+                    way * (TAU * random.random_range(0.3..2.5)).min(reach(fastest, takes))
+                })
             }
         };
         Self {
@@ -166,6 +153,31 @@ impl Motion {
         }
         state
     }
+}
+
+/// How far a move goes, radians, whose fastest point has this speed, rad/s, and that takes so long, s: that point of the quintic is 15/8 of
+/// the mean speed.
+fn reach(peak: f64, takes: f64) -> f64 {
+    peak * takes * 8.0 / 15.0
+}
+
+/// Moves in as many slots of so many seconds together, each of which takes a share of its slot and begins after another; how far it goes
+/// forwards, radians, follows from how long it takes.
+fn moves<R: Rng>(
+    random: &mut R,
+    (seconds, count): (f64, u32),
+    (takes, begins): (Range<f64>, Range<f64>),
+    far: impl Fn(&mut R, f64) -> f64,
+) -> Parts {
+    let slot = seconds / f64::from(count);
+    let moves = (0..count).map(|k| {
+        let takes = slot * random.random_range(takes.clone());
+        let begins = slot * (f64::from(k) + random.random_range(begins.clone()));
+        let far = far(random, takes);
+        let forwards = random.random_bool(0.6);
+        Move(begins, takes, if forwards { far } else { -far })
+    });
+    Parts::Moves(moves.collect())
 }
 
 #[cfg(test)]

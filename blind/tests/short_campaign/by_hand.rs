@@ -1,15 +1,15 @@
 //! Scales that are turned by hand over a few periods. The hand trembles, and what it does along the circle must not decide which error the
 //! radius shows.
 
-use nonius_blind::{Case, Drive, Kind, Outcome, Score, verdict};
+use nonius_blind::{Case, Drive, Kind, Outcome, Score};
 use rayon::prelude::*;
+
+use crate::regressions::scored_as;
 
 /// How the case of a seed scores where the scale is turned by hand.
 fn scored(seed: u64) -> Score {
     let case = Case::of_kind(Kind::of_seed(seed), Some(Drive::Hand), seed, 20_000);
-    let case = case.expect("a case can be drawn");
-    let verdict = verdict(&case.csv()).unwrap_or_else(|why| panic!("{seed}: {why}"));
-    Score::of(case.truth.clone(), &case, &verdict)
+    scored_as(&case.expect("a case can be drawn"))
 }
 
 /// Cases that had the name of a harmonic of another order, which what is real motion along the circle preferred: a bend has its own

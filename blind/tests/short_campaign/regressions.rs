@@ -7,8 +7,19 @@ use rayon::prelude::*;
 /// The case of a seed, and what the diagnosis says of it.
 fn answered(seed: u64) -> (Case, Verdict) {
     let case = Case::draw(seed, 20_000).expect("a case can be drawn");
-    let verdict = verdict(&case.csv()).unwrap_or_else(|why| panic!("{seed}: {why}"));
+    let verdict = judged(&case);
     (case, verdict)
+}
+
+/// What the diagnosis says of a case.
+fn judged(case: &Case) -> Verdict {
+    let seed = case.truth.seed;
+    verdict(&case.csv()).unwrap_or_else(|why| panic!("{seed}: {why}"))
+}
+
+/// How that scores.
+pub(crate) fn scored_as(case: &Case) -> Score {
+    Score::of(case.truth.clone(), case, &judged(case))
 }
 
 /// What the diagnosis says of the case of a seed.
@@ -18,8 +29,7 @@ fn asked(seed: u64) -> Verdict {
 
 /// How that scores.
 fn scored(seed: u64) -> Score {
-    let (case, verdict) = answered(seed);
-    Score::of(case.truth.clone(), &case, &verdict)
+    scored_as(&Case::draw(seed, 20_000).expect("a case can be drawn"))
 }
 
 /// How the case of a seed scores, all that it hides told by one of these outcomes.
@@ -28,6 +38,13 @@ fn told(seed: u64, told: fn(&Outcome) -> bool) -> Score {
     let outcomes = &score.outcomes;
     assert!(outcomes.iter().all(told), "{seed}: {outcomes:?}");
     score
+}
+
+/// The same of several cases, which have no name that is wrong.
+fn all_told(seeds: impl IntoParallelIterator<Item = u64>, outcomes: fn(&Outcome) -> bool) {
+    seeds
+        .into_par_iter()
+        .for_each(|seed| none_wrong(seed, &told(seed, outcomes)));
 }
 
 /// All that the case of a seed hides has its name.
@@ -265,9 +282,8 @@ fn what_looks_like_a_third_is_found() {
         155_001_102,
         155_001_322,
     ];
-    seeds.into_par_iter().for_each(|seed| {
-        let found = |o: &Outcome| matches!(o, Outcome::First | Outcome::Later | Outcome::Group);
-        none_wrong(seed, &told(seed, found));
+    all_told(seeds, |o| {
+        matches!(o, Outcome::First | Outcome::Later | Outcome::Group)
     });
 }
 
@@ -287,22 +303,15 @@ fn what_is_large_is_found_as_it_is() {
         174_000_672,
         174_003_741,
     ];
-    seeds.into_par_iter().for_each(|seed| {
-        let found = |o: &Outcome| matches!(o, Outcome::First | Outcome::Group);
-        none_wrong(seed, &told(seed, found));
-    });
+    all_told(seeds, |o| matches!(o, Outcome::First | Outcome::Group));
 }
 
 /// Neither a delay nor a low pass follows an axis that shakes, and what is left of that along the circle preferred the delay where the radius
 /// says low pass: then both are named.
 #[test]
 fn a_low_pass_of_a_shaking_axis_is_not_told_from_a_delay_by_the_circle_alone() {
-    [157_000_887, 159_001_472, 163_007_118]
-        .into_par_iter()
-        .for_each(|seed| {
-            let found = |o: &Outcome| matches!(o, Outcome::First | Outcome::Group);
-            none_wrong(seed, &told(seed, found));
-        });
+    let seeds = [157_000_887, 159_001_472, 163_007_118];
+    all_told(seeds, |o| matches!(o, Outcome::First | Outcome::Group));
 }
 
 /// A drift that is named twice, by its ends and by how it went, is one that each of the two explains without the other: one of them stays.
@@ -329,8 +338,7 @@ fn what_another_cause_looks_like_has_no_name_of_its_own() {
         186_001_653,
         186_004_036,
     ];
-    seeds.into_par_iter().for_each(|seed| {
-        let found = |o: &Outcome| matches!(o, Outcome::First | Outcome::Later | Outcome::Group);
-        none_wrong(seed, &told(seed, found));
+    all_told(seeds, |o| {
+        matches!(o, Outcome::First | Outcome::Later | Outcome::Group)
     });
 }

@@ -29,11 +29,7 @@ pub(super) fn may_be_the_converters(found: &mut Selection) {
     }
     let alone = |one: &Accepted| one.confounded.iter().all(|r| *r == Cause::SpatialHarmonic);
     for one in others {
-        let bend = matches!(
-            one.candidate.name,
-            Cause::EvenNonlinearity | Cause::OddNonlinearity
-        );
-        if bend && alone(one) {
+        if one.candidate.name.is_a_bend() && alone(one) {
             one.confounded = vec![converter];
         }
     }

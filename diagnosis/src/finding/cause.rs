@@ -100,6 +100,11 @@ impl Cause {
         matches!(self, Self::StuckBit | Self::CoarseQuantisation)
     }
 
+    /// A curve that a channel has instead of a straight line.
+    pub(crate) fn is_a_bend(self) -> bool {
+        matches!(self, Self::EvenNonlinearity | Self::OddNonlinearity)
+    }
+
     /// A drift of the offsets or of the gains: slow, as noise may be.
     pub(crate) fn is_drift(self) -> bool {
         matches!(self, Self::OffsetDrift | Self::GainDrift)

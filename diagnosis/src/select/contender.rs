@@ -181,8 +181,7 @@ fn bends_first(system: &System, fit: &Fit, scored: &mut [Scored]) {
     let Some(best) = scored.first().filter(|s| s.candidate.order.is_some()) else {
         return;
     };
-    let is_bend = |name| matches!(name, Cause::EvenNonlinearity | Cause::OddNonlinearity);
-    let fewer = |s: &Scored| is_bend(s.candidate.name) && s.freedom < best.freedom;
+    let fewer = |s: &Scored| s.candidate.name.is_a_bend() && s.freedom < best.freedom;
     let as_much = |s: &Scored| rivals::as_much_of_the_radius(system, fit, best, s);
     let bends = (0..scored.len()).filter(|i| fewer(&scored[*i]) && as_much(&scored[*i]));
     if let Some(at) = bends.max_by(|a, b| scored[*a].gain.total_cmp(&scored[*b].gain)) {

@@ -130,7 +130,7 @@ pub(crate) fn as_much_of_the_radius(
     best: &Scored,
     other: &Scored,
 ) -> bool {
-    let waves = |s: &Scored| s.candidate.domain == Domain::Angle && s.candidate.adds.is_some();
+    let waves = |s: &Scored| s.candidate.adds.is_some();
     let nearly = other.gain > (1.0 - VIBRATION) * best.gain;
     if !(system.vibrates() && waves(best) && waves(other) && nearly) {
         return false;

@@ -78,7 +78,7 @@ impl Closed {
     }
 
     /// Whether a cause is looked for only as another that what is accepted may be.
-    fn is_a_circle(&self, candidate: &Candidate) -> bool {
+    fn is_only_a_rival(&self, candidate: &Candidate) -> bool {
         candidate.order.is_some_and(|n| self.circles.contains(&n))
     }
 }
@@ -170,7 +170,7 @@ fn candidates(
     let known = catalogue.candidates.iter().filter(|c| open(c));
     let (mut only_rivals, mut scored): (Vec<Scored>, Vec<Scored>) = known
         .filter_map(|c| score(&beside, c.clone()))
-        .partition(|s| closed.is_a_circle(&s.candidate));
+        .partition(|s| closed.is_only_a_rival(&s.candidate));
     let most = scored.iter().map(|s| s.gain).fold(0.0, f64::max);
     let worth = worth(system, fit, shown, most);
     scored.extend(take_in(system, fixed, fit, worth));
