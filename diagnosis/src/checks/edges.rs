@@ -3,7 +3,7 @@
 
 use nonius_recording::Recording;
 
-use crate::checks::glitches::{FAR, floors};
+use crate::checks::glitches::{far_among, floors};
 use crate::checks::ninth;
 
 /// Samples at either end that are looked at.
@@ -44,7 +44,7 @@ pub(crate) fn edges(recording: &Recording) -> Edges {
         let off = inside.clone().map(|k| off(values, k, |j| k + j).abs());
         off.collect()
     });
-    let floors = floors(recording);
+    let (floors, limit) = (floors(recording), far_among(n));
     for end in [0, n - 1] {
         let limits = [0, 1].map(|which: usize| {
             let sizes = &sizes[which];
@@ -53,7 +53,7 @@ pub(crate) fn edges(recording: &Recording) -> Edges {
             } else {
                 &sizes[sizes.len().saturating_sub(AROUND)..]
             };
-            (FAR * ninth(sizes).max(ninth(near))).max(floors[which])
+            (limit * ninth(sizes).max(ninth(near))).max(floors[which])
         });
         // How much the noise of what stands in the place of wrong samples has grown, and how far off the last of them was.
         let (mut grown, mut last) = (1.0, None);

@@ -2,6 +2,7 @@
 
 use nonius_quantity::{agree, counted};
 use nonius_recording::Recording;
+use statrs::distribution::{ContinuousCDF, Normal};
 
 use crate::checks::edges::{Edges, edges};
 use crate::checks::sides::{column, powers};
@@ -18,14 +19,22 @@ use crate::numerics::solve::{weights_of, without};
 const REACH: usize = 3;
 /// The same of a longer curve.
 const MORE: usize = 10;
-/// So many times the ninth decile is far off: six standard deviations of Gaussian noise, which not one sample in 10⁸ is.
-pub(crate) const FAR: f64 = 3.65;
+/// How often noise may have a sample that is far off, by recordings.
+const FAR_BY_CHANCE: f64 = 1e-5;
 /// Ranges of values in each of which noise may have a size of its own.
 const RANGES: usize = 16;
 /// Samples on either side that tell how large the noise is just there.
 const AROUND: usize = 100;
 /// So many times larger the ninth decile of so few may be by chance: two standard deviations.
 const BY_CHANCE: f64 = 1.2;
+
+/// So many times the ninth decile of Gaussian noise is far off among so many samples of two channels: 6.3 standard deviations of
+/// 20 000, 6.9 of a million.
+pub(crate) fn far_among(samples: usize) -> f64 {
+    let normal = Normal::standard();
+    let either_side = |p: f64| normal.inverse_cdf(p / 2.0);
+    either_side(FAR_BY_CHANCE / (2 * samples.max(1)) as f64) / either_side(0.1)
+}
 
 /// How far a sample is off the fifth-order curve through its three neighbours on either side: motion leaves the sixth power
 /// of its share of a period per sample.
@@ -83,7 +92,7 @@ fn out_of_either(
     k: usize,
 ) -> bool {
     /// The ninth decile of so few samples is known to a tenth.
-    const SURELY_FAR: f64 = 1.1 * FAR;
+    const SURELY: f64 = 1.1;
     let parts = |j: usize| {
         let [c, s] = angle(j);
         [off[0][j] * c + off[1][j] * s, off[1][j] * c - off[0][j] * s]
@@ -94,7 +103,7 @@ fn out_of_either(
         let sizes: Vec<f64> = near.iter().map(|p| p[which].abs()).collect();
         parts(k)[which] / ninth(&sizes)
     };
-    far(0).hypot(far(1)) > SURELY_FAR
+    far(0).hypot(far(1)) > SURELY * far_among(off[0].len())
 }
 
 /// Whether what stands out at a sample is that sample, and no step of the signal before or after it: a code that the ADC
@@ -194,6 +203,7 @@ impl Curve<'_> {
         let rate = recording.metadata.sample_rate_hz;
         let sizes = magnitudes(self.off);
         let typical = typical(self.off, reach);
+        let far_off = far_among(n);
         // A glitch beyond the others would be alone in its range, and typical there.
         let expected = expected(values, self.off);
         let [low, high] = ends(expected.iter().copied());
@@ -206,14 +216,14 @@ impl Curve<'_> {
         let far = |k: &usize| {
             let k = *k;
             // Most samples need no look at their surroundings.
-            if sizes[k] <= (FAR * typical).max(floor) {
+            if sizes[k] <= (far_off * typical).max(floor) {
                 return false;
             }
             // Noise that grows with the signal, its slope or the speed is larger at some values and times than at others.
             let near = &sizes[k.saturating_sub(AROUND)..(k + AROUND + 1).min(n)];
             let there = (ninth(near) / typical / BY_CHANCE).max(1.0);
             let larger = there * alike[range(expected[k])].max(1.0);
-            let limit = (FAR * typical * larger).max(floor);
+            let limit = (far_off * typical * larger).max(floor);
             // A doubled sample is late, not wrong; a longer curve is bent by any that are wrong beside it.
             let beside = if reach > REACH { reach } else { 1 };
             let bad = (k - beside..=k + beside).any(|near| weight[near] == 0.0);
@@ -319,4 +329,18 @@ pub(crate) fn find(recording: &Recording, checked: &mut Checked) {
     let finding = Finding::digital(Cause::Glitches, parameters, evidence);
     let finding = finding.at(Place::Sample(found[0].0)).repairing(left_out);
     checked.findings.push(finding);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::far_among;
+
+    #[test]
+    fn noise_of_a_longer_recording_has_larger_samples() {
+        // The standard deviations that a table of the normal distribution gives for 1.25e-10 and 2.5e-12 on one side.
+        for (samples, deviations) in [(20_000, 6.327), (1_000_000, 6.906)] {
+            let far = far_among(samples) * 1.644_854;
+            assert!((far - deviations).abs() < 0.002, "{samples} {far}");
+        }
+    }
 }

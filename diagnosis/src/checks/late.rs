@@ -8,6 +8,10 @@ use crate::checks::sides::is_about;
 
 /// Standard deviations from which on a delay counts.
 const SURE: f64 = 5.0;
+/// Samples at which it is tried how often an angle seems early.
+const PLACES: usize = 4000;
+/// Late samples that chance may make of a recording.
+const BY_CHANCE: f64 = 0.003;
 
 /// Those of some samples behind which the angle is late by what it moves in a sample: they were put in. One of them is looked
 /// for, not the farthest of all, so a smaller delay tells, by the curves that show the largest there; where the axis turns, its own motion
@@ -20,15 +24,24 @@ pub(crate) fn late(recording: &Recording, checked: &Checked, of: &[usize]) -> Ve
         return vec![];
     };
     let all = delays(&angle);
-    let by_one = |delay: &Delay| is_about(delay.samples, -1.0, delay.sigma);
-    let is_late = |k: &usize| {
-        let looks: Vec<(Delay, f64)> = all.iter().filter_map(|look| look.at(*k)).collect();
+    let is_off = |k: usize, by: f64| {
+        let looks: Vec<(Delay, f64)> = all.iter().filter_map(|look| look.at(k)).collect();
         let best = looks.iter().max_by(|a, b| a.1.total_cmp(&b.1));
+        let by_one = |delay: &Delay| is_about(delay.samples, by, delay.sigma);
         let would_show = |delay: &Delay| SURE * delay.sigma < 1.0;
         best.is_some_and(|(delay, told)| *told > SURE && by_one(delay))
             && looks
                 .iter()
                 .all(|(delay, _)| by_one(delay) || !would_show(delay))
     };
-    of.iter().copied().filter(is_late).collect()
+    let late: Vec<usize> = of.iter().copied().filter(|k| is_off(*k, -1.0)).collect();
+    if late.is_empty() {
+        return late;
+    }
+    // Nothing makes the angle early by a sample: where it seems so, as of an axis that moves unevenly, it seems late as often.
+    let n = angle.len();
+    let places = (0..n).step_by(n.div_ceil(PLACES));
+    let early = places.clone().filter(|k| is_off(*k, 1.0)).count() as f64;
+    let by_chance = of.len() as f64 * early / places.count() as f64;
+    if by_chance > BY_CHANCE { vec![] } else { late }
 }
