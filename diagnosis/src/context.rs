@@ -24,9 +24,6 @@ pub(crate) const FEWEST: usize = 150;
 /// Least gain that is taken off as one: of less, hardly anything of the signals is left.
 const LEAST_GAIN: f64 = 0.1;
 
-/// So near to one, what the angle does for each radian that its reference moves fast has to be, or that motion is noise.
-const FOLLOWS: f64 = 0.1;
-
 /// The recording, corrected, with everything that shapes are made of. One value per sample.
 #[derive(Clone, Debug)]
 pub struct Context {
@@ -252,7 +249,8 @@ impl Context {
             self.alpha = smooth.map(|(a, f)| a + f).collect();
             (self.sin, self.cos) = self.alpha.iter().map(|a| a.sin_cos()).unzip();
             let change = spline.derivative(&fit);
-            let bends = gradient(&change).into_iter().zip(around(&fast));
+            let bends = gradient(&self.change_of_moves(&spline, &change));
+            let bends = bends.into_iter().zip(around(&fast));
             self.acceleration = bends.map(|(a, f)| (a + f) * rate * rate).collect();
             let change = change.into_iter().zip(fine_gradient(&fast));
             self.speed = change.map(|(v, f)| (v + f) * rate).collect();
@@ -262,18 +260,6 @@ impl Context {
         }
         let per = self.periods_per_revolution.map(f64::from);
         self.phi = per.map(|n| self.alpha.iter().map(|a| a / n).collect());
-    }
-
-    /// Acceleration of the drive, radians per second squared: where the axis shakes, [`Self::acceleration`] is that of the
-    /// shaking.
-    pub(crate) fn drive_acceleration(&self) -> Vec<f64> {
-        let (Some(_), Some(motion)) = (&self.finer, &self.spline) else {
-            return self.acceleration.clone();
-        };
-        let (motion, fit) = self.fitted(motion, &self.slow());
-        let speed = motion.derivative(&fit);
-        let per_sample = gradient(&speed).into_iter();
-        per_sample.map(|a| a * self.rate * self.rate).collect()
     }
 
     /// Radial residual.
@@ -327,7 +313,7 @@ impl Context {
     }
 
     /// The angle of the pair without known fast motion, radians.
-    fn slow(&self) -> Vec<f64> {
+    pub(crate) fn slow(&self) -> Vec<f64> {
         let pairs = self.measured.iter().zip(self.fast_motion());
         pairs.map(|(m, f)| m - f).collect()
     }
@@ -336,25 +322,6 @@ impl Context {
     fn fast_motion(&self) -> impl Iterator<Item = f64> {
         let shaking = self.shaking.iter().copied().chain(std::iter::repeat(0.0));
         self.fast.iter().zip(shaking).map(|(f, s)| f + s)
-    }
-
-    /// What else of the fast motion a reference shows; nothing where the angle does not move with it, for then it is the
-    /// reference's noise.
-    fn shown_by_reference(&self) -> Vec<f64> {
-        let (Some(against), Some(spline)) = (&self.against_reference, &self.spline) else {
-            return vec![];
-        };
-        let unknown = |k: usize| self.measured[k] - self.fast[k];
-        let angle: Vec<f64> = (0..self.samples()).map(unknown).collect();
-        let moves: Vec<f64> = angle.iter().zip(against).map(|(a, d)| a - d).collect();
-        let own = spline.residual(&angle, &self.weight);
-        let moves = spline.residual(&moves, &self.weight);
-        let square = dot(&moves, &moves).max(f64::MIN_POSITIVE);
-        let follows = dot(&own, &moves) / square;
-        let apart: Vec<f64> = own.iter().zip(&moves).map(|(o, m)| o - m).collect();
-        let error = (dot(&apart, &apart) / self.samples() as f64 / square).sqrt();
-        let real = (follows - 1.0).abs() < FOLLOWS && error < FOLLOWS / 3.0;
-        if real { moves } else { vec![] }
     }
 
     /// Takes what is known off the raw signals, corrected by another ellipse.

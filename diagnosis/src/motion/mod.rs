@@ -3,4 +3,5 @@
 pub(crate) mod calm;
 pub(crate) mod in_step;
 pub(crate) mod knots;
+mod moves;
 pub(crate) mod spline;
