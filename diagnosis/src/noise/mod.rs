@@ -243,6 +243,12 @@ impl Seen<'_> {
         if held_out <= 0.0 {
             return None;
         }
+        if kind == Kind::Jitter && !wandering::is_at_random(depends.context, &own.rows[1]) {
+            return wandering::in_a_line(depends.context, self.tangential, gain).map(|how| {
+                let what = What::Said(wandering::sentence(&how));
+                Err(Unnamed { log_p, gain, what })
+            });
+        }
         let amount = with.x[BASE + 1] / scale;
         if depends.rms(kind, amount) < self.coded {
             return None;
@@ -297,12 +303,8 @@ impl Seen<'_> {
             ));
         }
         if kind == Kind::Jitter {
-            return wandering::how(self.depends.context, self.tangential, gain).map(|how| {
-                format!(
-                    "the sampling time wanders {how}; {}",
-                    like(name, "that is random")
-                )
-            });
+            let how = wandering::how(self.depends.context, self.tangential, gain);
+            return how.map(|how| wandering::sentence(&how));
         }
         None
     }

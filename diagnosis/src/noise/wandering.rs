@@ -3,7 +3,9 @@
 use nonius_quantity::{Quantity, Unit};
 
 use crate::context::Context;
+use crate::finding::Cause;
 use crate::numerics::lines;
+use crate::unnamed::unexplained::like;
 
 /// Probability below which the highest line of a spectrum is no noise.
 const A_LINE: f64 = 1e-4;
@@ -13,17 +15,60 @@ const MUCH: f64 = 0.2;
 /// Log-likelihood by which a line of the axis has to stand higher to be the reason for one of the clock.
 const CLEARLY: f64 = 3.0;
 
+/// What is said of it.
+pub(super) fn sentence(how: &str) -> String {
+    let like = like(Cause::ClockJitter, "that is random");
+    format!("the sampling time wanders {how}; {like}")
+}
+
+/// Whether what is left along the circle, in its rms, grows with the speed from sample to sample as well, as what is random at each does.
+/// What a spline leaves of an axis that shakes grows with the speed by chance, but changes slowly.
+pub(super) fn is_at_random(context: &Context, tangential: &[f64]) -> bool {
+    /// Share of the growth that the difference of two samples has to have, of white noise all of it.
+    const MUCH: f64 = 0.5;
+    let counted = |k: &usize| context.weight[*k] > 0.0 && context.weight[*k - 1] > 0.0;
+    let counted: Vec<usize> = (1..tangential.len()).filter(counted).collect();
+    let square = |k: usize| (context.speed[k] / context.top_speed()).powi(2);
+    let mean = |of: &dyn Fn(usize) -> f64| {
+        counted.iter().map(|k| of(*k)).sum::<f64>() / counted.len().max(1) as f64
+    };
+    let usual = mean(&square);
+    let spread = mean(&|k| (square(k) - usual).powi(2)).max(f64::MIN_POSITIVE);
+    let grows =
+        |size: &dyn Fn(usize) -> f64| mean(&|k| size(k).powi(2) * (square(k) - usual)) / spread;
+    let all = grows(&|k| tangential[k]);
+    let fast = grows(&|k| (tangential[k] - tangential[k - 1]) / 2f64.sqrt());
+    // Squares of differences go together with those beside them.
+    let error = (2.0 * 1.5 / (spread * counted.len().max(1) as f64)).sqrt();
+    fast + error > MUCH * all
+}
+
 /// How the sampling time wanders where it is not at random: in a line, or with the angle, that explains much of what jitter
 /// does.
 pub(super) fn how(context: &Context, tangential: &[f64], gain: f64) -> Option<String> {
-    /// Highest order of the scale period.
-    const TOP: usize = 12;
-    let n = tangential.len();
-    // The sampling time's error, as far as the speed shows it.
+    in_a_line(context, tangential, gain).or_else(|| with_the_angle(context, tangential, gain))
+}
+
+/// Probability that the highest of so many places has that power, in means, by chance.
+fn by_chance(power: f64, places: usize) -> f64 {
+    places as f64 * (-power).exp()
+}
+
+/// The sampling time's error, as far as the speed shows it.
+fn time_error(context: &Context, tangential: &[f64]) -> Vec<f64> {
     let speeds = context.speed.iter().zip(tangential);
-    let time: Vec<f64> = speeds.map(|(v, t)| t * v / context.top_speed()).collect();
-    let by_chance = |power: f64, places: usize| places as f64 * (-power).exp();
-    let (power, length) = over_mean(&time);
+    speeds.map(|(v, t)| t * v / context.top_speed()).collect()
+}
+
+/// The same in a line.
+pub(super) fn in_a_line(context: &Context, tangential: &[f64], gain: f64) -> Option<String> {
+    /// Fewest turns of a line over the recording: what does not turn is a delay.
+    const TURNS: f64 = 3.0;
+    let n = tangential.len();
+    let time = time_error(context, tangential);
+    let (mut power, length) = over_mean(&time);
+    let slow = (TURNS * length as f64 / n as f64) as usize;
+    power.iter_mut().take(slow).for_each(|p| *p = 0.0);
     let line = power.iter().copied().fold(0.0, f64::max);
     let at = power.iter().position(|p| *p == line).unwrap_or(0);
     // What a shaking axis leaves is coloured: a line of the clock stands out of what is near it. Half of noise is below
@@ -40,6 +85,14 @@ pub(super) fn how(context: &Context, tangential: &[f64], gain: f64) -> Option<St
         );
         return Some(format!("periodically, at {}", hertz.brief()));
     }
+    None
+}
+
+/// The same with the angle.
+fn with_the_angle(context: &Context, tangential: &[f64], gain: f64) -> Option<String> {
+    /// Highest order of the scale period.
+    const TOP: usize = 12;
+    let time = time_error(context, tangential);
     let total: f64 = time.iter().map(|t| t * t).sum();
     let order = |m: usize| {
         let pairs = time.iter().zip(&context.alpha);
