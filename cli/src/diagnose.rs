@@ -193,7 +193,7 @@ fn summary(found: &Diagnosis, output: &Path) {
         [] => say!("{}", found.unexplained.signature),
         parts => parts.iter().for_each(|part| say!("unexplained: {part}")),
     }
-    for sentence in nonius_diagnosis::unseen(&found.context) {
+    for sentence in nonius_diagnosis::unseen(found) {
         say!("cannot be seen here: {sentence}");
     }
     let (before, after) = before_after(

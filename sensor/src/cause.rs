@@ -87,8 +87,14 @@ pub enum Cause {
         #[serde(default)]
         delay_s: f64,
     },
-    /// An offset with the sign of the speed.
-    Hysteresis { offset_cos: f64, offset_sin: f64 },
+    /// An offset with the sign of the speed; where the scale rests at first, with that of the first motion, or the other one if
+    /// `start_side` is negative.
+    Hysteresis {
+        offset_cos: f64,
+        offset_sin: f64,
+        #[serde(default = "one")]
+        start_side: f64,
+    },
     /// A line added to each channel, and its second and third harmonic.
     Interference(Interference),
     /// The amplitude of both channels modulated by a line.
@@ -140,6 +146,10 @@ pub enum Cause {
     DroppedSamples { share: f64 },
     /// Samples that are those before them once more, at random places: their share.
     RepeatedSamples { share: f64 },
+}
+
+fn one() -> f64 {
+    1.0
 }
 
 /// One of the two channels.

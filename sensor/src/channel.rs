@@ -15,8 +15,8 @@ pub(crate) struct Moment {
     pub(crate) whole: f64,
     /// Radians per second.
     pub(crate) speed: f64,
-    /// Direction in which it came, 1 or −1.
-    pub(crate) side: f64,
+    /// Direction in which it came, 1 or −1; and what that is where it rested at first after coming the other way.
+    pub(crate) side: [f64; 2],
 }
 
 /// Part of the amplitude of both channels.
@@ -139,7 +139,8 @@ pub(crate) fn of_one(cause: &Cause, which: usize, y: f64, at: &Moment) -> f64 {
         Cause::Hysteresis {
             offset_cos,
             offset_sin,
-        } => of(offset_cos, offset_sin) * at.side,
+            start_side,
+        } => of(offset_cos, offset_sin) * at.side[usize::from(start_side < 0.0)],
         Cause::Interference(ref line) => line.at(which, at.time),
         Cause::OffsetDrift(ref drift) => drift.at(which, at.time, at.whole),
         Cause::GainDrift(ref drift) => y * drift.at(which, at.time, at.whole),

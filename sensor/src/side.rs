@@ -7,13 +7,13 @@ use std::f64::consts::TAU;
 const BACK: f64 = TAU / 100.0;
 
 /// 1 or −1 at each angle (radians): at rest the direction before goes on, until the scale has gone back; then it turned where it
-/// stood last. Before any motion it is the first that comes.
-pub(crate) fn sides(alpha: &[f64]) -> Vec<f64> {
+/// stood last. Before any motion it is the first that comes times `start`.
+pub(crate) fn sides(alpha: &[f64], start: f64) -> Vec<f64> {
     let Some(first) = alpha.first() else {
         return vec![];
     };
     let way = alpha.iter().map(|a| a - first).find(|way| way.abs() > BACK);
-    let mut side = way.map_or(1.0, f64::signum);
+    let mut side = start * way.map_or(1.0, f64::signum);
     let mut sides = vec![side; alpha.len()];
     let mut farthest = 0;
     for (k, a) in alpha.iter().enumerate() {
@@ -42,10 +42,17 @@ mod tests {
         let places = [0.0, 2.0, 2.01, 1.99, 2.01, 4.0, 3.99, 3.98, 2.5, 2.4];
         let alpha = places.map(|p| p * BACK);
         let expected = [1.0, 1.0, 1.0, 1.0, 1.0, 1.0, -1.0, -1.0, -1.0, -1.0];
-        assert_eq!(sides(&alpha), expected);
-        assert_eq!(sides(&[1.0, 1.0]), [1.0, 1.0]);
-        assert_eq!(sides(&[]), [0.0; 0]);
-        assert_eq!(sides(&[0.0, -1.0]), [-1.0, -1.0]);
+        assert_eq!(sides(&alpha, 1.0), expected);
+        assert_eq!(sides(&[1.0, 1.0], 1.0), [1.0, 1.0]);
+        assert_eq!(sides(&[], 1.0), [0.0; 0]);
+        assert_eq!(sides(&[0.0, -1.0], 1.0), [-1.0, -1.0]);
+    }
+
+    #[test]
+    fn what_came_the_other_way_turns_when_it_moves() {
+        let alpha = [0.0, 0.1, 0.0, 2.0, 4.0, 3.0, 2.0].map(|p| p * BACK);
+        let expected = [-1.0, -1.0, -1.0, 1.0, 1.0, -1.0, -1.0];
+        assert_eq!(sides(&alpha, -1.0), expected);
     }
 
     /// However slow it goes back beside the way out.
@@ -53,7 +60,7 @@ mod tests {
     fn a_slow_way_back_is_one() {
         let fast = (0..10).map(|k| f64::from(k) * 100.0 * BACK);
         let slow = (0..1000).map(|k| (900.0 - f64::from(k) * 0.1) * BACK);
-        let sides = sides(&fast.chain(slow).collect::<Vec<_>>());
+        let sides = sides(&fast.chain(slow).collect::<Vec<_>>(), 1.0);
         assert!(
             sides[..=10].iter().all(|s| *s == 1.0),
             "{:?}",

@@ -37,7 +37,7 @@ impl Sensor {
         let rate = self.adc.sample_rate_hz;
         let speed = derivative(&motion.alpha, rate);
         let acceleration = derivative(&speed, rate);
-        let side = sides(&motion.alpha);
+        let side = [1.0, -1.0].map(|start| sides(&motion.alpha, start));
         // Causes know the time since the beginning.
         let start = motion.time_s.first().copied().unwrap_or_default();
         let whole = motion.time_s.last().map_or(0.0, |last| last - start);
@@ -80,7 +80,7 @@ impl Sensor {
                     time,
                     whole: whole.max(f64::MIN_POSITIVE),
                     speed: speed[k],
-                    side: side[k],
+                    side: [side[0][k], side[1][k]],
                 };
                 y + self.sum(|c| of_scale(c, which, amplitude, phase, &passed))
                     + self.sum(|c| of_one(c, which, y, &x))

@@ -156,9 +156,9 @@ fn reproduced(causes: &[&str]) {
         let own = apart(&sensor, &recording, &along);
         let other = apart(&sensor, &recording, &to_and_fro);
         println!("{causes:?}: {own:.4?} {other:.1?}");
-        // When a scale that stood goes back is known to a few samples, and the offsets jump there.
-        let jumps = is_driven && causes.contains(&HYSTERESIS);
-        let least = if jumps { 0.2 } else { 0.04 };
+        // When a scale that stood goes back, or begins to move at all, is known to some samples, and the offsets jump there.
+        let jumps = is_driven && causes.iter().any(|c| c.starts_with(HYSTERESIS));
+        let least = if jumps { 0.25 } else { 0.04 };
         let same = own.iter().all(|a| (a - 1.0).abs() < least);
         assert!(same, "{causes:?}: {own:?} times the noise");
         assert!((noise / NOISE - 1.0).abs() < least, "noise {noise}");
@@ -189,6 +189,8 @@ const ONE_LOW_PASS: &str = "name = \"bandwidth_mismatch\"\ntau_cos_s = 0.0\ntau_
 const STUCK: &str = "name = \"stuck_bit\"\nbit = 0.0\nchannel = \"cos\"\nlevel = 1.0";
 const LOW_PASS: &str = "name = \"common_bandwidth\"\ntau_s = 2e-5";
 const HYSTERESIS: &str = "name = \"hysteresis\"\noffset_cos = 0.008\noffset_sin = -0.006";
+const CAME_BACK: &str =
+    "name = \"hysteresis\"\noffset_cos = 0.008\noffset_sin = -0.006\nstart_side = -1.0";
 const RUNOUT: &str = "name = \"runout\"\norder = 2.0\ndepth = 0.01\nphase = -0.9";
 const EVEN: &str = "name = \"even_nonlinearity\"\nk_cos = 0.02\nk_sin = -0.015";
 const ODD: &str = "name = \"odd_nonlinearity\"\nk_cos = 0.02\nk_sin = 0.015";
@@ -200,8 +202,8 @@ const DRIFT: &str = "name = \"offset_drift\"\nchange_cos = 0.02\nchange_sin = -0
 #[test]
 fn one_cause() {
     for one in [
-        HARMONIC, SKEW, HUM, RAIL, CROSSTALK, VIBRATION, COGGING, STUCK, HYSTERESIS, RUNOUT, DRIFT,
-        LOW_PASS, EVEN, ODD, RIPPLE, WEIGHT, GAIN,
+        HARMONIC, SKEW, HUM, RAIL, CROSSTALK, VIBRATION, COGGING, STUCK, HYSTERESIS, CAME_BACK,
+        RUNOUT, DRIFT, LOW_PASS, EVEN, ODD, RIPPLE, WEIGHT, GAIN,
     ] {
         reproduced(&[one]);
     }

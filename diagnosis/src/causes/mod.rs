@@ -13,6 +13,7 @@ mod mirror;
 mod place;
 pub(crate) mod revolution;
 mod settling;
+mod sides;
 pub(crate) mod speed;
 mod steady;
 pub(crate) mod time;

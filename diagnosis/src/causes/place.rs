@@ -65,8 +65,9 @@ pub(crate) fn weighed(
 
 /// Highest order of the revolution that is looked at.
 fn top_order(per: u32) -> usize {
-    /// Orders of the scale period, and of the revolution where there are few of those; and never more than so many.
-    const OF_PERIOD: usize = 8;
+    /// Orders of the scale period, and of the revolution where there are few of those; and never more than so many. Cogging may have
+    /// a second harmonic, which is above what a spline follows where it is itself hardly so.
+    const OF_PERIOD: usize = 16;
     const LEAST: usize = 128;
     const MOST: usize = 8192;
     (OF_PERIOD * per as usize).clamp(LEAST, MOST)

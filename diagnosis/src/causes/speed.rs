@@ -4,8 +4,9 @@ use std::rc::Rc;
 
 use nonius_fourier::Complex;
 
-use super::direction::{self, sides};
+use super::direction;
 use super::lag::{falls, falls_behind, later, low_pass};
+use super::sides::directions;
 use super::{Catalogue, Modulated, modulated};
 use crate::causes::candidate::{Candidate, Domain, Exact, Sign, each};
 use crate::context::Context;
@@ -63,12 +64,14 @@ pub(super) fn follows(
     })
 }
 
-/// Numbers of the modulations: the speed, its square, its sign, the same turning over softly, the acceleration.
+/// Numbers of the modulations: the speed, its square, its sign, the same turning over softly, the acceleration; and the sign where the
+/// scale came the other way to the rest at which a recording begins.
 const ODD: usize = 0;
 const EVEN: usize = 1;
 pub(super) const SIGN: usize = 2;
 pub(super) const SOFT: usize = 3;
 pub(super) const ACCELERATION: usize = 4;
+pub(super) const STARTED_BACK: usize = 5;
 
 /// What causes of speed are made of.
 pub(super) struct Speed {
@@ -77,6 +80,8 @@ pub(super) struct Speed {
     pub(super) beta: f64,
     /// Largest speed, radians per second.
     top: f64,
+    /// The recording begins at rest, to which the scale may have come the other way than it goes on.
+    pub(super) may_have_started_back: bool,
     /// Nothing is known of the channels but that they are sines.
     sines: bool,
 }
@@ -88,22 +93,26 @@ impl Speed {
         let steepest = acceleration.iter().map(|a| a.abs());
         let steepest = steepest.fold(f64::MIN_POSITIVE, f64::max);
         acceleration.iter_mut().for_each(|a| *a /= steepest);
-        let sides = Rc::new(sides(context));
+        let directions = Rc::new(directions(context));
+        let may_have_started_back = directions.len() > 1;
+        let count = STARTED_BACK + usize::from(may_have_started_back);
         let functions = move |block: &Block, which| {
             let by = |f: fn(f64) -> f64| block.speed.iter().map(|v| f(v / top)).collect();
             match which {
                 ODD => by(|v| v),
                 EVEN => by(|v| v * v),
-                SIGN => sides[block.start..][..block.len()].to_vec(),
+                SIGN => directions[0][block.start..][..block.len()].to_vec(),
+                STARTED_BACK => directions[1][block.start..][..block.len()].to_vec(),
                 // It takes some way, and so some speed, to turn over.
                 SOFT => by(|v| v / (v * v + 0.05 * 0.05).sqrt()),
                 _ => acceleration[block.start..][..block.len()].to_vec(),
             }
         };
         Self {
-            by: Modulated(modulated(library, 5, functions)),
+            by: Modulated(modulated(library, count, functions)),
             beta: context.ellipse.beta,
             top,
+            may_have_started_back,
             sines: context.periodic.iter().all(Trig::is_constant),
         }
     }

@@ -23,7 +23,7 @@ use crate::unnamed::unexplained::{Unnamed, What, explains_only, like};
 
 /// Share of what static errors, or errors of speed, explain below which another kind of them is what the strongest one's
 /// model leaves: an SNR between a fourth and a fifth of its.
-const LEFTOVER: f64 = 0.05;
+pub(crate) const LEFTOVER: f64 = 0.05;
 
 /// Share of what the strongest explains below which something may be what its model leaves: an SNR of a tenth of its.
 pub(crate) const TRACE: f64 = 0.01;

@@ -90,8 +90,12 @@ pub(crate) fn stands_in(
     drift: usize,
     which: usize,
 ) -> bool {
+    /// Share of it by which what turns over with the direction may explain less: some samples early or late.
+    const TURNS: f64 = 0.02;
     let (drift, own) = (&scored[drift], &scored[which]);
-    let enough = drift.gain - drift.freedom as f64;
+    let turns = own.candidate.name == Cause::Hysteresis;
+    let less = if turns { TURNS * drift.gain } else { 0.0 };
+    let enough = drift.gain - less - drift.freedom as f64;
     if own.gain >= enough {
         return true;
     }

@@ -152,9 +152,15 @@ impl<'a> System<'a> {
 
     /// What of shapes shows the sensor for sure: where the axis vibrates, what stands along the radius.
     pub(crate) fn sure(&self, shapes: &[Shape]) -> Vec<Shape> {
-        if !self.vibrates() {
-            return shapes.to_vec();
+        if self.vibrates() {
+            self.in_radius(shapes)
+        } else {
+            shapes.to_vec()
         }
+    }
+
+    /// What of shapes stands along the radius.
+    pub(crate) fn in_radius(&self, shapes: &[Shape]) -> Vec<Shape> {
         let all: Vec<usize> = (0..self.samples.library.atoms.len()).collect();
         let radial = self.radial(&all);
         let parts = shapes.iter().map(|s| s.only(&radial));

@@ -136,7 +136,7 @@ pub fn report(
             .collect(),
         nothing: words::capital(&found.unexplained.signature),
         chance: words::probability(found.unexplained.p_value),
-        unseen: unseen(&found.context),
+        unseen: unseen(found),
         style: nonius_plot::STYLE,
         script: nonius_plot::script(),
     }

@@ -5,7 +5,7 @@ use crate::causes::candidate::{Candidate, Domain};
 use crate::causes::{self, Catalogue};
 use crate::doubt::curves;
 use crate::doubt::simpler::simpler;
-use crate::doubt::{self, doubt, lines_at_orders};
+use crate::doubt::{self, LEFTOVER, doubt, gain_of, lines_at_orders};
 use crate::drifts::channels::Channels;
 use crate::finding::Cause;
 use crate::model::exact::{self, Start};
@@ -19,6 +19,7 @@ use crate::select::rounds::Anew;
 use crate::select::score::{CLEAR, SHOWN, Scored, retain_likely, score, worth};
 use crate::select::selection::{Accepted, Selection};
 use crate::select::{anew, astray, both, keep_used};
+use crate::shapes::library::Shape;
 use crate::unnamed::unexplained::leftover;
 
 /// Most causes of one recording.
@@ -238,6 +239,9 @@ fn leave_unnamed(
         closed.names.extend(one.name);
     } else if one.domain == Some(Domain::Time) && slow_noise(system, residual, one.paid) {
         closed.close_slow();
+    } else if one.domain == Some(Domain::Time) && is_left_over(system, found, one.unnamed.gain) {
+        found.unnamed.push(one.unnamed);
+        closed.domains.extend(one.domain);
     } else {
         found.unnamed.push(one.unnamed);
         closed.domains.extend(one.domain);
@@ -245,6 +249,14 @@ fn leave_unnamed(
         let generic = both(&found.fit.shapes, generic);
         found.fit = system.fit(both(&generic, &one.shapes));
     }
+}
+
+/// Whether what explains so much is so little beside a cause that is slow itself that shapes of any kind, which hold most of that, must not
+/// stand beside it.
+fn is_left_over(system: &System, found: &Selection, gain: f64) -> bool {
+    let slow = |i: &usize| SLOW_CAUSES.contains(&found.accepted[*i].candidate.name);
+    let mut slow = (0..found.accepted.len()).filter(slow);
+    slow.any(|i| gain < LEFTOVER * gain_of(system, found, &[i]))
 }
 
 /// Accepts a cause, unless it is a circle, slow noise, or does not hold on data that was not fitted. Of `others` one may turn out to
@@ -264,6 +276,10 @@ fn accept(
     let circle = || is_a_circle(&cause.candidate, amounts, system.vibrates());
     if system.context.against_reference.is_none() && circle() {
         closed.circles.extend(cause.candidate.order);
+        return;
+    }
+    if !closed.circles.is_empty() && is_motion(system, &found.fit, &cause.candidate) {
+        closed.names.push(cause.candidate.name);
         return;
     }
     let slow = cause.candidate.domain == Domain::Time;
@@ -299,6 +315,20 @@ fn accept(
     if anew || may.with(true) && !others.is_empty() {
         found.again = starts(system, &before, found, others);
     }
+}
+
+/// Whether what codes seem to do is nearly all along the circle, where the axis has been seen to move: the radius sees all but the middle
+/// one as well.
+fn is_motion(system: &System, fit: &Fit, candidate: &Candidate) -> bool {
+    /// Share that the radius has to show.
+    const IN_RADIUS: f64 = 0.05;
+    if candidate.domain != Domain::Code {
+        return false;
+    }
+    let gain = |known: &[Shape], own: &[Shape]| Beside::new(&system.total, known).gain(own).0;
+    let own = &candidate.shapes;
+    let shown = gain(&system.in_radius(&fit.shapes), &system.in_radius(own));
+    shown < IN_RADIUS * gain(&fit.shapes, own)
 }
 
 /// Whether what a fit has beyond another, its numbers paid for, is so weak that it may be what is seen of slow noise.

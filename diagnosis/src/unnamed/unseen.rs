@@ -8,6 +8,8 @@ use nonius_recording::AdcSource;
 use crate::causes::revolution::{revolving, turns};
 use crate::causes::{direction, high_pass, speed, time};
 use crate::context::{Context, FEWEST};
+use crate::diagnose::Diagnosis;
+use crate::finding::Cause;
 
 /// Parts of the scale period in which samples are looked for, and how many of them have to be seen.
 const PARTS: usize = 36;
@@ -17,7 +19,8 @@ pub(crate) const REPEATS: f64 = 1.9;
 
 /// A sentence for each group of causes that this recording cannot show: what lets a cause enter is asked of its own file.
 #[must_use]
-pub fn unseen(context: &Context) -> Vec<String> {
+pub fn unseen(found: &Diagnosis) -> Vec<String> {
+    let context = &found.context;
     let mut list: Vec<String> = vec![];
     let mut tell = |sentence: &str| list.push(sentence.into());
     if context.is_too_short() {
@@ -64,7 +67,8 @@ pub fn unseen(context: &Context) -> Vec<String> {
             "at a speed that changes so little, common_bandwidth and delayed_crosstalk look like what a latency leaves; record several speeds",
         );
     }
-    if !direction::can_be_shown(context) {
+    let turned = found.findings.iter().any(|f| f.cause == Cause::Hysteresis);
+    if !turned && !direction::can_be_shown(context) {
         tell("in one direction, hysteresis looks like an offset; reverse");
     }
     if context.against_reference.is_none() {

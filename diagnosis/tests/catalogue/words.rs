@@ -114,7 +114,7 @@ fn what_is_not_explained_has_a_size_and_a_place() {
 
 #[test]
 fn what_cannot_be_seen_is_true() {
-    let said = |found: &Diagnosis| unseen(&found.context).join("\n");
+    let said = |found: &Diagnosis| unseen(found).join("\n");
     let part = said(&arc(0.6, 3).0);
     assert!(
         part.contains("only 6") && part.contains("% of the scale period"),
@@ -150,7 +150,7 @@ fn what_cannot_be_seen_is_true() {
 /// What no cause is entered for is said not to be looked for, and nothing else is.
 #[test]
 fn what_is_not_looked_for_is_said() {
-    let said = |found: &Diagnosis| unseen(&found.context).join("\n");
+    let said = |found: &Diagnosis| unseen(found).join("\n");
     let few = said(&evenly(&PLAIN, 4.5, 3));
     assert!(few.contains("ac_coupling is not looked for"), "{few}");
     assert!(!few.contains("offset_drift"), "{few}");
