@@ -84,12 +84,13 @@ pub(crate) fn hysteresis(draw: &mut Draw) -> Box<dyn Effect> {
             side
         })
         .collect();
-    let peak = (0..200).fold(0.0f64, |peak, k| {
-        let state = draw.world.motion.at(seconds * f64::from(k) / 200.0);
-        peak.max(state.speed.abs())
-    });
+    let speeds = (0..200).map(|k| draw.world.motion.at(seconds * f64::from(k) / 200.0).speed);
+    let [least, most] = speeds.fold([0.0f64; 2], |[least, most], v| [v.min(least), v.max(most)]);
+    let peak = most.max(-least);
+    // In one direction it never turns over, however slow it goes.
+    let turns = least < 0.0 && most > 0.0;
     Law::new("hysteresis", 0.2, move |m, at, u| {
-        let side = if wild {
+        let side = if wild && turns {
             (at.speed / (0.05 * peak)).tanh()
         } else if at.speed == 0.0 {
             let point = (at.t / seconds * POINTS as f64).clamp(0.0, POINTS as f64);

@@ -35,3 +35,16 @@ fn a_hand_that_trembles_does_not_make_a_bend_another_harmonic() {
         .collect();
     assert!(failed.is_empty(), "{failed:?}");
 }
+
+/// Recordings that hide nothing. What a spline leaves of a hand that shakes grew with the speed, and was a clock that wanders at 0 Hz; and noise
+/// of the angle is in the errors against a reference as in the acceleration.
+#[test]
+fn where_nothing_is_hidden_nothing_is_left() {
+    let seeds = [189_500_011, 189_500_377, 189_500_046, 189_500_266];
+    seeds.into_par_iter().for_each(|seed| {
+        let score = scored(seed);
+        assert!(score.outcomes.is_empty(), "{seed}: {:?}", score.outcomes);
+        assert!(score.wrong.is_empty(), "{seed}: {:?}", score.wrong);
+        assert!(!score.unexplained, "{seed}");
+    });
+}

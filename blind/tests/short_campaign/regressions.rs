@@ -342,3 +342,20 @@ fn what_another_cause_looks_like_has_no_name_of_its_own() {
         matches!(o, Outcome::First | Outcome::Later | Outcome::Group)
     });
 }
+
+/// Hysteresis of an axis that came the other way to the rest before its first motion, beside a shaking that hides when it turns, and one that
+/// gives way at each rest: steps in time, slow noise and shapes of any kind beside a trace of something else explained each as well.
+#[test]
+fn what_turns_with_the_direction_is_hysteresis() {
+    let seeds = [189_001_275, 189_001_358, 189_000_433, 190_500_492];
+    all_told(seeds, |o| matches!(o, Outcome::First | Outcome::Group));
+}
+
+/// The second harmonic of cogging is faster than what a spline follows, and was a clock that jitters; and an axis that moves unevenly looks late by a
+/// sample here and there, one of which had the codes of the one before. What shakes has larger samples by chance than a constant allowed.
+#[test]
+fn what_the_axis_does_is_no_error_of_the_data() {
+    let seeds = [189_000_013, 189_000_893, 190_501_733];
+    all_told(seeds, |o| matches!(o, Outcome::First));
+    none_wrong(188_003_186, &scored(188_003_186));
+}
