@@ -1,4 +1,4 @@
-//! The direction in which a scale came to where it is.
+//! The direction in which a scale came to where it is: written apart from `sensor/src/side.rs`, which plays what is named by it.
 
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -23,33 +23,43 @@ pub(super) fn directions(context: &Context) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// At rest the direction before goes on, until the scale has gone back; then it turned where it stood last. Before any motion it is the
-/// first that comes times `start`.
+/// At rest the direction before goes on, until the scale has gone back. Before any motion it is the first that comes times `start`.
 fn sides(alpha: &[f64], start: f64) -> Vec<f64> {
-    let Some(first) = alpha.first() else {
-        return vec![];
-    };
-    let way = alpha.iter().map(|a| a - first).find(|way| way.abs() > BACK);
+    let ways = alpha.iter().map(|a| a - alpha[0]);
+    let way = ways.into_iter().find(|way| way.abs() > BACK);
     let mut side = start * way.map_or(1.0, f64::signum);
-    let mut sides = vec![side; alpha.len()];
-    let mut farthest = 0;
-    for (k, a) in alpha.iter().enumerate() {
-        let on = (a - alpha[farthest]) * side;
-        if on >= 0.0 {
-            farthest = k;
-        } else if on < -BACK {
-            // It may have rested there: it turned where it last went on.
-            let stood = |j: &usize| (alpha[j + 1] - alpha[*j]) * side >= 0.0;
-            let turn = (farthest..k).rev().find(stood).map_or(farthest, |j| j + 1);
-            let back = |j: usize| (alpha[farthest] - alpha[j]) * side;
-            let turn = turn.max(begins(farthest..k, back));
-            side = -side;
-            sides[turn + 1..k].fill(side);
-            farthest = k;
-        }
-        sides[k] = side;
+    let mut sides = Vec::with_capacity(alpha.len());
+    let mut seen = 0;
+    while let Some(turn) = turn(alpha, seen, side) {
+        sides.resize(turn.last + 1, side);
+        (seen, side) = (turn.seen, -side);
     }
+    sides.resize(alpha.len(), side);
     sides
+}
+
+/// Where a scale turned, in samples: the last on the way out, and the one at which that is seen.
+struct Turn {
+    last: usize,
+    seen: usize,
+}
+
+/// The first turn after a sample at which the scale goes that way.
+fn turn(alpha: &[f64], from: usize, side: f64) -> Option<Turn> {
+    let mut farthest = from;
+    let behind = |k: usize, farthest: usize| (alpha[farthest] - alpha[k]) * side;
+    let seen = (from..alpha.len()).find(|k| {
+        if behind(*k, farthest) <= 0.0 {
+            farthest = *k;
+        }
+        behind(*k, farthest) > BACK
+    })?;
+    // It may have rested there: it turned where it last went on.
+    let went_on = |j: &usize| behind(j + 1, *j) <= 0.0;
+    let stood = (farthest..seen).rev().find(went_on);
+    let began = begins(farthest..seen, |k| behind(k, farthest));
+    let last = stood.map_or(farthest, |j| j + 1).max(began);
+    Some(Turn { last, seen })
 }
 
 /// The first of the samples at which a scale can have begun to go back, given how far back it is at each: a curve that follows an axis
@@ -82,6 +92,7 @@ mod tests {
         let expected = [-1.0, -1.0, -1.0, 1.0, 1.0, -1.0, -1.0];
         assert_eq!(sides(&alpha, -1.0), expected);
     }
+
     #[test]
     fn what_creeps_at_rest_turns_where_it_begins_to_move() {
         // Forwards, a rest in which a curve creeps back by less than a tenth of what counts, and back with a constant acceleration.

@@ -8,7 +8,7 @@ use crate::checks::edges::{Edges, edges};
 use crate::checks::sides::{column, powers};
 use crate::checks::timebase::GAP;
 use crate::checks::turning::Turning;
-use crate::checks::{Checked, magnitudes, ninth, repeats};
+use crate::checks::{Checked, NINTH, magnitudes, ninth, repeats};
 use crate::finding::units;
 use crate::finding::{Cause, Finding, Parameter, Place};
 use crate::numerics::correlate::sums;
@@ -31,9 +31,8 @@ const BY_CHANCE: f64 = 1.2;
 /// So many times the ninth decile of Gaussian noise is far off among so many samples of two channels: 6.3 standard deviations of
 /// 20 000, 6.9 of a million.
 pub(crate) fn far_among(samples: usize) -> f64 {
-    let normal = Normal::standard();
-    let either_side = |p: f64| normal.inverse_cdf(p / 2.0);
-    either_side(FAR_BY_CHANCE / (2 * samples.max(1)) as f64) / either_side(0.1)
+    let on_one_side = FAR_BY_CHANCE / (2 * 2 * samples.max(1)) as f64;
+    -Normal::standard().inverse_cdf(on_one_side) / NINTH
 }
 
 /// How far a sample is off the fifth-order curve through its three neighbours on either side: motion leaves the sixth power
@@ -333,13 +332,13 @@ pub(crate) fn find(recording: &Recording, checked: &mut Checked) {
 
 #[cfg(test)]
 mod tests {
-    use super::far_among;
+    use super::{NINTH, far_among};
 
     #[test]
     fn noise_of_a_longer_recording_has_larger_samples() {
         // The standard deviations that a table of the normal distribution gives for 1.25e-10 and 2.5e-12 on one side.
         for (samples, deviations) in [(20_000, 6.327), (1_000_000, 6.906)] {
-            let far = far_among(samples) * 1.644_854;
+            let far = far_among(samples) * NINTH;
             assert!((far - deviations).abs() < 0.002, "{samples} {far}");
         }
     }

@@ -5,13 +5,12 @@ use nonius_recording::Recording;
 use crate::checks::Checked;
 use crate::checks::delays::{Delay, delays};
 use crate::checks::sides::is_about;
+use crate::checks::timebase::BY_CHANCE;
 
 /// Standard deviations from which on a delay counts.
 const SURE: f64 = 5.0;
 /// Samples at which it is tried how often an angle seems early.
 const PLACES: usize = 4000;
-/// Late samples that chance may make of a recording.
-const BY_CHANCE: f64 = 0.003;
 
 /// Those of some samples behind which the angle is late by what it moves in a sample: they were put in. One of them is looked
 /// for, not the farthest of all, so a smaller delay tells, by the curves that show the largest there; where the axis turns, its own motion

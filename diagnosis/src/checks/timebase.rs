@@ -21,7 +21,7 @@ const SELDOM: usize = 500;
 /// A time from one sample to the next of more than so many usual ones is a gap.
 pub(crate) const GAP: f64 = 1.5;
 /// Repeated samples that chance may make of a recording.
-const BY_CHANCE: f64 = 0.003;
+pub(crate) const BY_CHANCE: f64 = 0.003;
 
 /// The smallest step between two values of a channel, at least a code.
 fn step(values: &[f64], lsb: f64) -> f64 {

@@ -1,5 +1,7 @@
 //! What really moves: the drive without what shakes the axis, and what only a reference shows.
 
+use std::borrow::Cow;
+
 use crate::context::Context;
 use crate::motion::spline::Spline;
 use crate::numerics::slopes::gradient;
@@ -12,10 +14,9 @@ impl Context {
     /// Acceleration of the drive, radians per second squared: where the axis shakes, [`Self::acceleration`] is that of the
     /// shaking.
     pub(crate) fn drive_acceleration(&self) -> Vec<f64> {
-        let (Some(_), Some(motion)) = (&self.finer, &self.spline) else {
+        let Some((motion, fit)) = self.drive() else {
             return self.acceleration.clone();
         };
-        let (motion, fit) = self.fitted(motion, &self.slow());
         let speed = self.change_of_moves(&motion, &motion.derivative(&fit));
         let per_sample = gradient(&speed).into_iter();
         per_sample.map(|a| a * self.rate * self.rate).collect()
@@ -23,11 +24,14 @@ impl Context {
 
     /// The angle of the drive, radians: where the axis shakes, [`Self::alpha`] is that of the shaking.
     pub(crate) fn drive_angle(&self) -> Vec<f64> {
-        let (Some(_), Some(motion)) = (&self.finer, &self.spline) else {
-            return self.alpha.clone();
-        };
-        let (motion, fit) = self.fitted(motion, &self.slow());
-        motion.values(&fit)
+        let drive = self.drive();
+        drive.map_or_else(|| self.alpha.clone(), |(motion, fit)| motion.values(&fit))
+    }
+
+    /// The drive, where the axis shakes: a spline, and its coefficients.
+    fn drive(&self) -> Option<(Cow<'_, Spline>, Vec<f64>)> {
+        self.finer.as_ref()?;
+        Some(self.fitted(self.spline.as_ref()?, &self.slow()))
     }
 
     /// The change per sample of what really moves, of a spline of the angle of which that is `change`. Two derivatives of the angle hold so

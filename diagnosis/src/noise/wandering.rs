@@ -15,7 +15,7 @@ const MUCH: f64 = 0.2;
 /// Log-likelihood by which a line of the axis has to stand higher to be the reason for one of the clock.
 const CLEARLY: f64 = 3.0;
 
-/// What is said of it.
+/// What is said of how the sampling time wanders.
 pub(super) fn sentence(how: &str) -> String {
     let like = like(Cause::ClockJitter, "that is random");
     format!("the sampling time wanders {how}; {like}")
@@ -60,7 +60,7 @@ fn time_error(context: &Context, tangential: &[f64]) -> Vec<f64> {
     speeds.map(|(v, t)| t * v / context.top_speed()).collect()
 }
 
-/// The same in a line.
+/// How it wanders in a line that explains much of what jitter does.
 pub(super) fn in_a_line(context: &Context, tangential: &[f64], gain: f64) -> Option<String> {
     /// Fewest turns of a line over the recording: what does not turn is a delay.
     const TURNS: f64 = 3.0;
@@ -88,7 +88,7 @@ pub(super) fn in_a_line(context: &Context, tangential: &[f64], gain: f64) -> Opt
     None
 }
 
-/// The same with the angle.
+/// How it wanders with the angle, where that explains much of what jitter does.
 fn with_the_angle(context: &Context, tangential: &[f64], gain: f64) -> Option<String> {
     /// Highest order of the scale period.
     const TOP: usize = 12;

@@ -239,12 +239,14 @@ fn leave_unnamed(
         closed.names.extend(one.name);
     } else if one.domain == Some(Domain::Time) && slow_noise(system, residual, one.paid) {
         closed.close_slow();
-    } else if one.domain == Some(Domain::Time) && is_left_over(system, found, one.unnamed.gain) {
-        found.unnamed.push(one.unnamed);
-        closed.domains.extend(one.domain);
     } else {
+        let gain = one.unnamed.gain;
+        let left_over = one.domain == Some(Domain::Time) && is_left_over(system, found, gain);
         found.unnamed.push(one.unnamed);
         closed.domains.extend(one.domain);
+        if left_over {
+            return;
+        }
         let generic = one.domain.map_or(&[][..], |d| catalogue.basis(d));
         let generic = both(&found.fit.shapes, generic);
         found.fit = system.fit(both(&generic, &one.shapes));
